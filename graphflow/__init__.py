@@ -261,6 +261,9 @@ def __getattr__(name: str) -> object:
             return value
     from graphflow.runtime.dictionary import translation
 
-    if hint := translation(name, "names"):  # an AttributeError's text would not reach who imports the name
+    hint = translation(name, "names")
+    if name[:1].isupper() and name.lower() in __all__:
+        hint = f"the decorator is written @{name.lower()}"
+    if hint:  # an AttributeError's text would not reach who imports the name
         raise ImportError(f"graphflow has no {name}; {hint}")
     raise AttributeError(f"module 'graphflow' has no attribute {name!r}")

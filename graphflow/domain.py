@@ -30,6 +30,11 @@ def domain_id(given: int | None = None) -> int:
     return 0
 
 
+def domain_variable() -> str:
+    """The variable that decides about the domain of processes that this one's shell starts."""
+    return next((name for name in DOMAIN_VARIABLES if os.environ.get(name, "").strip()), DOMAIN_VARIABLES[0])
+
+
 def rendezvous_endpoint() -> str:
     """Where processes of this machine find each other."""
     return os.environ.get(ENDPOINT_VARIABLE, DEFAULT_ENDPOINT)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-import tempfile
 from pathlib import Path
 
 from graphflow.errors import SupervisorError
@@ -36,6 +35,8 @@ def temporary_root(variable: str) -> Path:
     Raises:
         SupervisorError: The folder cannot be made, or belongs to another user.
     """
+    import tempfile  # with all kinds of compression, which few commands need
+
     root = Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
     make_private(root, variable)
     return root

@@ -161,6 +161,26 @@ COMMON_PARAMETERS: dict[str, Parameter] = {
     )
 }
 """Parameters that every node has, as in ROS 2."""
+COMMON_SERVICES: dict[str, str] = {
+    "get_parameters": "rcl_interfaces/srv/GetParameters",
+    "get_parameter_types": "rcl_interfaces/srv/GetParameterTypes",
+    "set_parameters": "rcl_interfaces/srv/SetParameters",
+    "set_parameters_atomically": "rcl_interfaces/srv/SetParametersAtomically",
+    "list_parameters": "rcl_interfaces/srv/ListParameters",
+    "describe_parameters": "rcl_interfaces/srv/DescribeParameters",
+    "get_type_description": "type_description_interfaces/srv/GetTypeDescription",
+    "get_logger_levels": "rcl_interfaces/srv/GetLoggerLevels",
+    "set_logger_levels": "rcl_interfaces/srv/SetLoggerLevels",
+}
+"""Services that every node has unless it is made without them, by their names below the node's, with their types."""
+LIFECYCLE_SERVICES: dict[str, str] = {
+    "change_state": "lifecycle_msgs/srv/ChangeState",
+    "get_state": "lifecycle_msgs/srv/GetState",
+    "get_available_states": "lifecycle_msgs/srv/GetAvailableStates",
+    "get_available_transitions": "lifecycle_msgs/srv/GetAvailableTransitions",
+    "get_transition_graph": "lifecycle_msgs/srv/GetAvailableTransitions",
+}
+"""Services that every lifecycle node has besides."""
 
 
 WhenFull = Literal["wait", "drop_new", "drop_old", "cancel_running"]
@@ -311,9 +331,10 @@ def type_of(value: Any) -> ParamType:
             kinds = {"float"}
         if len(kinds) == 1 and (kind := kinds.pop()) in ("bool", "int", "float", "str"):
             return f"list[{kind}]"  # type: ignore[return-value]
-    raise ParameterError(
-        f"{value!r} cannot be a parameter: use a bool, int, float, str, bytes, or a list of one of them"
-    )
+    way = "use a bool, int, float, str, bytes, or a list of one of them"
+    if isinstance(value, dict) and value:
+        way = f"it is a mapping, whose keys are parameters of their own, as in NAME.{next(iter(value))}"
+    raise ParameterError(f"{value!r} cannot be a parameter: {way}")
 
 
 def type_id(value: Any) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Literal
 
 from graphflow.errors import InvalidName
@@ -21,13 +22,19 @@ _NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _SUBSTITUTION = re.compile(r"\{([^}]*)\}")
 MAX_LENGTH = 255
 """Characters in a full name, as in rmw."""
+CHOICES_BOUND = 5_000
+"""Choices that a word is compared with: other processes announce as many names as they like, and each takes 10 us."""
 
 
 def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | None:
-    """The choice most like `word`, or None when none is like it; `cutoff` is 1 for the very same."""
+    """The choice most like `word`, or None when none is like it; `cutoff` is 1 for the very same.
+
+    Args:
+        choices: Of more than `CHOICES_BOUND`, the first are compared.
+    """
     import difflib  # only after a mistake
 
-    found = difflib.get_close_matches(word, list(choices), n=1, cutoff=cutoff)
+    found = difflib.get_close_matches(word, list(islice(choices, CHOICES_BOUND)), n=1, cutoff=cutoff)
     return found[0] if found else None
 
 
@@ -55,7 +62,7 @@ def check_node_name(name: str) -> str:
     if not _NODE.match(name):
         raise InvalidName(
             f"{name!r} is not a node name: use letters, digits and _, and do not begin with a digit"
-            + (f" (give the namespace {name.rpartition('/')[0] or '/'!r} separately)" if "/" in name else "")
+            + (f" (give the namespace {name.rpartition('/')[0] or '/'!r} separately)" if "/" in name else _legal(name))
         )
     return name
 
@@ -83,8 +90,14 @@ def _fault(name: str) -> str | None:
         if not token:
             return "it has // in it"
         if not _TOKEN.match(token):
-            return f"{token!r} may have only letters, digits and _, and may not begin with a digit"
+            return f"{token!r} may have only letters, digits and _, and may not begin with a digit{_legal(token)}"
     return None
+
+
+def _legal(token: str) -> str:
+    """The end of a sentence on a part of a name that is not legal: one that is, and most like it."""
+    near = re.sub(r"\W+", "_", token, flags=re.ASCII).strip("_")
+    return f"; did you mean {near!r}?" if near != token and _NODE.match(near) else ""
 
 
 def check_namespace(namespace: str) -> str:
@@ -172,8 +185,12 @@ class Remap:
             InvalidName: There is no `:=`, a side is empty, `node` is not a node name, or `__word` is not a known one.
         """
         match, arrow, replacement = text.partition(":=")
-        if not arrow or not match or not replacement:
-            raise InvalidName(f"{text!r} is not a remap rule; write it as from:=to, for example pose:=/turtle1/pose")
+        if arrow and match and not replacement:
+            raise InvalidName(f"{text!r}: the name is missing; write it behind := without a space")
+        if not arrow or not match:
+            head, equals, rest = text.partition("=")
+            way = f": {head}:={rest}" if not arrow and equals else ", for example pose:=/turtle1/pose"
+            raise InvalidName(f"{text!r} is not a remap rule; write it as from:=to{way}")
         node: str | None = None
         head, colon, rest = match.partition(":")
         if colon and not rest.startswith("//"):
@@ -184,7 +201,9 @@ class Remap:
                 match, kind = match.removeprefix(scheme), meant  # type: ignore[assignment]
         if match.startswith("__") and match not in ("__ns", "__node", "__name"):
             known = ("__ns", "__node", "__name")
-            raise InvalidName(f"{match!r} is not a remap key{did_you_mean(match, known)}")
+            near = nearest(match, known)
+            meant = f"; did you mean '{near}:={replacement}'?" if near else did_you_mean(match, known)
+            raise InvalidName(f"{match!r} is not a remap key{meant}")
         return cls(match, replacement, node, kind, source)
 
 

@@ -40,6 +40,15 @@ class Liveliness(IntEnum):
     MANUAL_BY_TOPIC = 3
 
 
+_POLICIES: dict[str, type[IntEnum]] = {
+    "reliability": Reliability,
+    "durability": Durability,
+    "history": History,
+    "liveliness": Liveliness,
+}
+_DURATIONS = ("deadline_ns", "lifespan_ns", "lease_ns")
+
+
 @dataclass(frozen=True, slots=True)
 class Qos:
     """One endpoint's profile. Durations are in nanoseconds, `INFINITE_NS` for none."""
@@ -55,12 +64,25 @@ class Qos:
     lease_ns: int = INFINITE_NS
 
     def __post_init__(self) -> None:
+        for name, kind in _POLICIES.items():
+            if not isinstance(value := getattr(self, name), kind):
+                meant = str(value).upper() if isinstance(value, str) else ""
+                one = kind[meant] if meant in kind.__members__ else next(iter(kind))
+                raise ValueError(f"{name} of a Qos cannot be {value!r}; write {name}={kind.__name__}.{one.name}")
+        for name in ("depth", *_DURATIONS):
+            value = getattr(self, name)
+            if not isinstance(value, int) or isinstance(value, bool):
+                is_time = isinstance(value, float) and name != "depth"
+                hint = f"; for {value:g} seconds write {name}={round(value * 1e9):_}" if is_time else ""
+                raise ValueError(f"{name} of a Qos is a whole number, not {value!r}{hint}")
+            if value < 0 and name != "depth":
+                raise ValueError(f"{name} of a Qos cannot be {value}; leave it out for none")
         # rmw_zenoh adapts a requested profile likewise: neither a depth nor a duration of 0 reaches the wire.
         if self.depth < 0:
             raise ValueError(f"a queue depth cannot be {self.depth}; give 1 or more")
         if not self.depth:
             object.__setattr__(self, "depth", DEFAULT_DEPTH)
-        for name in ("deadline_ns", "lifespan_ns", "lease_ns"):
+        for name in _DURATIONS:
             if not getattr(self, name):
                 object.__setattr__(self, name, INFINITE_NS)
 
@@ -105,6 +127,22 @@ def incompatible(offered: Qos, requested: Qos) -> list[str]:
         "liveliness lease": offered.lease_ns > requested.lease_ns,
     }
     return [policy for policy, is_refused in refused.items() if is_refused]
+
+
+def on_offer(offered: Qos, policies: Iterable[str]) -> str:
+    """The values of policies that a publisher offers, in words: a subscription that asks for these is not refused."""
+    words = {
+        "reliability": offered.reliability.name,
+        "durability": offered.durability.name,
+        "deadline": _span(offered.deadline_ns),
+        "liveliness": offered.liveliness.name,
+        "liveliness lease": _span(offered.lease_ns),
+    }
+    return ", ".join(f"{policy} {words[policy]}" for policy in policies)
+
+
+def _span(duration_ns: int) -> str:
+    return "infinite" if duration_ns >= INFINITE_NS else f"{duration_ns / 1e9:g} s"
 
 
 DEFAULT = Qos()

@@ -1,4 +1,4 @@
-"""Files that are found rather than named: nobody has said what they are, so only regular ones are read, up to a size.
+"""Files of others, found or named: nobody knows what they are, so only regular ones are read, up to a size.
 
 A FIFO or a device that is called `package.xml` would keep whoever opens it waiting, and some files have no end.
 """
@@ -32,14 +32,14 @@ def found_bytes(path: Path, bound: int = FOUND_BOUND) -> bytes:
     return data
 
 
-def found_text(path: Path, errors: str = "strict") -> str:
+def found_text(path: Path, errors: str = "strict", bound: int = FOUND_BOUND) -> str:
     """The content of a file in UTF-8, with the ends of lines as Python has them. Arguments and errors as for `open`.
 
     Raises:
         OSError: As for `found_bytes`.
         UnicodeDecodeError: It is no text.
     """
-    return found_bytes(path).decode(errors=errors).replace("\r\n", "\n").replace("\r", "\n")
+    return found_bytes(path, bound).decode(errors=errors).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _open_at_once(path: str, flags: int) -> int:

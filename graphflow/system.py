@@ -29,6 +29,14 @@ def user_id() -> int:
     return os.getuid() if hasattr(os, "getuid") else 0
 
 
+def terminal_name() -> str:
+    """The terminal that this process is used from, as `who` prints it; the process where there is none."""
+    try:
+        return os.ttyname(0).removeprefix("/dev/")
+    except (OSError, AttributeError):
+        return f"process {os.getpid()}"
+
+
 def detached() -> dict[str, Any]:
     """Options of `subprocess.Popen` for a process that a terminal's Ctrl-C does not reach."""
     create_new_process_group = 0x200

@@ -10,8 +10,12 @@ NANOSECONDS = 1_000_000_000
 
 
 def to_ns(seconds: float) -> int:
-    """Seconds as whole nanoseconds, rounded to nearest."""
-    return round(seconds * NANOSECONDS)
+    """Seconds as whole nanoseconds, rounded to nearest. Raises TypeError for what is no number."""
+    try:
+        return round((seconds + 0) * NANOSECONDS)  # a text times a number would be a long text
+    except TypeError:
+        pass
+    raise TypeError(f"a time is a number of seconds, such as 0.5, not {seconds!r}")
 
 
 def ago(seconds: float) -> str:
@@ -114,11 +118,22 @@ def _duration(value: Duration | DurationFields) -> Duration:
     return Duration.from_msg(value) if isinstance(value, DurationFields) else value
 
 
+def _refuse_fraction(name: str, value: object) -> None:
+    """See that a number of nanoseconds is a whole one, of whatever kind. Raises TypeError if it is not."""
+    if not hasattr(value, "__index__"):
+        way = "Duration.of(seconds)" if name == "Duration" else "self.clock.now(), or Time(round(seconds * 1e9))"
+        raise TypeError(f"{name} takes whole nanoseconds, not {value!r}; write {way}")
+
+
 @dataclass(frozen=True, order=True, slots=True)
 class Duration:
     """A span of time; may be negative. Fits builtin_interfaces/msg/Duration."""
 
     nanoseconds: int
+
+    def __post_init__(self) -> None:
+        if self.nanoseconds.__class__ is not int:
+            _refuse_fraction("Duration", self.nanoseconds)
 
     @classmethod
     def of(cls, seconds: float) -> Duration:
@@ -170,6 +185,10 @@ class Time:
     """
 
     nanoseconds: int
+
+    def __post_init__(self) -> None:
+        if self.nanoseconds.__class__ is not int:
+            _refuse_fraction("Time", self.nanoseconds)
 
     @classmethod
     def from_msg(cls, message: HasFields) -> Time:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 
 import graphflow
-from graphflow import Node, Param, Publisher, task
+from graphflow import GraphflowError, Node, Param, Publisher, task
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 
 from .terminal_keys import HANGUP, keyboard
@@ -36,8 +36,7 @@ class TurtleTeleop(Node):
     @task
     async def read_keys(self) -> None:
         if sys.stdin is None or not sys.stdin.isatty():
-            self.log.error("no arrow keys here: this is not a terminal; run %s in one of its own", self.name)
-            return self.shutdown()
+            raise GraphflowError(f"no arrow keys here: this is not a terminal; run {self.name} in one of its own")
         with keyboard(sys.stdin.fileno()) as keys:
             print(PROMPT, flush=True)
             while (key := await keys.get()) not in ("q", "Q", HANGUP):

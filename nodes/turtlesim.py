@@ -45,13 +45,13 @@ class TurtleSim(Node):
 
     node_name = "turtlesim"
     dynamic_names = (
-        "*/cmd_vel",
-        "*/pose",
-        "*/color_sensor",
-        "*/set_pen",
-        "*/teleport_absolute",
-        "*/teleport_relative",
-        "*/rotate_absolute",
+        "*/?*/cmd_vel",
+        "*/?*/pose",
+        "*/?*/color_sensor",
+        "*/?*/set_pen",
+        "*/?*/teleport_absolute",
+        "*/?*/teleport_relative",
+        "*/?*/rotate_absolute",
     )
 
     background_r = Param(69, ge=0, le=255, doc="Red part of the background colour.")

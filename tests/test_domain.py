@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.domain import domain_id
+from graphflow.domain import domain_id, domain_variable
 from graphflow.errors import GraphflowError
 
 
@@ -45,3 +45,14 @@ def test_a_variable_that_is_no_number(monkeypatch: pytest.MonkeyPatch, variable:
     with pytest.raises(GraphflowError) as caught:
         domain_id()
     assert str(caught.value) == f"{variable}={value!r}: a domain is a whole number, 0 or more"
+
+
+def test_the_variable_that_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Is the first that is set, and ours where none is."""
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "")
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    assert domain_variable() == "GRAPHFLOW_DOMAIN"
+    monkeypatch.setenv("ROS_DOMAIN_ID", "5")
+    assert domain_variable() == "ROS_DOMAIN_ID"
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
+    assert domain_variable() == "GRAPHFLOW_DOMAIN"

@@ -158,11 +158,13 @@ def test_types_of_values(value: Any, type_: ParamType, number: int) -> None:
     assert (type_of(value), type_id(value)) == (type_, number)
 
 
-@pytest.mark.parametrize("value", [None, [], [None], [b"x"], [[1]], [1, True], [1, "a"], {}, {"a": 1}, object()])
+@pytest.mark.parametrize("value", [None, [], [None], [b"x"], [[1]], [1, True], [1, "a"], {}, object()])
 def test_values_that_cannot_be_parameters(value: Any) -> None:
     """Their type cannot be told, or is none of ROS 2's."""
     with pytest.raises(ParameterError, match="cannot be a parameter: use a bool, int, float, str, bytes, or a list of"):
         type_of(value)
+    with pytest.raises(ParameterError, match="a mapping, whose keys are parameters of their own"):
+        type_of({"a": 1})
 
 
 def test_what_is_not_set_has_no_type() -> None:

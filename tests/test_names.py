@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from graphflow.errors import InvalidName
 from graphflow.names import (
+    CHOICES_BOUND,
     Kind,
     Remap,
     Resolver,
@@ -38,6 +39,18 @@ def test_wrong_node_names(name: str) -> None:
     """Anything else is refused, with the rule."""
     with pytest.raises(InvalidName, match="is not a node name: use letters, digits and _"):
         check_node_name(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "near"), [("my turtle", "my_turtle"), ("a-b.c", "a_b_c"), ("2nd", ""), ("\u00e9", "")]
+)
+def test_a_name_that_is_like_a_wrong_one(name: str, near: str) -> None:
+    """Is told where there is one, also of a namespace."""
+    end = f"; did you mean '{near}'?" if near else "with a digit"
+    for check in (check_node_name, check_namespace):
+        with pytest.raises(InvalidName) as caught:
+            check(name)
+        assert str(caught.value).endswith(end)
 
 
 @pytest.mark.parametrize(("name", "namespace"), [("/a/b", "/a"), ("a/b", "a"), ("/b", "/")])
@@ -207,11 +220,17 @@ def test_a_rule_prints_as_it_is_written(text: str) -> None:
     assert str(Remap.parse(text)) == text
 
 
-@pytest.mark.parametrize("text", ["", "a", "a=b", "a:b", ":=b", "a:=", ":="])
+@pytest.mark.parametrize("text", ["", "a", "a=b", "a:b", ":=b", ":="])
 def test_what_is_no_rule(text: str) -> None:
     """A rule without `:=`, or with nothing on a side, is refused with an example."""
     with pytest.raises(InvalidName, match="is not a remap rule; write it as from:=to"):
         Remap.parse(text)
+
+
+def test_a_rule_that_a_space_has_cut() -> None:
+    """What is behind the space is no part of it."""
+    with pytest.raises(InvalidName, match=r"'__node:=': the name is missing; write it behind := without a space"):
+        Remap.parse("__node:=")
 
 
 @pytest.mark.parametrize("text", [":a:=b", "/ns/n:a:=b", "2n:a:=b"])
@@ -223,7 +242,7 @@ def test_a_rule_for_what_is_no_node(text: str) -> None:
 
 def test_a_misspelt_key_is_helped() -> None:
     """An unknown `__key` is refused with the nearest known one."""
-    with pytest.raises(InvalidName, match="'__nod' is not a remap key; did you mean '__node'"):
+    with pytest.raises(InvalidName, match="'__nod' is not a remap key; did you mean '__node:=x'"):
         Remap.parse("__nod:=x")
 
 
@@ -366,6 +385,13 @@ def test_choices_that_are_named_only_when_near() -> None:
     assert did_you_mean("/arm/list_params", ["/add"], ["/arm/list_parameters"]) == (
         "; did you mean '/arm/list_parameters'?"
     )
+
+
+def test_nearest_of_very_many() -> None:
+    """It looks at a limited number."""
+    crowd = ["odom"] * CHOICES_BOUND
+    assert nearest("cmd_vel", ["cmd_val", *crowd]) == "cmd_val"
+    assert nearest("cmd_vel", [*crowd, "cmd_val"]) is None
 
 
 def test_nearest_is_none_when_nothing_is_near() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import FrozenInstanceError
 from typing import Any
 
@@ -72,6 +73,27 @@ def test_a_negative_depth_is_refused() -> None:
         Qos.of(-1)
 
 
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (
+            {"durability": "transient_local"},
+            "durability of a Qos cannot be 'transient_local'; write durability=Durability.TRANSIENT_LOCAL",
+        ),
+        ({"reliability": True}, "reliability of a Qos cannot be True; write reliability=Reliability.RELIABLE"),
+        ({"deadline_ns": 0.1}, "is a whole number, not 0.1; for 0.1 seconds write deadline_ns=100_000_000"),
+        ({"lifespan_ns": -5}, "lifespan_ns of a Qos cannot be -5; leave it out for none"),
+        ({"lease_ns": "5"}, "lease_ns of a Qos is a whole number, not '5'"),
+        ({"depth": True}, "depth of a Qos is a whole number, not True"),
+        ({"depth": 2.5}, "depth of a Qos is a whole number, not 2.5"),
+    ],
+)
+def test_values_of_another_kind_are_refused(given: dict[str, Any], told: str) -> None:
+    """With the one to write, before anything compares or sends them."""
+    with pytest.raises(ValueError, match=re.escape(told)):
+        Qos(**given)
+
+
 def test_a_profile_stays_as_it_is() -> None:
     """A profile is its own short form."""
     assert Qos.of(qos.SENSOR_DATA) is qos.SENSOR_DATA
@@ -139,3 +161,12 @@ def test_ros_names_of_the_profiles() -> None:
     ]
     assert qos.PROFILES["sensor_data"].reliability is Reliability.BEST_EFFORT
     assert qos.PROFILES["system_default"].depth == qos.DEFAULT_DEPTH
+
+
+def test_what_is_on_offer() -> None:
+    """In the words of policies; a span of time in seconds."""
+    offered = Qos(reliability=Reliability.BEST_EFFORT, deadline_ns=500_000_000)
+    words = qos.on_offer(offered, ("reliability", "durability", "deadline", "liveliness", "liveliness lease"))
+    assert words == (
+        "reliability BEST_EFFORT, durability VOLATILE, deadline 0.5 s, liveliness AUTOMATIC, liveliness lease infinite"
+    )

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from typing import cast
+
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -137,3 +141,11 @@ def test_stamps_and_spans_do_not_mix() -> None:
         assert TimeMessage(sec=1) < DurationMessage(sec=2)  # type: ignore[operator]
     assert Time(1) != Duration(1)
     assert len({Time(1), Time(1), Duration(1)}) == 2
+
+
+@pytest.mark.parametrize(("kind", "way"), [(Time, "self.clock.now(), or"), (Duration, "Duration.of(seconds)")])
+def test_fractions_of_a_nanosecond_are_refused(kind: type[Time | Duration], way: str) -> None:
+    """They are seconds, by mistake; whole numbers of any kind are taken."""
+    with pytest.raises(TypeError, match=re.escape(f"{kind.__name__} takes whole nanoseconds, not 1.5; write {way}")):
+        kind(cast("int", 1.5))
+    assert kind(cast("int", np.int64(5))).nanosec == 5

@@ -22,11 +22,33 @@ from graphflow.bag.metadata import DURATIONS, ENUMS, loaded
 from graphflow.errors import GraphflowError, UsageFault
 from graphflow.names import check_full_name, did_you_mean
 from graphflow.qos import Qos
+from graphflow.reading import found_bytes
 
 BOUND = 1 << 20
 """Bytes that such a file may have."""
 _ROS_ONLY = "avoid_ros_namespace_conventions"
 _KEYS = (*ENUMS, "depth", *DURATIONS, _ROS_ONLY)
+
+
+def named_file(path: Path, advice: str = "") -> Any:
+    """The YAML of a file that the user has named.
+
+    Args:
+        advice: The end of the message where it cannot be opened.
+
+    Raises:
+        UsageFault: It cannot be read, or is no YAML.
+    """
+    try:
+        return loaded(found_bytes(path, BOUND))
+    except OSError as error:
+        raise UsageFault(f"{path}: {error.strerror}{advice}") from None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f":{mark.line + 1}:{mark.column + 1}" if mark is not None else ""
+        raise UsageFault(f"{path}{where}: not valid YAML: {error.problem or error}") from None
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        raise UsageFault(f"{path}: {' '.join(str(error).split())[:300]}") from None
 
 
 def read(path: Path) -> dict[str, Qos]:
@@ -35,16 +57,7 @@ def read(path: Path) -> dict[str, Qos]:
     Raises:
         UsageFault: It cannot be read, or something in it is wrong; the text says what and where.
     """
-    try:
-        with path.open("rb") as file:
-            text = file.read(BOUND + 1)
-        if len(text) > BOUND:
-            raise UsageFault(f"{path}: larger than {BOUND:,} bytes")
-        data = loaded(text)
-    except OSError as error:
-        raise UsageFault(f"{path}: {error.strerror}") from None
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise UsageFault(f"{path}: {' '.join(str(error).split())[:300]}") from None
+    data = named_file(path)
     if not isinstance(data, Mapping):
         raise UsageFault(f"{path}: it has no topics; write /topic: {{reliability: best_effort}}")
     found = {}

@@ -11,8 +11,9 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
 
@@ -51,36 +52,53 @@ class PackedFile:
     Args:
         path: Its name ends with one of `SUFFIXES`.
         open_file: Opens it when it is decompressed.
+        is_kept: Whether what is decompressed stays until nobody has this object any more, so that it is done once.
 
     Raises:
         BagError: It cannot be decompressed, or is no bag then.
     """
 
-    def __init__(self, path: Path, open_file: Callable[[Path], File]) -> None:
+    def __init__(self, path: Path, open_file: Callable[[Path], File], *, is_kept: bool = False) -> None:
         self.path, self._open_file = path, open_file
-        with self._loose() as file:
+        self._kept: File | None = None
+        with ExitStack() as stack:
+            file = stack.enter_context(_loose(path, open_file))
             self.contents = file.contents
             self.kind = type(file)
+            if is_kept:
+                self._kept = file
+                weakref.finalize(self, stack.pop_all().close)
 
     def records(
         self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Record]:
         """Messages in the order of their times. Arguments and errors as for `McapFile.records`."""
-        with self._loose() as file:
+        with _loose(self.path, self._open_file) if self._kept is None else _named(self.path, self._kept) as file:
             yield from file.records(names, start_ns, end_ns)
 
-    @contextmanager
-    def _loose(self) -> Iterator[File]:
-        try:
-            with tempfile.TemporaryDirectory(prefix="graphflow-bag-") as folder:
-                path = Path(folder) / self.path.stem
-                try:
-                    decompress(self.path, path)
-                    yield self._open_file(path)
-                except BagError as error:
-                    raise BagError(str(error).replace(str(path), str(self.path))) from None
-        except OSError as error:
-            raise BagError(f"{self.path}: {error.strerror}: {error.filename or tempfile.gettempdir()}") from None
+
+@contextmanager
+def _loose(source: Path, open_file: Callable[[Path], File]) -> Iterator[File]:
+    """A file, decompressed for the length of the block."""
+    try:
+        with tempfile.TemporaryDirectory(prefix="graphflow-bag-") as folder:
+            path = Path(folder) / source.stem
+            try:
+                decompress(source, path)
+                yield open_file(path)
+            except BagError as error:
+                raise BagError(str(error).replace(str(path), str(source))) from None
+    except OSError as error:
+        raise BagError(f"{source}: {error.strerror}: {error.filename or tempfile.gettempdir()}") from None
+
+
+@contextmanager
+def _named(source: Path, file: File) -> Iterator[File]:
+    """A decompressed file, with errors that name the one that it was made from."""
+    try:
+        yield file
+    except BagError as error:
+        raise BagError(str(error).replace(str(file.path), str(source))) from None
 
 
 def decompress(source: Path, target: Path) -> None:

@@ -24,7 +24,9 @@ from graphflow.names import check_full_name
 from graphflow.qos import CLOCK, DEFAULT, Durability, History, Qos, Reliability
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
+from graphflow.runtime.serialized import RawPublisher
 from graphflow.times import to_ns
+from graphflow.wire.profile import wire_profile, wire_type
 
 logger = logging.getLogger("graphflow")
 
@@ -98,10 +100,11 @@ class Player:
         self._sought: int | None = None
         self._is_clocked = options.clocks_all or bool(options.clock_topics)
         self._topics = dict(self._chosen())
-        self._publishers: dict[str, raw.RawPublisher] = {}
+        self._publishers: dict[str, RawPublisher] = {}
         if not self._topics:
             why = "; ".join(self.refused or self.absent) or f"it has {', '.join(bag.contents.topics) or 'none'}"
             raise BagError(f"{bag.path}: there is nothing to play: {why}")
+        self._check_types()
         check_messages([bag], self._topics, (), *self._span)
         for name, topic in self._topics.items():
             self._publishers[name] = raw.advertise(
@@ -115,6 +118,20 @@ class Player:
         if options.clock_hz or self._is_clocked:
             type_ = registry.interface_class("rosgraph_msgs/msg/Clock")
             self._clock = node.create_publisher(type_, "/clock", CLOCK)
+
+    def _check_types(self) -> None:
+        """Check that a topic under a new name is of the type that this has, in the graph and in the bag."""
+        new_names, there = self._options.remaps, self._node.context.cache.topics(hidden=True)
+        for name, topic in self._topics.items():
+            if name not in new_names:
+                continue
+            goes = new_names[name]
+            beside = [other.type for n, other in self._topics.items() if new_names.get(n, n) == goes]
+            own = (topic.type, wire_type(topic.type, wire_profile()))
+            taken = next((type_ for type_ in (*there.get(goes, ()), *beside) if type_ not in own), None)
+            if taken is not None:
+                text = f"{name} is of type {topic.type}, and {goes} of type {taken}; give it another name with -m"
+                raise BagError(f"{self._bag.path}: {text}")
 
     def _chosen(self) -> Iterator[tuple[str, Topic]]:
         for name, topic in self._bag.contents.topics.items():

@@ -1,4 +1,4 @@
-"""A bag, read: a folder as `ros2 bag record` makes it, or a single file: MCAP, `.db3`, or ROS 1's `.bag`."""
+"""A bag, read: a folder as `ros2 bag record` makes it or of ROS 1's `.bag` files, or a single file of such a format."""
 
 from __future__ import annotations
 
@@ -39,7 +39,9 @@ class Bag:
             raise BagError(f"{self.path}: it is compressed by {form!r}; graphflow reads {', '.join(MAGICS.values())}")
         self._is_packed = mode == "message"
         self._may_be_packed = self._is_packed or not said
-        self.files: list[File] = [_file(file) for file in self._paths(said)]
+        paths = self._paths(said)
+        # Of several, all decompressed at once could fill the disk.
+        self.files: list[File] = [_file(file, is_kept=len(paths) == 1) for file in paths]
         self.contents = together([file.contents for file in self.files])
 
     @property
@@ -89,6 +91,8 @@ class Bag:
         yield from _merged(together, names, start_ns, end_ns)
 
     def _paths(self, said: dict[str, object]) -> list[Path]:
+        if self.path.name == metadata.FILE:
+            raise BagError(f"{self.path} is a part of the bag; give its folder: {self.path.parent}")
         if self.path.is_file():
             return [self.path]
         if not self.path.is_dir():
@@ -99,13 +103,15 @@ class Bag:
         # What a recorder that was killed wrote last is in no metadata. Of a file that is there twice, decompressed by
         # rosbag2 for example, the one counts that the metadata names, else the one that is not compressed.
         have = {_loose(path) for path in found}
-        for path in sorted(self.path.iterdir(), key=lambda path: (path.suffix in SUFFIXES, _natural(path))):
+        there = sorted(self.path.iterdir(), key=lambda path: (path.suffix in SUFFIXES, _natural(path)))
+        for path in there:
             if _loose(path).suffix in (".mcap", ".db3") and path.is_file() and _loose(path) not in have:
                 found.append(path)
                 have.add(_loose(path))
+        found = found or [path for path in there if _is_ros1(path) and path.is_file()]
         if not found:
             missing = f"; its {metadata.FILE} names {', '.join(names)}" if names else ""
-            raise BagError(f"{self.path}: it has no .mcap or .db3 file{missing}")
+            raise BagError(f"{self.path}: it has no .mcap, .db3 or .bag file{missing}")
         return found
 
 
@@ -115,12 +121,17 @@ def _merged(files: list[File], names: Collection[str] | None, start_ns: int, end
     return heapq.merge(*parts, key=lambda record: record.log_ns) if len(parts) > 1 else chain(*parts)
 
 
-def _file(path: Path) -> File:
+def _file(path: Path, *, is_kept: bool = False) -> File:
     if path.suffix in SUFFIXES:
-        return PackedFile(path, _file)
-    if path.suffix == ".bag":
+        return PackedFile(path, _file, is_kept=is_kept)
+    if _is_ros1(path):
         return Ros1File(path)
     return Db3File(path) if path.suffix == ".db3" else McapFile(path)
+
+
+def _is_ros1(path: Path) -> bool:
+    """Whether a file is called as ROS 1 calls its bags, also while they are recorded."""
+    return path.name.endswith((".bag", ".bag.active"))
 
 
 def _loose(path: Path) -> Path:

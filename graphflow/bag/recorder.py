@@ -23,6 +23,7 @@ from graphflow.errors import BagError, GraphflowError, printable
 from graphflow.qos import BEST_AVAILABLE, Qos
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
+from graphflow.runtime.serialized import RawSubscription
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -86,7 +87,7 @@ class Recorder:
         self.failed: asyncio.Future[BagError] = asyncio.get_running_loop().create_future()
         """Has why nothing can be written any more."""
         self._loop = asyncio.get_running_loop()
-        self._subscriptions: dict[str, raw.RawSubscription] = {}
+        self._subscriptions: dict[str, RawSubscription] = {}
         self._topics: dict[str, Topic] = {}
         self._left_out: set[tuple[str, str]] = set()
         """Other types of topics that are recorded."""

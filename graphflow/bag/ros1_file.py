@@ -33,6 +33,7 @@ MAGIC = b"#ROSBAG V"
 CHUNK_BOUND = 1 << 30
 """Bytes that a chunk may have when it is decompressed."""
 LATCHED = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
+_NO_INDEX = "it has no whole index, as when its recording did not end; ROS 1 writes one: rosbag reindex"
 _TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 _RENAMED = {"tf/msg/tfMessage": "tf2_msgs/msg/TFMessage"}
 _CONSTANT = re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z")
@@ -90,7 +91,10 @@ class Ros1File:
                 for place, chunk in reader.chunks.items():
                     reader.chunks[place] = chunk._replace(decompressor=_bounded(chunk.decompressor))
                 yield reader
-        except (ReaderError, SerdeError, AssertionError, LookupError, TypeError, ValueError, struct.error) as error:
+        except ReaderError as error:
+            why = f"{_NO_INDEX} {self.path.name}" if "index" in str(error).lower() else _why(error)
+            raise BagError(f"{self.path}: {why}") from None
+        except (SerdeError, AssertionError, LookupError, TypeError, ValueError, struct.error) as error:
             raise BagError(f"{self.path}: {_why(error)}") from None
         except (packing.Damaged, EOFError, MemoryError, RecursionError, OverflowError) as error:
             raise BagError(f"{self.path}: it is damaged: {_why(error)}") from None

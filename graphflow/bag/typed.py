@@ -6,11 +6,14 @@ from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from graphflow.bag.choice import Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import parted
+from graphflow.bag.missing import remarks
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError, InterfaceError, UnknownInterface
 from graphflow.msgs import registry
+from graphflow.names import expand
 
 
 class Said(NamedTuple):
@@ -24,7 +27,7 @@ class Said(NamedTuple):
 
 def read(
     path: Path | str,
-    topics: Collection[str] | None = None,
+    topics: Collection[str] | str | None = None,
     *,
     start_ns: int = 0,
     end_ns: int | None = None,
@@ -33,15 +36,21 @@ def read(
 
     Args:
         path: The bag: a folder, or a file: MCAP, `.db3` or ROS 1's `.bag`.
-        topics: Those that are wanted; None for all.
+        topics: Those that are wanted, or one of them; None for all.
         start_ns: From this time on, nanoseconds since 1970.
         end_ns: Up to this time, which does not belong to it.
 
     Raises:
-        BagError: The bag cannot be read, or has a type that is not known and not defined in it.
+        BagError: The bag cannot be read, has no such topic, or has a type that is not known and not defined in it.
         DecodeError: A message is not of its type.
     """
-    return said(Bag(path).records(topics, start_ns, end_ns))
+    bag = Bag(path)
+    if topics is None:
+        return said(bag.records(None, start_ns, end_ns))
+    named = frozenset(expand(name, "/", "bag") for name in ([topics] if isinstance(topics, str) else topics))
+    if absent := remarks([bag], Choice(topics=named)):
+        raise BagError(f"{path}: {'; '.join(absent)}")
+    return said(bag.records(named, start_ns, end_ns))
 
 
 def decoder(topic: Topic) -> Callable[[bytes], Any]:

@@ -8,13 +8,14 @@ import click
 
 from graphflow.cli import output
 from graphflow.cli.echo_options import echo_options, taken
-from graphflow.cli.types import agree, names_of_type, use_project
+from graphflow.cli.types import agree, check_kind, names_of_type, refuse_turned, type_of_word, use_project
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import UsageFault
 from graphflow.introspect.view import View
-from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE
+from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE, ACTION_SEND_GOAL
+from graphflow.machines.matching import shared
 from graphflow.names import did_you_mean, expand
 from graphflow.wire.liveliness import Kind
 
@@ -85,6 +86,8 @@ def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
         output.data(f"Action {word}: {len(entries)}")
         if not count:
             output.lines(f"    {node} [{type_}]" if show_types else f"    {node}" for node, type_ in entries)
+    if not found["servers"]:
+        output.talk(f"no node serves {full}{did_you_mean(full, view.cache.served_actions())}")
 
 
 @action.command()
@@ -107,8 +110,9 @@ def _types(view: View, name: str) -> list[str]:
     """The types of an action in the graph."""
     actions = view.cache.actions()
     if name not in actions:
+        served = view.cache.served_actions()
         raise UsageFault(
-            f"there is no action {name}{did_you_mean(name, actions) or '; graphflow action list shows all'}"
+            f"there is no action {name}{view.cache.instead(name, served) or '; graphflow action list shows all'}"
         )
     return actions[name]
 
@@ -145,10 +149,12 @@ def send_goal(
     from graphflow.msgs.values import from_plain
 
     use_project()
+    refuse_turned(name, type_name, "action send_goal")
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         actions = view.cache.actions()
-        there = actions.get(full)
+        alone = view.nobody_here() if full not in actions else ""
+        there, served = actions.get(full), view.cache.served_actions()
         if type_name is None:
             types = _types(view, full)
             raise UsageFault(
@@ -158,9 +164,12 @@ def send_goal(
             from graphflow.introspect.definitions import learn
 
             learn(view, full, type_name if type_name in there or len(there) > 1 else there[0])
-    wanted = registry.full_name(type_name)
+            for text in shared(view.cache.named(f"{full}{ACTION_SEND_GOAL}")):
+                output.talk(f"WARNING: {text}")
+    wanted = type_of_word(type_name, full, there or ())
+    check_kind(wanted, "action")
     actual = agree(wanted, there, full) if there else wanted
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values, from_stdin=from_stdin))
     if not there:
-        output.talk(f"there is no action {full} yet{did_you_mean(full, actions)}")
+        output.talk(f"there is no action {full} yet{did_you_mean(full, served) or alone}")
     return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout, as_json=as_json)

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.bag_words import BagVerb, moment_option
 from graphflow.cli.plot_options import plot_options
 from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
@@ -22,6 +23,8 @@ DELAY = 0.5
 
 SHOWN_EVERY = 0.25
 """Seconds between two lines of how far a new bag is, at a terminal."""
+_FORMATS = {"mcap", "sqlite3"}
+"""ROS 2's names of the formats of bags."""
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -40,6 +43,17 @@ def _qos_path(command: F) -> F:
 def _names(words: tuple[str, ...]) -> frozenset[str]:
     """Full names, of words that may have several each."""
     return frozenset(expand(name, "/", "cli") for word in words for name in word.split())
+
+
+def _types(words: tuple[str, ...]) -> frozenset[str]:
+    """Types, of which a name without its kind is a message's; they need not be known here."""
+    from graphflow.msgs import registry
+
+    for word in words:
+        if "/" not in word:
+            registry.full_name(word)  # raises, unless it is Python's name
+    words = tuple(word.replace(".", "/") for word in words)
+    return frozenset(name.replace("/", "/msg/") if name.count("/") == 1 else name for name in words)
 
 
 def _chosen(command: F) -> F:
@@ -67,13 +81,25 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
     regex = options.pop("regex")
     excluded = {
         "exclude": _names(options.pop("exclude_topics")),
-        "exclude_types": frozenset(options.pop("exclude_topic_types")),
+        "exclude_types": _types(options.pop("exclude_topic_types")),
         "exclude_regex": options.pop("exclude_regex"),
         "exclude_services": _names(options.pop("exclude_services")),
     }
     is_open = not (named or services or regex)
     more.setdefault("all", is_open)
     return Choice(topics=named, services=services, regex=regex, **excluded, **more)
+
+
+def _known_format(_: click.Context, __: click.Parameter, word: str | None) -> str | None:
+    """See that `-s` names a format, and neither a speed nor a start."""
+    if word is not None and word not in _FORMATS:
+        raise UsageFault(f"-s is the bag's format, {' or '.join(sorted(_FORMATS))}, not {word!r}; the speed is -r")
+    return word
+
+
+_storage = click.option(
+    "-s", "--storage", hidden=True, callback=_known_format, help="For ROS 2's commands: the file says it."
+)
 
 
 @bag.command(short_help="Record topics of the running graph.")
@@ -125,15 +151,19 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
 )
 def record(topics: tuple[str, ...], **options: Any) -> int:
     """Record topics of the running graph into a folder, in MCAP or .db3 files. Ctrl-C ends it, SPACE pauses it."""
+    if topics and (options["everything"] or options["all_topics"]):
+        raise UsageFault(f"all topics, or only {' '.join(topics)}: leave out -a, or the names")
     from graphflow.cli import recording
 
     use_project()
     everything = any([options.pop("everything"), options.pop("all_topics")])
-    types = frozenset(options.pop("topic_types"))
+    types = _types(options.pop("topic_types"))
     more = {"all": everything, "types": types, "all_services": options.pop("all_services")}
     choice = _choice(options, topics, **more, hidden=options.pop("include_hidden_topics"))
     if not (everything or types or choice.all_services or choice.topics or choice.services or choice.regex):
-        raise UsageFault("nothing to record was named; write topics, or -a for all: graphflow bag record -a")
+        folder = options["folder"]
+        taken = f"; -o took {folder} as the bag's folder" if folder is not None else ""
+        raise UsageFault(f"nothing to record was named{taken}; write topics, or -a for all: graphflow bag record -a")
     options["compression"] = _compression(options)
     ours = ("polling_interval", "serialization_format", "compression_queue_size", "compression_threads")
     for unused in ours:
@@ -141,7 +171,7 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     return recording.run(choice, recording.RecordOptions(**options))
 
 
-@bag.command(short_help="Play a bag into the running graph.")
+@bag.command(cls=BagVerb, short_help="Play a bag into the running graph.")
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @_chosen
 @click.option("-r", "--rate", type=click.FloatRange(0.001, 1000), default=1.0, help="Speed. [1.0]")
@@ -163,7 +193,7 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
 @click.option("-m", "--remap", "remaps", multiple=True, help="OLD:=NEW, for a topic.")
 @click.option("--allow-commands", is_flag=True, help="Play what makes others act: goals of actions, calls of services.")
 @click.option("--node-name", default="rosbag2_player", show_default=True, help="Name of the playing node.")
-@click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
+@_storage
 @click.option("--read-ahead-queue-size", type=int, hidden=True, help="For ROS 2's commands.")
 @click.option("--disable-loan-message", is_flag=True, hidden=True, help="For ROS 2's commands.")
 @click.option("--disable-keyboard-controls", is_flag=True, help="Keys do nothing.")
@@ -207,7 +237,7 @@ def play(path: Path, **options: Any) -> int:
     return playing.run(path, chosen, options["node_name"], keys=not options["disable_keyboard_controls"])
 
 
-@bag.command(short_help="Send messages of a bag at once.")
+@bag.command(cls=BagVerb, short_help="Send messages of a bag at once.")
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @_chosen
 @click.option("-n", "--num-messages", type=click.IntRange(0), default=0, help="How many; 0 for all. [0]")
@@ -218,7 +248,7 @@ def play(path: Path, **options: Any) -> int:
 )
 @click.option("--allow-commands", is_flag=True, help="Send what makes others act: goals of actions, calls of services.")
 @click.option("--node-name", default="rosbag2_player", show_default=True, help="Name of the sending node.")
-@click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
+@_storage
 @click.option("--read-ahead-queue-size", type=int, hidden=True, help="For ROS 2's commands.")
 @click.option("--disable-loan-message", is_flag=True, hidden=True, help="For ROS 2's commands.")
 def burst(path: Path, num_messages: int, **options: Any) -> int:
@@ -256,7 +286,7 @@ def _remaps(words: tuple[str, ...]) -> dict[str, str]:
 @click.option("-t", "--topic-name", is_flag=True, help="Only the names of topics.")
 @click.option("-v", "--verbose", is_flag=True, help="Also QoS, hash and definition of each topic.")
 @click.option("--sort", type=click.Choice(["name", "type", "count"]), default="name", help="Order of topics. [name]")
-@click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
+@_storage
 @click.option("--json", "json_", is_flag=True, help="Print JSON.")
 def info(path: Path, topic_name: bool, verbose: bool, sort: str, storage: str, json_: bool) -> int:  # noqa: ARG001
     """Show what is in a bag."""
@@ -273,7 +303,7 @@ def info(path: Path, topic_name: bool, verbose: bool, sort: str, storage: str, j
     return exits.OK
 
 
-@bag.command()
+@bag.command(cls=BagVerb)
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @click.argument("topics", nargs=-1, metavar="[TOPIC...]")
 @click.option("-n", "--count", type=click.IntRange(1), help="Only so many messages.")
@@ -309,7 +339,7 @@ def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json
     return exits.OK
 
 
-@bag.command(short_help="Draw numbers of a bag as curves.")
+@bag.command(cls=BagVerb, short_help="Draw numbers of a bag as curves.")
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @click.argument("names", metavar="TOPIC[.FIELD,...]...", nargs=-1, required=True)
 @click.option("--start", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
@@ -355,18 +385,40 @@ bag.add_command(recover, "reindex")
 
 
 @bag.command()
-@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@click.argument("words", metavar="BAG", nargs=-1)
+@click.option("-i", "--input", "inputs", multiple=True, metavar="BAG", help="The bag; several become one.")
+@click.option("--output-options", type=click.Path(path_type=Path), help="File that says which bags to make.")
 @_made
-def convert(path: Path, **options: Any) -> int:
-    """Write a bag anew: a .db3 or ROS 1's .bag as MCAP, compressed otherwise, in one file or several."""
-    return _copied((path,), "converted", options)
+def convert(words: tuple[str, ...], inputs: tuple[str, ...], output_options: Path | None, **options: Any) -> int:
+    """Write a bag anew: a .db3 or ROS 1's .bag as MCAP, compressed otherwise, in one file or several.
+
+    Where -o names a file and not a new folder, it is one of ROS 2's, which says what bags to make.
+    """
+    from graphflow.bag import output_options as outputs
+
+    formats = _FORMATS.intersection(words) if inputs else set()  # ROS 2 takes them behind the bag: the file says it
+    paths = tuple(Path(word) for word in (*inputs, *words) if word not in formats)
+    if not paths or (len(paths) > 1 and not inputs):
+        raise UsageFault("name one bag, or several by -i: graphflow bag convert -i A -i B -o BOTH")
+    if output_options is None and options["folder"] is not None and outputs.is_options(options["folder"]):
+        output_options = options["folder"]
+    if output_options is None:
+        return _copied(paths, "converted", options)
+    for made in outputs.read(output_options):
+        _note(output_options, made.remarks)
+        options.update(folder=made.folder, storage=made.storage, compression=made.compression)
+        options.update(max_bag_size=made.max_size, max_seconds=made.max_seconds, times=(made.start_ns, made.end_ns))
+        _copied(paths, "converted", options, made.choice)
+    return exits.OK
 
 
-@bag.command("filter")
+@bag.command("filter", cls=BagVerb)
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @_chosen
-@click.option("--start", type=float, help="From here on: seconds from the beginning of the bag, or since 1970.")
-@click.option("--end", type=float, help="Up to here.")
+@click.option(
+    "--start", callback=moment_option, help="From here on: seconds from the beginning of the bag, or since 1970."
+)
+@click.option("--end", callback=moment_option, help="Up to here.")
 @click.option("-m", "--remap", "remaps", multiple=True, help="OLD:=NEW, for a topic.")
 @_made
 def filter_(path: Path, **options: Any) -> int:
@@ -427,7 +479,7 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
         output.progress(f"reading {path}")  # one that was not closed, or is compressed, is read as a whole
         bags.append(Bag(path))
     output.progress("")
-    start_ns, end_ns = times(bags, options.get("start"), options.get("end"))
+    start_ns, end_ns = options.get("times") or times(bags, options.get("start"), options.get("end"))
     remaps = _remaps(options.get("remaps", ()))
     folder = options["folder"] or beside(paths[0], word)
     every = choice or Choice(all=True, hidden=True, all_services=True)
@@ -435,8 +487,9 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
     wanted = {name for bag in bags for name, topic in bag.contents.topics.items() if every.wants(name, topic.type)}
     check_messages(bags, wanted, absent, start_ns, end_ns)
     _note(paths[0], absent)
-    storage, compression = options["storage"], _compression(options)
-    with BagWriter(folder, storage=storage, compression=compression, max_size=options["max_bag_size"]) as writer:
+    size_limit, seconds = options["max_bag_size"], options.get("max_seconds", 0.0)
+    packed = {"storage": options["storage"], "compression": _compression(options)}
+    with BagWriter(folder, **packed, max_size=size_limit, max_seconds=seconds) as writer:
         try:
             told = _progress(folder)
             copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns, told=told)

@@ -14,7 +14,7 @@ from graphflow.graph.executables import EXECUTABLES
 from graphflow.graph.model import LOG_LEVELS
 from graphflow.names import did_you_mean
 from graphflow.supervisor.choosing import choose
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 
 ANSWER_LIMIT = 30.0
 """Seconds that the supervisor has to answer."""
@@ -37,7 +37,7 @@ def list_(container: str | None, containers_only: bool, as_json: bool, graph: st
     if container is not None:
         name = container if container in found else f"/{container.lstrip('/')}"
         if name not in found:
-            raise UsageFault(f"the graph has no process {container!r}{did_you_mean(container, found)}")
+            raise SupervisorError(f"the graph has no process {container!r}{did_you_mean(container, found)}")
         found = {name: found[name]}
     if as_json:
         output.as_json({name: {str(row["number"]): row["node"] for row in rows} for name, rows in found.items()})
@@ -172,13 +172,13 @@ def _number_of(node: str, container: str, socket: str) -> int:
     """The number of a node in a process.
 
     Raises:
-        UsageFault: The process has no such node.
+        SupervisorError: The process has no such node.
     """
     found = _containers(socket)
     rows = {row["node"]: int(row["number"]) for row in found.get(f"/{container.lstrip('/')}", found.get(container, []))}
     name = f"/{node.lstrip('/')}"
     if name not in rows:
-        raise UsageFault(f"process {container!r} has no node {name}{did_you_mean(name, rows)}")
+        raise SupervisorError(f"process {container!r} has no node {name}{did_you_mean(name, rows)}")
     return rows[name]
 
 

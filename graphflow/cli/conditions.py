@@ -22,6 +22,9 @@ def compiled(expression: str) -> Callable[[Any], bool]:
     def holds(message: Any) -> bool:
         try:
             return bool(eval(code, {"m": message}))  # noqa: S307 - the user's own, on the user's own command line
+        except NameError as error:
+            field = f"; write m.{error.name}" if error.name in dir(message) else "; the message is m, as in m.data > 3"
+            raise UsageFault(f"--filter {expression!r}: {error}{field}") from None
         except Exception as error:
             raise UsageFault(f"--filter {expression!r}: {type(error).__name__}: {error}") from None
 

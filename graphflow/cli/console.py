@@ -21,7 +21,7 @@ from graphflow.errors import SupervisorError, UsageFault
 from graphflow.graph.project import shown
 from graphflow.supervisor import rundir
 from graphflow.supervisor.choosing import choose, running_here
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.times import ago
 

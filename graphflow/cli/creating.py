@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import getpass
 import os
-import re
 import subprocess
 from collections.abc import Mapping
 from keyword import iskeyword
@@ -14,6 +13,7 @@ from typing import Any
 import click
 
 from graphflow.cli import output
+from graphflow.cli.new_names import check_dependencies, check_package, near_name, tell_name, tell_place
 from graphflow.cli.ros_package import BUILD_TYPES, TEMPLATES, Description, known_licenses, license_text, parts
 from graphflow.errors import UsageFault
 
@@ -70,7 +70,7 @@ def _project(name: str, destination: Path, unused: Mapping[str, object]) -> None
     if unused:
         options = ", ".join(f"--{option.replace('_', '-')}" for option in unused)
         output.talk(f"note: {options}: not used by a project of graphflow's; --build-type makes a package of ROS 2's")
-    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{name}.yaml")
+    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{folder.name}.yaml")
 
 
 def _ros_package(
@@ -80,6 +80,8 @@ def _ros_package(
     folder = destination / name
     if folder.exists():
         raise UsageFault(f"{folder} already exists; choose another name or remove it")
+    check_package(name, folder)
+    check_dependencies(settings.get("dependencies", ()), folder)
     _tell_of_new(name, destination)
     output.lines(new.lines())
     output.data(f"creating folder {_joined(destination, name)}")
@@ -97,6 +99,8 @@ def _ros_package(
     else:
         known = ", ".join(known_licenses())
         output.talk(f"note: no LICENSE file is written for {new.license!r}; those with --license: {known}")
+    tell_name(name)
+    tell_place(folder)
     output.talk(f"next:\n  {_next(new, folder)}")
 
 
@@ -112,11 +116,8 @@ def _described(name: str, build_type: str | None, template: str | None, settings
     node, library = settings.get("node_name"), settings.get("library_name")
     for what, word in {"package": name, "node": node, "library": library}.items():
         if word is not None and not (word.isidentifier() and word.isascii() and not iskeyword(word)):
-            near = re.sub(r"\W+", "_", word.removesuffix(".py"), flags=re.ASCII).strip("_")
-            hint = f"; did you mean {near!r}?" if near.isidentifier() else ""
-            raise UsageFault(
-                f"{word!r} is no name of a {what}: use letters, digits and _, and begin with a letter{hint}"
-            )
+            rule = "use letters, digits and _, begin with a letter, and take no keyword of Python's"
+            raise UsageFault(f"{word!r} is no name of a {what}: {rule}; did you mean {near_name(word)!r}?")
     if name == "test" and TEMPLATES[template] == "ament_python":
         raise UsageFault("a Python package cannot be called 'test', as the folder of its tests is; choose another name")
     if node is not None and node == library:

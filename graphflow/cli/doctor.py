@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -16,12 +17,12 @@ from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.introspect import concurrency, installation
-from graphflow.introspect.health import Look, examine
+from graphflow.introspect.health import Look, examine, needs_second
 from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
 from graphflow.names import is_hidden
 from graphflow.rclpy import enabling
-from graphflow.wire.process import NUMBERS, WAITS, answer_key
+from graphflow.wire.process import NUMBERS, WAITS, answer_key, stopped
 
 ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph have to answer."""
@@ -48,16 +49,12 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
     """
     if click.get_current_context().invoked_subcommand is not None:
         return exits.OK
-    here = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
-    remarks = {
-        "rclpy": list(_whose_rclpy()),
-        "starts": list(installation.compiled_anew(installation, writes=not sys.dont_write_bytecode)),
-    }
     try:
-        faults, notes, count = _graph()
+        view = View(domain_id())
     except SupervisorError as error:
         if error.exit_code != exits.NOT_RUNNING:
             raise
+        here, remarks = _here()
         if report:
             from graphflow.cli.report import installed
 
@@ -69,6 +66,10 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
         if any(here.values()) or not report:
             raise
         return exits.OK
+    with view:
+        first = _look(view)
+        here, remarks = _here()  # a second look, if one is needed, comes a while later
+        faults, notes, count = _graph(view, first)
     faults |= here
     notes |= remarks
     failed = [name for name, texts in faults.items() if texts]
@@ -84,33 +85,45 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
     return exits.OK if is_well else exits.FAILED
 
 
-def _graph() -> tuple[Findings, Findings, int]:
+def _here() -> tuple[Findings, Findings]:
+    """What is wrong without a graph, and what is only to be noted."""
+    faults = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
+    notes = {
+        "rclpy": list(_whose_rclpy()),
+        "starts": list(installation.compiled_anew(installation, writes=not sys.dont_write_bytecode)),
+    }
+    return faults, notes
+
+
+def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
     """What is wrong with the graph, what is only to be noted, and the number of its nodes."""
-    with View(domain_id()) as view:
-        first = _look(view)
-        read = concurrency.read(view.reports(answer_key(view.domain, WAITS), ANSWER_LIMIT))
+    read = concurrency.read(view.reports(answer_key(view.domain, WAITS), ANSWER_LIMIT))
+    second = first
+    if needs_second(view, first):
         time.sleep(max(0.0, first.at + BETWEEN_LOOKS - time.monotonic()))
-        health = examine(view, first, _look(view))
-        ours = view.processes()
-        profiles = [f"{p}: nodes beyond it can be listed, and nothing else is known of them" for p in view.profiles()]
-        others = [
-            name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
-        ]
-        managed = supervised(view.cache.nodes())
-        silent = concurrency.unresponsive(read, view)
-        faults = {
-            "deadlocks": read.reports,
-            "stalls": read.stalls,
-            "unresponsive": silent,
-            "supervised": [text for text in managed.faults if not _is_told(text, silent)],
-            "blocked": [
-                f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log"
-                for who, seconds in read.blocked
-            ],
-            "misfits": list(complaints(view.cache)),
-            "health": health.faults,
-        }
-        unseen = managed.unseen
+        second = _look(view)
+    health = examine(view, first, second)
+    ours = view.processes()
+    profiles = [f"{p}: nodes beyond it can be listed, and nothing else is known of them" for p in view.profiles()]
+    others = [
+        name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
+    ]
+    managed = supervised(view.cache.nodes())
+    silent = concurrency.unresponsive(read, view)
+    told = " ".join([*silent, *managed.faults])
+    silent += [text for pid, text in stopped().items() if not re.search(rf"\b{pid}\b", told)]
+    faults = {
+        "deadlocks": read.reports,
+        "stalls": read.stalls,
+        "unresponsive": silent,
+        "supervised": [text for text in managed.faults if not _is_told(text, silent)],
+        "blocked": [
+            f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log" for who, seconds in read.blocked
+        ],
+        "misfits": list(complaints(view.cache)),
+        "health": health.faults,
+    }
+    unseen = managed.unseen
     late = [
         f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
         for who, n, most in read.late

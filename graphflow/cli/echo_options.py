@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from graphflow.cli.profiles import qos_options, take_qos
+from graphflow.errors import UsageFault
 from graphflow.qos import BEST_AVAILABLE, Qos
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -67,5 +68,7 @@ def echo_options(command: F) -> F:
 
 def taken(options: dict[str, Any]) -> EchoOptions:
     """What click has made of the options; unless told otherwise, the QoS fits all current publishers."""
+    if (options["node_name"] or "").isdigit():
+        raise UsageFault("-n is the name of the listening node; to end after the first message: --once")
     options["qos"] = take_qos(options, replace(BEST_AVAILABLE, depth=100))
     return EchoOptions(**options)

@@ -9,14 +9,19 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.arguments import GraphCommand
 from graphflow.errors import UsageFault
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 from graphflow.reading import found_bytes
 
 if TYPE_CHECKING:
     from graphflow.errors import Place, Problem
     from graphflow.graph.check import Interfaces
     from graphflow.graph.plan import Plan
+
+
+_SHOWN = 12
+"""Files of a folder that are named."""
 
 
 def find_graph(text: str) -> Path:
@@ -32,6 +37,8 @@ def find_graph(text: str) -> Path:
         return path
     from graphflow.graph import installed
     from graphflow.graph.project import bundled_graphs, project_root, shown
+    from graphflow.graph.unfound import launching
+    from graphflow.graph.workspace import find_workspace
 
     own = project_root(Path.cwd()) / "graphs" / f"{text.removesuffix('.yaml')}.yaml"
     if own.is_file():
@@ -45,10 +52,35 @@ def find_graph(text: str) -> Path:
         return found[0]
     if found:
         raise UsageFault(f"several packages have a graph {name!r}; name its file: {', '.join(map(str, found))}")
+    if path.exists() and not path.is_dir():
+        raise UsageFault(f"{text}: it is not a regular file")
+    _refuse_node(text)
+    if way := launching(text, find_workspace(Path.cwd()).packages.values()):
+        raise UsageFault(f"{text}: there is no such file{way}")
     folder = path if path.is_dir() else path.parent
-    near = [str(p) for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))]
+    near = {str(p): p.stem for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))}
     what = "is a folder" if path.is_dir() else "there is no such file"
-    raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled, *others])}")
+    if path.is_dir() and (inside := sorted(map(str, [*path.glob("*.yaml")] or path.rglob("*.yaml")))):
+        raise UsageFault(f"{text}: is a folder; name one of its files: {', '.join(inside[:_SHOWN])}")
+    hint = did_you_mean(text, [*near, *bundled, *others])
+    if not hint and (stem := nearest(path.stem, near.values())) is not None:  # which the ending made too short
+        hint = f"; did you mean {next(file for file in near if near[file] == stem)!r}?"
+    raise UsageFault(f"{text}: {what}{hint}")
+
+
+def _refuse_node(name: str) -> None:
+    """Say what to do with the name of a node, where a graph is wanted.
+
+    Raises:
+        UsageFault: It is one, of the project or with graphflow.
+    """
+    from graphflow.graph.executables import project_nodes
+    from graphflow.graph.project import demos_root, project_root
+
+    root = project_root(Path.cwd())
+    files = [folder / "nodes" / f"{name}.py" for folder in (root, demos_root())]
+    if name in project_nodes(root) or any(file.is_file() for file in files):
+        raise UsageFault(f"{name!r} is a node and no graph: graphflow run {name}")
 
 
 def _refuse_source(file: Path) -> None:
@@ -82,7 +114,7 @@ _args = click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 _json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
-@click.command()
+@click.command(cls=GraphCommand)
 @_graph
 @_args
 @_json
@@ -127,10 +159,14 @@ def _graph_meant(text: str) -> Path | None:
     except UsageFault:
         if path.is_dir():
             return None
+        module = text.partition(":")[0]
+        file = Path(module if module.endswith(".py") else f"{module.replace('.', '/')}.py")
+        if file.is_file():
+            raise UsageFault(f"{text}: source is checked by its file: graphflow check {file}") from None
         raise
 
 
-@click.command()
+@click.command(cls=GraphCommand)
 @_graph_or_source
 @_args
 @_json
@@ -205,9 +241,9 @@ def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:
     from graphflow.graph.check import check as check_plan
     from graphflow.graph.project import add_interfaces
     from graphflow.graph.resolve import load
-    from graphflow.supervisor.classes import read_interfaces
     from graphflow.supervisor.launch_python import described
     from graphflow.supervisor.probe import probe
+    from graphflow.supervisor.probed import read_interfaces
 
     resolved = load(path, args, describe=described)
     add_interfaces(Path(resolved.root))
@@ -233,7 +269,7 @@ def _place(place: Place) -> dict[str, Any]:
     return {"file": place.file, "line": place.line, "column": place.column}
 
 
-@click.command()
+@click.command(cls=GraphCommand)
 @_graph
 @click.argument("name", required=False)
 @_args
@@ -245,6 +281,10 @@ def explain(graph: str, name: str | None, args: tuple[str, ...], as_json: bool) 
     """
     from graphflow.graph import explain as explaining
 
+    if not Path(graph).exists() and (graph.startswith("/") or (name is not None and Path(name).is_file())):
+        file = name if name is not None and ":=" not in name else "GRAPH.yaml"
+        runs = "" if name is not None else f"; of what runs: graphflow node info {graph} or topic info {graph}"
+        raise UsageFault(f"the graph file stands first: graphflow explain {file} {graph}{runs}")
     if name is not None and ":=" in name:
         args, name = (name, *args), None
     resolved, found = _checked(find_graph(graph), args)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any
@@ -11,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.arguments import GraphCommand
 from graphflow.cli.files import find_graph
 from graphflow.cli.reaching import reach, reach_options
+from graphflow.cli.verbs import Verb
 from graphflow.domain import ENDPOINT_VARIABLE, domain_id, go_to
-from graphflow.errors import SupervisorError, UsageFault
+from graphflow.errors import SupervisorError
 from graphflow.times import ago
 from graphflow.wire.profile import PROFILES, VARIABLE
 
@@ -32,7 +35,7 @@ PS_LIMIT = 1.0
 """Seconds that a supervisor has to say how its nodes are."""
 
 
-@click.command()
+@click.command(cls=GraphCommand)
 @click.argument("graph", metavar="GRAPH.yaml|NAME")
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 @click.option("-d", "--detach", is_flag=True, help="Leave it running in the background.")
@@ -98,7 +101,7 @@ def up(
         return int(report["exit_code"])
     if uses_console:
         launched.let_go()
-        return _open_console(report["run"])
+        return _open_console(report["run"], launched.wait)
     from graphflow.cli.streaming import stream
 
     code = stream(report["run"], report["classes"], detach=detach, end=launched.wait, as_json=as_json)
@@ -119,11 +122,18 @@ def _take_down_running(path: Path) -> None:
             take_down(run, now=False)
 
 
-def _open_console(run: dict[str, Any]) -> int:
+def _open_console(run: dict[str, Any], end: Callable[[], str]) -> int:
     from graphflow.cli.console import show
+    from graphflow.cli.streaming import GONE_LIMIT, tell_loss
     from graphflow.supervisor.rundir import GraphRun
 
-    return show(GraphRun(**run), run["domain"])
+    shown = GraphRun(**run)
+    try:
+        return show(shown, shown.domain)
+    except SupervisorError:
+        if not shown.wait_gone(GONE_LIMIT):
+            raise
+        return tell_loss(run, end)
 
 
 def _go_private(domain: int | None) -> int:
@@ -165,16 +175,19 @@ def _show_args(path: Path) -> int:
 
 
 @click.command()
+@click.argument("graph", required=False, metavar="[GRAPH]")
 @_graph
 @_everywhere
 @click.option("--now", is_flag=True, help="Kill at once, without time for cleanup.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for each graph.")
-def down(name: str | None, everything: bool, now: bool, as_json: bool) -> int:
+def down(graph: str | None, name: str | None, everything: bool, now: bool, as_json: bool) -> int:
     """Stop a running graph; returns when all its processes have ended.
 
-    Without --graph or --all it is the one of this domain.
+    Without a name or --all it is the one of this domain.
     """
-    runs = _to_stop(name, everything=everything)
+    if graph is not None and graph.endswith((".yaml", ".yml")):
+        graph = Path(graph).stem
+    runs = _to_stop(graph or name, everything=everything)
     from graphflow.cli.streaming import take_down
 
     return max(take_down(run, now=now, as_json=as_json) for run in runs)
@@ -199,14 +212,14 @@ def _tell_start(start: Start) -> None:
     output.talk(f"waiting for {start}")
 
 
-@click.command()
+@click.command(cls=Verb)
 @_graph
 @_everywhere
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ps(name: str | None, everything: bool, as_json: bool) -> int:
     """List the nodes of running graphs: state, process, uptime. Of this domain, unless --all is given."""
     from graphflow.supervisor.choosing import choose, running_here
-    from graphflow.supervisor.control import ControlClient
+    from graphflow.supervisor.control_client import ControlClient
 
     runs = [choose(name)] if name else running_here(everything=everything)
     rows, silent = [], []
@@ -293,7 +306,7 @@ def logs(
     wanted = [n.strip("/").replace("/", ".") for n in (*nodes, *more)] or list(files)
     for node in wanted:
         if node not in files:
-            raise UsageFault(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
+            raise SupervisorError(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
     chosen = Chosen(level, since) if level or since else None
     reader = LogReader([files[n] for n in wanted], max(map(len, wanted), default=0), chosen, as_json=as_json)
     reader.show(last=lines)

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from graphflow.cli import output
+from graphflow.cli.new_names import hidden_module, is_of_python, near_name
 from graphflow.errors import UsageFault
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
@@ -125,12 +126,16 @@ async def test_it_greets_twice_a_second(graph: Graph) -> None:
 @click.command()
 @click.argument("name")
 def init(name: str) -> None:
-    """Write a starter project: the folder NAME with a node, a graph, a message type and a passing test."""
+    """Write a starter project: the folder NAME with a node, a graph, a message type and a passing test.
+
+    `.` is the folder that you are in, if it is empty.
+    """
     folder = Path(name)
     check_new(folder)
     for file in written(folder):
         output.data(f"  {file}")
-    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{folder.name}.yaml")
+    go_there = "" if folder == Path() else f"  cd {folder}\n"
+    output.talk(f"next:\n{go_there}  graphflow up graphs/{folder.resolve().name}.yaml")
 
 
 def check_new(folder: Path) -> None:
@@ -139,13 +144,18 @@ def check_new(folder: Path) -> None:
     Raises:
         UsageFault: Its name is none, or it is there already.
     """
-    word = folder.name
+    word = folder.resolve().name
+    is_full = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+    if is_full and folder == Path():
+        raise UsageFault("this folder is not empty; graphflow init NAME writes a project into a new one")
     if not _NAME.fullmatch(word):
-        near = re.sub(r"[^a-z0-9]+", "_", word.lower()).strip("_")
-        hint = f"; did you mean {near!r}?" if _NAME.fullmatch(near) else ", as in my_lab"
-        raise UsageFault(f"{word!r}: a project's name has only lower-case letters, digits and single _{hint}")
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        rule = "a project's name has only lower-case letters, digits and single _, and begins with a letter"
+        raise UsageFault(f"{word!r}: {rule}; did you mean {near_name(word)!r}?")
+    if is_full:
         raise UsageFault(f"{folder} already exists; choose another name or remove it")
+    if what := hidden_module(word):
+        meant = near_name(word) if is_of_python(word) else f"my_{word}"
+        raise UsageFault(f"{word!r} is {what}, which yours would hide; did you mean {meant!r}?")
 
 
 def written(folder: Path) -> Iterator[Path]:
@@ -153,7 +163,7 @@ def written(folder: Path) -> Iterator[Path]:
     from graphflow.graph.schema import schema_text
     from graphflow.introspect.installation import requirement
 
-    word = folder.name
+    word = folder.resolve().name
     for path, text in _FILES.items():
         file = folder / path.replace("@name", word)
         file.parent.mkdir(parents=True, exist_ok=True)

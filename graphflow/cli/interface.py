@@ -12,7 +12,9 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
-from graphflow.errors import UsageFault
+from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError, UsageFault
+from graphflow.introspect.view import View
 from graphflow.names import did_you_mean
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -45,7 +47,7 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
     use_project()
     if type_name == "-":
         type_name = sys.stdin.readline().strip()
-    name = registry.full_name(type_name)
+    name = registry.full_name(_of_name(type_name))
     registry.interface(name)
     package = name.partition("/")[0]
     for line in registry.definition(name).splitlines():
@@ -54,6 +56,24 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
             continue
         output.data(text)
         output.lines(_nested(text, package, 1, all_comments and not no_comments))
+
+
+def _of_name(word: str) -> str:
+    """The word, unless it is the name of a topic, service or action that is there.
+
+    Raises:
+        UsageFault: It is; the text has its type.
+    """
+    if not word.startswith("/"):
+        return word
+    try:
+        with View(domain_id()) as view:
+            tables = (view.cache.topics(hidden=True), view.cache.services(hidden=True), view.cache.actions())
+    except SupervisorError:  # nothing runs
+        return word
+    for type_name in (type_ for names in tables for type_ in names.get(word, [])):
+        raise UsageFault(f"{word} is no type, but of one: graphflow interface show {type_name}")
+    return word
 
 
 @interface.command("list")

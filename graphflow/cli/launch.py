@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.arguments import GraphCommand
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import Problem, UsageFault
 from graphflow.graph.workspace import FOLDERS_BOUND
@@ -37,15 +38,17 @@ def launch() -> None:
       -p, --print                          show what would run and start nothing
       -n, --noninteractive, --no-console   show logs instead of the console
       --detach                             leave it running in the background
+      --json                               print what happens as JSON, a line each; without the console
     """  # noqa: D301 - click wants the character
 
 
-@launch.command(hidden=True)
+@launch.command(cls=GraphCommand, hidden=True)
 @click.argument("words", nargs=-1, required=True, metavar="[PACKAGE] FILE [NAME:=VALUE]...")
 @click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
 @click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run and start nothing.")
 @click.option("-n", "--noninteractive", "--no-console", is_flag=True, help="Show logs instead of the console.")
 @click.option("--detach", is_flag=True, help="Leave it running in the background, as `up -d` does.")
+@click.option("--json", is_flag=True, help="Print what happens as JSON, a line each, as `up --json` does.")
 @click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands: there is no more to show.")
 @click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="For ROS 2's commands: it is shown.")
 def start(words: tuple[str, ...], **options: bool) -> int:
@@ -57,14 +60,20 @@ def start(words: tuple[str, ...], **options: bool) -> int:
     is_shown = options["is_shown"]
     if options["debug"]:
         output.talk("note: -d is ROS's --debug, which shows no more here; --detach leaves the graph in the background")
-    flags = {
-        "--show-args": options["show_args"],
-        "--no-console": options["noninteractive"],
-        "--detach": options["detach"],
-    }
+    shared = {"--json": options["json"]}
+    flags = (
+        shared
+        if is_shown
+        else shared
+        | {
+            "--show-args": options["show_args"],
+            "--no-console": options["noninteractive"],
+            "--detach": options["detach"],
+        }
+    )
     verb, top = plan if is_shown else up, click.get_current_context().find_root()
     code = verb.main(
-        [*(flag for flag, is_on in flags.items() if is_on and not is_shown), file, *given],
+        [*(flag for flag, is_on in flags.items() if is_on), file, *given],
         prog_name=verb.name,
         standalone_mode=False,
         parent=top,
@@ -78,26 +87,53 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     Raises:
         UsageFault: A package is named that has no such file.
     """
-    from graphflow.graph.executables import package_share
-    from graphflow.graph.project import project_root
+    from graphflow.graph.executables import of_ros, package_share
+    from graphflow.graph.project import demos_root, project_root
     from graphflow.graph.unfound import why_no_package
     from graphflow.graph.workspace import find_workspace
 
     first, *rest = words
     if not rest or ":=" in rest[0] or Path(first).is_file():
+        _refuse_package(first)
         return first, rest
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
         why = why_no_package(first, find_workspace(Path.cwd()))
+        if why is None and first in of_ros():
+            graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
+            way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
+            raise UsageFault(f"the package {first!r} that comes with graphflow has no launch files{way}")
         raise UsageFault(
             f"Package {first!r} not found{f': {why}' if why else '; to start a file: graphflow launch FILE'}"
         )
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0])]
     if not found:
-        there = sorted({file.name for file in files if "launch" in file.name})
+        there = _launch_files(files)
         raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
     return str(found[0]), rest[1:]
+
+
+def _refuse_package(word: str) -> None:
+    """See that a word alone is not the name of a package that has launch files.
+
+    Raises:
+        UsageFault: It is; the text has its launch files.
+    """
+    from graphflow.graph.executables import package_share
+    from graphflow.graph.project import project_root
+
+    if Path(word).exists() or not word.isidentifier():
+        return
+    folder = package_share(word, project_root(Path.cwd()), os.environ)
+    there = _launch_files(_files_below(folder)) if folder is not None else []
+    if there:  # one without may have the name of a graph
+        raise UsageFault(f"{word!r} is a package; write graphflow launch {word} FILE; it has {', '.join(there)}")
+
+
+def _launch_files(files: Iterable[Path]) -> list[str]:
+    """The names of those that are launch files by their names."""
+    return sorted({file.name for file in files if "launch" in file.name})
 
 
 def _files_below(folder: Path) -> Iterator[Path]:

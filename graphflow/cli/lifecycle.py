@@ -11,12 +11,9 @@ from graphflow.cli.verbs import GraphVerbs
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
 from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean, is_hidden
-from graphflow.wire.liveliness import Kind
-
-_CHANGE = "lifecycle_msgs/srv/ChangeState"
-_TRANSITIONS = "lifecycle_msgs/srv/GetAvailableTransitions"
 
 
 @click.group(cls=GraphVerbs)
@@ -57,16 +54,16 @@ def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
     with View(domain_id()) as view:
         for node in [_node(view, name)] if name else _managed(view, hidden=hidden):
             try:
-                found[node] = _state(view, node, timeout)
+                found[node] = state(view, node, timeout)
             except CallError as error:
                 if name:
                     raise
                 output.talk(f"{node}: {error}")
     if as_json:
-        output.as_json({node: {"id": state.id, "label": state.label} for node, state in found.items()})
+        output.as_json({node: {"id": now.id, "label": now.label} for node, now in found.items()})
         return
-    for node, state in found.items():
-        output.data(f"{'' if name else f'{node}: '}{state.label} [{state.id}]")
+    for node, now in found.items():
+        output.data(f"{'' if name else f'{node}: '}{now.label} [{now.id}]")
 
 
 @lifecycle.command(name="list")
@@ -77,8 +74,7 @@ def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
 def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
     """List the transitions that a node can make now."""
     with View(domain_id()) as view:
-        service = "get_transition_graph" if everything else "get_available_transitions"
-        found = _transitions(view, _node(view, name), service, timeout)
+        found = transitions(view, _node(view, name), timeout, everything=everything)
     if as_json:
         rows = [(t.transition, t.start_state.label, t.goal_state.label) for t in found]
         output.as_json([{"id": t.id, "label": t.label, "start": start, "goal": goal} for t, start, goal in rows])
@@ -94,38 +90,29 @@ def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=60.0, show_default=True, help="Seconds.")
 def set_(name: str, transition: str, timeout: float) -> int:
     """Make a transition: configure, activate, deactivate, cleanup or shutdown, or its number."""
-    from graphflow.msgs.lifecycle_msgs.srv import ChangeState
-
     with View(domain_id()) as view:
         node = _node(view, name)
-        ways = {
-            t.transition.label: t.transition for t in _transitions(view, node, "get_available_transitions", timeout)
-        }
+        ways = {t.transition.label: t.transition for t in transitions(view, node, timeout)}
         wanted = ways.get(transition) or next((t for t in ways.values() if str(t.id) == transition), None)
         if wanted is None:
-            state = _state(view, node, timeout)
             output.error(
-                f"{node} is {state.label}, and there is no transition {transition!r} from there"
+                f"{node} is {state(view, node, timeout).label}, and there is no transition {transition!r} from there"
                 f"{did_you_mean(transition, ways)}"
             )
             output.talk("Unknown transition requested, available ones are:")
             for t in ways.values():
                 output.talk(f"- {t.label} [{t.id}]")
             return exits.FAILED
-        response = view.call(f"{node}/change_state", _CHANGE, ChangeState.Request(transition=wanted), timeout)
-        if response.success:
+        if change(view, node, wanted, timeout):
             output.data("Transitioning successful")
             return exits.OK
         output.talk("Transitioning failed")
-        output.error(f"{node} is {_state(view, node, timeout).label}; its log says why: graphflow logs --node {node}")
+        output.error(f"{node} is {state(view, node, timeout).label}; its log says why: graphflow logs --node {node}")
         return exits.FAILED
 
 
 def _managed(view: View, *, hidden: bool) -> list[str]:
-    """The nodes with a life cycle, by full name."""
-    servers = view.cache.endpoints(Kind.SERVICE)
-    found = {e.node_name for e in servers if e.type == _CHANGE and e.name == f"{e.node_name}/change_state"}
-    return sorted(node for node in found if hidden or not is_hidden(node))
+    return [node for node in managed_nodes(view.cache) if hidden or not is_hidden(node)]
 
 
 def _node(view: View, name: str) -> str:
@@ -135,21 +122,11 @@ def _node(view: View, name: str) -> str:
         CallError: There is no such node.
         UsageFault: It has no life cycle.
     """
-    node, managed = view.node(name), _managed(view, hidden=True)
-    if node not in managed:
-        have = f"; those that do: {', '.join(managed)}" if managed else "; no node here does"
-        raise UsageFault(f"{node} has no life cycle{have}")
-    return node
-
-
-def _state(view: View, node: str, timeout: float) -> Any:
-    from graphflow.msgs.lifecycle_msgs.srv import GetState
-
-    return view.call(f"{node}/get_state", "lifecycle_msgs/srv/GetState", GetState.Request(), timeout).current_state
-
-
-def _transitions(view: View, node: str, service: str, timeout: float) -> Any:
-    from graphflow.msgs.lifecycle_msgs.srv import GetAvailableTransitions
-
-    request = GetAvailableTransitions.Request()
-    return view.call(f"{node}/{service}", _TRANSITIONS, request, timeout).available_transitions
+    node, managed = name if name.startswith("/") else f"/{name}", _managed(view, hidden=True)
+    if node in managed:
+        return node
+    if node not in view.cache.nodes():
+        near = did_you_mean(node, managed) if managed else "; no node here has a life cycle"
+        raise CallError(f"there is no node {node}{near}")
+    have = f"; those that do: {', '.join(managed)}" if managed else "; no node here does"
+    raise UsageFault(f"{node} has no life cycle{have}")

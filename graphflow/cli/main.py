@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -15,7 +16,9 @@ import click
 
 from graphflow import __version__
 from graphflow.cli import exits, output
+from graphflow.cli.placing import OF_GRAPHFLOW, before_the_verb
 from graphflow.cli.reaching import reach, reach_options
+from graphflow.cli.variables import misspelt
 from graphflow.cli.verbs import HABITS, NOT_NEEDED, Verbs
 from graphflow.errors import GraphflowError, SupervisorError, UsageFault
 from graphflow.names import nearest
@@ -58,7 +61,7 @@ _VERBS = {
     "component": ("component", "Load nodes into running processes, and unload them."),
     "lifecycle": ("lifecycle", "Bring lifecycle nodes from state to state."),
     "waits": ("waits", "Show which handlers hold slots, what they wait for, and where."),
-    "groups": ("waits", "Show a node's groups, or move a handler into another."),
+    "groups": ("waits", "Show a node's groups, or change them while it runs."),
     "doctor": ("doctor", "Check the running graph for problems."),
     "console": ("console", "Open the console on a running graph, here or in a browser."),
     "completion": ("completion", "Let TAB complete verbs, options, live names, types and messages."),
@@ -67,6 +70,11 @@ _VERBS = {
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
 
 
+_NO_NUMBER = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?\.")
+_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
+"""Click's words about one that is no number, and the number that it may begin with, as `10hz` does."""
+ALIKE = 0.55
+"""How like an unknown option those are that are offered."""
 _ALIASES = {"wtf": "doctor"}
 """Verbs of two names, as in ROS 2."""
 _OTHER_WORDS = {"kill": "stop", "interfaces": "interface"}
@@ -84,6 +92,15 @@ class _Verbs(Verbs):
         module = import_module(f"graphflow.cli.{_VERBS[cmd_name][0]}")
         command: click.Command = getattr(module, cmd_name.replace("-", "_"))
         return command
+
+    def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
+        word, *rest = words
+        if word == "ros2":
+            return f"leave out ros2: graphflow {' '.join(rest)}".rstrip()
+        group = self.get_command(ctx, rest[0]) if rest else None
+        if isinstance(group, click.Group) and group.get_command(ctx, word) is not None:
+            return f"no such command {word!r}; did you mean: graphflow {' '.join([rest[0], word, *rest[1:]])}"
+        return ""
 
     def unknown(self, ctx: click.Context, word: str) -> str:
         meant = (
@@ -116,6 +133,8 @@ def cli(ctx: click.Context, /, domain: int | None, wire: str | None, connect: tu
     Then try:     graphflow topic list
     """  # noqa: D301 - click wants the character
     ctx.obj = dict(os.environ)
+    for fault in misspelt(os.environ):
+        output.talk(f"note: {fault}")
     if domain is not None:
         os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
     if wire is not None:
@@ -169,12 +188,34 @@ def _tell_starts(told: str) -> None:
             output.talk(starts)
 
 
+def _improved(error: click.UsageError) -> click.UsageError:
+    """Without options that an unknown one is not like, and without click's own terms for numbers."""
+    if isinstance(error, click.NoSuchOption) and error.possibilities:
+        word = error.option_name.lstrip("-")  # whose dashes would make all alike
+        alike = [known for known in error.possibilities if nearest(word, [known.lstrip("-")], cutoff=ALIKE)]
+        return click.NoSuchOption(error.option_name, error.message, alike, error.ctx)
+    text = _NO_NUMBER.sub(_number_wanted, error.message)
+    if text == error.message:
+        return error
+    return click.UsageError(error.format_message().replace(error.message, text), error.ctx)
+
+
+def _number_wanted(found: re.Match[str]) -> str:
+    """What to say of a word that is no number: of `10hz`, that 10 is meant."""
+    number = _NUMBER.match(found[1])
+    meant = f"; write {number[0].replace(',', '.')}" if number else "."
+    return f"{found[1]!r} is not a {'whole ' if found[2] == 'integer' else ''}number{meant}"
+
+
 def _main(args: Sequence[str] | None) -> int:
     _open_standard_streams()
+    words = sys.argv[1:] if args is None else args
     try:
-        result = _invoked(sys.argv[1:] if args is None else args)
+        result = _invoked(words)
     except click.UsageError as error:
-        error.show()
+        if isinstance(error, click.NoSuchOption) and error.option_name in OF_GRAPHFLOW:
+            error = click.UsageError(before_the_verb(error.option_name, words), error.ctx)
+        _improved(error).show()
         return exits.USAGE
     except click.ClickException as error:
         error.show()

@@ -10,11 +10,10 @@ from graphflow.cli.conditions import compiled
 from graphflow.cli.visiting import visit
 from graphflow.domain import domain_id
 from graphflow.errors import DecodeError, UsageFault
+from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.rates import Arrivals, Delays, Weights, table
 from graphflow.introspect.view import View
-from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
-from graphflow.names import did_you_mean
 from graphflow.qos import BEST_AVAILABLE, Durability
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
@@ -149,16 +148,13 @@ async def _measure(
                 tell(now_ns)
         if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
             is_silence_told = True
-            _tell_silence(cache, sorted(waiting))
+            for topic in sorted(waiting):
+                output.talk(f"WARNING: {cache.unpublished(topic)}")
+            if waiting and not cache.nodes(hidden=False):
+                output.talk(await node.offload(nothing_here, "no nodes"))
             if not waiting:
                 output.talk(await node.offload(_why_silent, topics))
     raise failed[0]
-
-
-def _tell_silence(cache: GraphCache, missing: list[str]) -> None:
-    for topic in missing:
-        near = did_you_mean(topic, [name for name in cache.topics() if cache.endpoints(Kind.PUBLISHER, name)])
-        output.talk(f"WARNING: topic [{topic}] does not appear to be published yet{near}")
 
 
 def _why_silent(topics: list[str]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
 import click
 
@@ -25,7 +26,19 @@ _SECTIONS = (
 _ACTION_SECTIONS = (("Action Servers", Kind.PUBLISHER), ("Action Clients", Kind.SUBSCRIPTION))
 
 
-@click.group(cls=GraphVerbs)
+class _NodeVerbs(GraphVerbs):
+    def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
+        word, *rest = words
+        if word not in ("kill", "stop", "start", "restart", "status"):
+            return ""
+        from graphflow.cli.nodes import by_itself
+
+        verb = " ".join(["stop" if word == "kill" else word, *rest])
+        alone = by_itself(f"/{rest[0].lstrip('/')}") if rest and not rest[0].startswith("-") else ""
+        return alone or f"nodes are stopped and started by: graphflow {verb}"
+
+
+@click.group(cls=_NodeVerbs)
 def node() -> None:
     """List and describe nodes."""
 

@@ -9,12 +9,16 @@ from typing import Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError, UsageFault
+from graphflow.introspect.view import View
 from graphflow.machines.process import START_LIMIT, STOP_LIMIT
 from graphflow.names import did_you_mean
+from graphflow.supervisor import rundir
 from graphflow.supervisor.choosing import choose
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 from graphflow.supervisor.starts import being_started
+from graphflow.system import host_name
 from graphflow.times import ago
 
 LIMIT = START_LIMIT + 2 * STOP_LIMIT
@@ -36,7 +40,7 @@ def start(nodes: tuple[str, ...], name: str | None) -> int:
     """Start nodes that have ended or failed. Returns when they are ready."""
     for file in (node for node in nodes if node.endswith((".yaml", ".yml"))):
         raise UsageFault(f"a graph is started by: graphflow up {file}")
-    return max(_do("start", node, name) for node in nodes)
+    return max(_ask("start", node, name) for node in nodes)
 
 
 @click.command()
@@ -44,7 +48,7 @@ def start(nodes: tuple[str, ...], name: str | None) -> int:
 @_graph
 def restart(nodes: tuple[str, ...], name: str | None) -> int:
     """Restart nodes, whether they run or have ended. Returns when they are ready."""
-    return max(_do("restart", node, name) for node in nodes)
+    return max(restart_node(node, name) for node in nodes)
 
 
 @click.command()
@@ -52,7 +56,7 @@ def restart(nodes: tuple[str, ...], name: str | None) -> int:
 @_graph
 def stop(nodes: tuple[str, ...], name: str | None) -> int:
     """Stop nodes. The others run on; `graphflow start` starts them again."""
-    return max(_do("stop", node, name) for node in nodes)
+    return max(_ask("stop", node, name) for node in nodes)
 
 
 @click.command()
@@ -154,7 +158,7 @@ def _wanted(nodes: tuple[str, ...], rows: list[dict[str, Any]]) -> list[dict[str
     known = {row["node"]: row for row in rows}
     for node in map(_full, nodes):
         if node not in known:
-            raise UsageFault(f"the graph has no node {node}{did_you_mean(node, known)}")
+            raise SupervisorError(f"the graph has no node {node}{did_you_mean(node, known)}")
     return [known[_full(node)] for node in nodes]
 
 
@@ -182,15 +186,35 @@ def _last_lines(log: Path) -> list[str]:
         return []
 
 
-def _do(what: str, node: str, graph: str | None) -> int:
+def restart_node(node: str, graph: str | None, *, threads: list[str] | None = None) -> int:
+    """Start a node again and wait until it is ready; returns the exit code.
+
+    Args:
+        threads: Handlers that run in threads from then on.
+    """
+    return _ask("restart", node, graph, **({"threads": threads} if threads else {}))
+
+
+def _ask(what: str, node: str, graph: str | None, **more: Any) -> int:
     node = _full(node)
-    run = choose(graph)
+    try:
+        run = choose(graph)
+    except SupervisorError as error:
+        if error.exit_code == exits.NOT_RUNNING and (text := by_itself(node)):
+            raise SupervisorError(text, exits.NOT_RUNNING) from None
+        raise
     with ControlClient(run.socket) as client:
-        client.send(do=what, node=node)
+        client.send(do=what, node=node, **more)
         answer = next(client.receive(), {})
     if answer.get("event") == "error":
-        raise SupervisorError(answer["message"])
-    row = _await(run.socket, node, "ended" if what == "stop" else "ready")
+        raise SupervisorError(by_itself(node) or answer["message"])
+    try:
+        row = _await(run.socket, node, "ended" if what == "stop" else "ready")
+    except (SupervisorError, UsageFault):
+        if what != "stop" or _rows_if_any(run.graph):
+            raise
+        output.data(f"{node} has ended; it was the last that ran, and graph {run.graph} has ended with it")
+        return exits.OK
     if what == "stop":
         output.data(f"{node} has ended")
         return exits.OK
@@ -199,6 +223,21 @@ def _do(what: str, node: str, graph: str | None) -> int:
         return exits.FAILED
     output.data(f"{node} runs again, process {row['pid']}")
     return exits.OK
+
+
+def by_itself(node: str) -> str:
+    """Say where a node runs that no graph here has, and how it is ended; empty if the network shows none."""
+    try:
+        if any(row["node"] == node for run in rundir.running() if run.is_here for row in _rows(run.socket)):
+            return ""
+        with View(domain_id()) as view:
+            if node not in view.cache.nodes():
+                return ""
+            owner, process = view.owner(node), view.process_of(node)
+    except SupervisorError:  # nothing runs at all, or what does is ending
+        return ""
+    end = f", or by: kill {process.pid}" if process is not None and process.host == host_name() else ""
+    return f"{node} runs by itself, in no graph of `up`, in {owner}; end it there by Ctrl-C{end}"
 
 
 def _await(socket: str, node: str, wanted: str) -> dict[str, Any]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shlex
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +29,8 @@ def param() -> None:
     """List, get, set, describe, dump and load parameters."""
 
 
+WAYS = 2
+"""Nodes for which a whole command is suggested where the node was left out."""
 _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, help="Seconds to wait.")
 _hidden = click.option(
     "--include-hidden-nodes", is_flag=True, expose_value=False, help="They are found by name anyway."
@@ -79,6 +83,62 @@ def list_(
         output.lines(f"  {n}{f' (type: {t})' if t else ''}" for n, t in names_and_types.items())
 
 
+def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
+    """The error for a command with a word too few: the node was left out, or what comes after it.
+
+    Args:
+        words: Those that were given.
+
+    Raises:
+        CallError: The first is a node's name by its slash, and there is no such node.
+    """
+    first, *rest = (word for word in words if word)
+    form = f"param {verb} NODE PARAMETER{' VALUE' if verb == 'set' else ''}"
+    if _is_node(view, first):
+        if verb == "set" and rest and (given := _ASSIGNED.fullmatch(rest[0])):
+            rest = [given["name"], shlex.quote(given["value"])]
+            return UsageFault(f"write {form}: graphflow param set {' '.join([first, *rest])}")
+        lacking = ["PARAMETER"] * (not rest) + ["VALUE"] * (verb == "set")
+        return UsageFault(f"write {form}: graphflow param {verb} {' '.join([first, *rest, *lacking])}")
+    known = _names_by_node(view, timeout)
+    having = [node for node, names in known.items() if first in names]
+    node, name = max((first.rpartition(sign)[::2] for sign in "./"), key=lambda pair: len(pair[0]))
+    if not having and node and _is_node(view, node):
+        value = rest or ["VALUE"] * (verb == "set")
+        return UsageFault(f"write {form}: graphflow param {verb} {' '.join([node, name, *value])}")
+    if not having and first.startswith("/"):
+        view.node(first)
+    if not having:
+        near = did_you_mean(first, (), hidden={name for names in known.values() for name in names})
+        return UsageFault(f"write {form}: there is no node {first!r}, nor a parameter of that name{near}")
+    if len(having) > WAYS:
+        return UsageFault(f"write {form}; {first!r} is a parameter of {', '.join(having)}")
+    after = [first, *(rest or ["VALUE"] * (verb == "set"))]
+    ways = [f"graphflow param {verb} {' '.join([node, *after])}" for node in having]
+    return UsageFault(f"write {form}: {' or '.join(ways)}")
+
+
+_ASSIGNED = re.compile(r"\{?\s*(?P<name>[\w./]+)\s*(:=|=|:\s)\s*(?P<value>[^{}]*[^{}\s])\s*\}?")
+"""A parameter with its value in one word, as files and other commands have it."""
+
+
+def _is_node(view: View, name: str) -> bool:
+    try:
+        view.node(name)
+    except CallError:
+        return False
+    return True
+
+
+def _names_by_node(view: View, timeout: float) -> dict[str, list[str]]:
+    """The names of the parameters of all nodes that answer."""
+    found = {}
+    for node in sorted(e.node_name for e in view.cache.endpoints(Kind.SERVICE) if e.name.endswith("/list_parameters")):
+        with suppress(CallError):
+            found[node] = RemoteParameters(view, node, timeout).names()
+    return found
+
+
 def _type_name(type_: int) -> str:
     from graphflow.interface import TYPE_NAMES
 
@@ -87,7 +147,7 @@ def _type_name(type_: int) -> str:
 
 @param.command()
 @click.argument("name", metavar="NODE")
-@click.argument("parameter")
+@click.argument("parameter", default="", metavar="PARAMETER")
 @click.option("--hide-type", is_flag=True, help="Only the value.")
 @_hidden
 @_timeout
@@ -97,6 +157,8 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
     from graphflow.runtime.values import from_message, type_word
 
     with View(domain_id()) as view:
+        if not parameter:
+            raise _lacking(view, timeout, "get", name)
         remote = RemoteParameters(view, view.node(name), timeout)
         message = remote.get([parameter])[0]
         if message.type == 0:
@@ -113,13 +175,15 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
 
 @param.command(name="set", cls=ValueCommand)
 @click.argument("name", metavar="NODE")
-@click.argument("parameter")
-@click.argument("value", nargs=-1, required=True)
+@click.argument("parameter", default="", metavar="PARAMETER")
+@click.argument("value", nargs=-1, metavar="VALUE...")
 @_hidden
 @_timeout
 def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> int:
     """Set a parameter: VALUE is YAML, read as the parameter's type."""
     with View(domain_id()) as view:
+        if not value:
+            raise _lacking(view, timeout, "set", name, parameter)
         remote = RemoteParameters(view, view.node(name), timeout)
         declared = remote.known(parameter)
         read = read_value(" ".join(value), 0 if declared.dynamic_typing else declared.type)
@@ -133,7 +197,7 @@ def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> i
 
 @param.command()
 @click.argument("name", metavar="NODE")
-@click.argument("parameter")
+@click.argument("parameter", default="", metavar="PARAMETER")
 @_hidden
 @_timeout
 def delete(name: str, parameter: str, timeout: float) -> int:
@@ -141,6 +205,8 @@ def delete(name: str, parameter: str, timeout: float) -> int:
     from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 
     with View(domain_id()) as view:
+        if not parameter:
+            raise _lacking(view, timeout, "delete", name)
         remote = RemoteParameters(view, view.node(name), timeout)
         remote.known(parameter)
         result = remote.set({parameter: ParameterValue()})[0]
@@ -162,6 +228,8 @@ def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bo
     from graphflow.introspect.echo import plain
 
     with View(domain_id()) as view:
+        if not parameters and not _is_node(view, name):
+            raise _lacking(view, timeout, "describe", name)
         remote = RemoteParameters(view, view.node(name), timeout)
         wanted = list(parameters) or remote.names()
         found = remote.describe(wanted)
@@ -196,10 +264,14 @@ def _described(d: ParameterDescriptor) -> str:
 @_hidden
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def dump(name: str, timeout: float, as_json: bool) -> None:
+@click.argument("file", default="", metavar="")
+def dump(name: str, timeout: float, as_json: bool, file: str) -> None:
     """Write the parameters of a node as a file that `param load`, `--params-file` and ROS 2 read."""
     from graphflow.graph.params_file import write
     from graphflow.runtime.values import from_message
+
+    if file:
+        raise UsageFault(f"dump prints; to write a file: graphflow param dump {name} > {file}")
 
     with View(domain_id()) as view:
         node = view.node(name)
@@ -228,7 +300,7 @@ def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
         node = view.node(name)
         fitting = [s for s in sections if s.fits(node) and (s.is_exact or not no_use_wildcard)]
         if not fitting:
-            raise UsageFault(f"{file} has nothing for {node}{did_you_mean(node, [s.pattern for s in sections])}")
+            raise UsageFault(f"{file} has nothing for {node}{params_file.meant(sections, node)}")
         failed = _load(RemoteParameters(view, node, timeout), params_file.params_for(fitting, node))
     return exits.FAILED if failed else exits.OK
 

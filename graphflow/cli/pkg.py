@@ -64,8 +64,12 @@ def list_(as_json: bool) -> None:
 def executables(package: str, full_path: bool, as_json: bool) -> int:
     """List what `graphflow run PACKAGE EXECUTABLE` can start."""
     from graphflow.graph.executables import all_executables
+    from graphflow.graph.workspace import find_workspace
 
     rows = [row for row in all_executables(_root()) if package in ("", row.package)]
+    own = find_workspace(Path.cwd()).packages.get(package)
+    for fault in own.faults if own is not None else ():
+        output.error(fault)
     if not rows and package in _known():
         output.talk(f"the package {package!r} has no executable that graphflow can run")
         return exits.OK

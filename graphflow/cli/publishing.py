@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ from graphflow.msgs.base import Message
 from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.node import Node
+from graphflow.runtime.other_domains import alone_here
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
@@ -65,7 +66,8 @@ async def _publish(node: Node, topic: str, drafts: Sequence[Draft], options: Pub
     if needed is None:
         needed = 1 if times else 0
     if not await _wait_for_subscriptions(node, topic, needed, options.max_wait_time_secs):
-        output.error(f"{topic}: fewer than {needed} subscriptions after {options.max_wait_time_secs:g} s")
+        near = await _near(node, topic)
+        output.error(f"{topic}: fewer than {needed} subscriptions after {options.max_wait_time_secs:g} s{near}")
         return exits.TIMEOUT
     if needed:
         await _wait_until_reached(node, publisher)
@@ -75,8 +77,7 @@ async def _publish(node: Node, topic: str, drafts: Sequence[Draft], options: Pub
     async for n in node.clock.every(hz=options.rate):
         if not is_told and not publisher.is_wanted and node.clock.monotonic_ns() - began_ns > to_ns(UNHEARD_AFTER):
             is_told = True
-            near = did_you_mean(topic, [e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)])
-            output.talk(f"no node hears {topic} so far{near}")
+            output.talk(f"no node hears {topic} so far{await _near(node, topic)}")
         message, stamps = drafts[n % len(drafts)]
         stamp(message, stamps, node.clock.time_ns())
         if options.print_every and n % options.print_every == 0:
@@ -95,9 +96,28 @@ async def _wait_for_subscriptions(node: Node, topic: str, needed: int, limit: fl
     if not needed or enough():
         return True
     output.data(f"Waiting for at least {needed} matching subscription(s)...")
+    if limit is not None and limit <= UNHEARD_AFTER:
+        return await _within(node, enough, limit)
+    if await _within(node, enough, UNHEARD_AFTER):
+        return True
+    there = len(node.context.cache.endpoints(Kind.SUBSCRIPTION, topic))
+    heard = f"{there} of {needed} nodes listen to" if there else "no node listens to"
+    near = await _near(node, topic)
+    output.talk(f"{heard} {topic} so far; Ctrl-C ends the waiting, and -w 0 publishes without it{near}")
+    return await _within(node, enough, float(10**9) if limit is None else limit - UNHEARD_AFTER)
+
+
+async def _near(node: Node, topic: str) -> str:
+    """The topic that is probably meant, of those that somebody listens to; else the domain that is."""
+    listened = {e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)} - {topic}
+    return did_you_mean(topic, (), hidden=listened) or await alone_here(node.context, node.full_name)
+
+
+async def _within(node: Node, holds: Callable[[], bool], limit: float) -> bool:
+    """Wait until something holds of the graph; returns whether it did in time."""
     try:
-        async with node.clock.timeout(limit or float(10**9)):
-            await node.context.wait_for(enough)
+        async with node.clock.timeout(limit):
+            await node.context.wait_for(holds)
     except TimeoutError:
         return False
     return True

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from graphflow.bag.choice import Choice
+from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.info import size, topics_of
 from graphflow.bag.kept import Repeats
 from graphflow.bag.overrides import read as read_overrides
@@ -21,8 +21,9 @@ from graphflow.cli import exits, output
 from graphflow.cli.keys import pressed
 from graphflow.cli.visiting import visit
 from graphflow.errors import BagError, UsageFault
+from graphflow.introspect.elsewhere import nothing_here
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
-from graphflow.names import check_node_name, did_you_mean, expand
+from graphflow.names import check_node_name, expand
 from graphflow.qos import Qos
 from graphflow.runtime.node import Node
 
@@ -201,13 +202,15 @@ def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -
 async def _warn_later(node: Node, recorder: Recorder) -> None:
     await node.clock.sleep(SILENT)
     _warn_of_missing(node, recorder)
+    if not set(node.context.cache.nodes(hidden=False)) - {node.full_name}:
+        output.talk(await node.offload(nothing_here, "no nodes"))
 
 
 def _warn_of_missing(node: Node, recorder: Recorder) -> None:
     """Tell of topics that were named and have not appeared."""
     for name in recorder.missing:
-        near = did_you_mean(name, (t for t in node.context.cache.topics() if t not in recorder.missing))
-        output.talk(f"WARNING: topic [{name}] does not appear to be published yet{near}")
+        service, cache = name.removesuffix(EVENTS), node.context.cache
+        output.talk(f"WARNING: {cache.unpublished(name) if service == name else cache.without_events(service)}")
 
 
 async def _show(recorder: Recorder, began: float) -> None:

@@ -9,12 +9,13 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.echo_options import echo_options, taken
-from graphflow.cli.types import agree, names_of_type, use_project
+from graphflow.cli.types import agree, check_kind, names_of_type, refuse_turned, type_of_word, use_project
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import ServiceUnavailable, UsageFault
 from graphflow.introspect.view import View
+from graphflow.machines.matching import shared
 from graphflow.names import expand
 from graphflow.wire.liveliness import Kind
 
@@ -70,6 +71,7 @@ def info(name: str, verbose: bool, as_json: bool) -> None:
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         types = view.service_types(full)
+        _tell_shared(view, full)
         clients, servers = (view.cache.endpoints(kind, full) for kind in (Kind.CLIENT, Kind.SERVICE))
     if as_json:
         nodes = {"clients": [e.node_name for e in clients], "servers": [e.node_name for e in servers]}
@@ -79,6 +81,12 @@ def info(name: str, verbose: bool, as_json: bool) -> None:
     for title, ends in (("Clients count", clients), ("Services count", servers)):
         output.data(f"{title}: {len(ends)}")
         output.lines(f"    {end.node_name}" for end in ends if verbose)
+
+
+def _tell_shared(view: View, name: str) -> None:
+    """Warn where several nodes offer a service."""
+    for text in shared(view.cache.named(name)):
+        output.talk(f"WARNING: {text}")
 
 
 @service.command()
@@ -97,10 +105,7 @@ def echo(name: str, **options: Any) -> int:
             raise UsageFault(f"{full} has several types: {', '.join([type_name, *others])}; one of its nodes is wrong")
         learn(view, full, type_name, (Kind.SERVICE,))
         if not view.cache.endpoints(Kind.PUBLISHER, f"{full}/_service_event"):
-            output.talk(
-                f"WARNING: {full} does not tell of its calls yet; its node must call "
-                f"configure_introspection('contents'), or give the service introspection='contents'"
-            )
+            output.talk(f"WARNING: {view.cache.without_events(full)}")
     return echoing.run(f"{full}/_service_event", f"{type_name}_Event", taken(options))
 
 
@@ -130,6 +135,7 @@ def call(
     from graphflow.msgs.values import from_plain
 
     use_project()
+    refuse_turned(name, type_name, "service call")
     full = expand(name, "/", "cli")
     if type_name is None:
         with View(domain_id()) as view:
@@ -140,7 +146,8 @@ def call(
         there = view.cache.services(hidden=True).get(full, [])
         if there:
             learn(view, full, type_name if type_name in there or len(there) > 1 else there[0], (Kind.SERVICE,))
-    wanted = registry.full_name(type_name)
+    wanted = type_of_word(type_name, full, there)
+    check_kind(wanted, "srv")
     values_read = message_values(values, from_stdin=from_stdin)
     with View(domain_id()) as view:
         if full not in view.cache.services(hidden=True):
@@ -151,6 +158,7 @@ def call(
                 output.error(str(error))
                 return exits.TIMEOUT
         actual = agree(wanted, view.service_types(full), full)
+        _tell_shared(view, full)
         request = from_plain(registry.interface_class(registry.service_schema(actual).request.name), values_read)
         while True:
             started = time.monotonic()

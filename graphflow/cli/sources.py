@@ -19,8 +19,8 @@ from graphflow.graph.static import Finding
 from graphflow.graph.workspace import uses_ros
 from graphflow.interface import Interface
 from graphflow.reading import found_text
-from graphflow.supervisor.classes import read_interfaces
 from graphflow.supervisor.probe import probe
+from graphflow.supervisor.probed import read_interfaces
 
 
 def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:

@@ -7,7 +7,7 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -16,14 +16,14 @@ from graphflow.cli import exits, output
 from graphflow.cli.loglines import Chosen, record
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 from graphflow.supervisor.family import state_of
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun
-from graphflow.system import is_portable
+from graphflow.system import is_portable, terminal_name
 
 _POLL = 0.1
 """Seconds between reads of the log files."""
-_GONE_LIMIT = 5.0
+GONE_LIMIT = 5.0
 """Seconds that a supervisor may take to end once its graph has."""
 _DOWN_LIMIT = 60.0
 """Seconds between two ends of processes when a graph goes down."""
@@ -120,13 +120,13 @@ def stream(
             client.send(do="follow")
             followed = _Stream(run, classes, nodes, client, detach, interrupts, as_json=as_json).run()
     except SupervisorError:
-        if not GraphRun(**run).wait_gone(_GONE_LIMIT):
+        if not GraphRun(**run).wait_gone(GONE_LIMIT):
             raise
         followed = None
     if followed is None:
-        return _tell_loss(run, end)
+        return tell_loss(run, end)
     if not detach:
-        GraphRun(**run).wait_gone(_GONE_LIMIT)
+        GraphRun(**run).wait_gone(GONE_LIMIT)
     return followed
 
 
@@ -212,7 +212,7 @@ class _Stream:
         elif what == "said":
             output.talk(event["text"])
         elif what == "up":
-            self._greet(event["seconds"])
+            self._greet(event["seconds"], event.get("pending", {}))
             self._is_up = True
         elif what == "checked" and self._detach:
             return exits.OK
@@ -249,7 +249,7 @@ class _Stream:
             f"{names} died, process {event['pid']}, {event['how']}{reason}{follows}\n  its log: {event['log']}"
         )
 
-    def _greet(self, seconds: float) -> None:
+    def _greet(self, seconds: float, pending: Mapping[str, str]) -> None:
         run = self._run
         width = max((len(n["node"]) for n in self._nodes), default=0)
         class_width = max((len(n["class"]) for n in self._nodes), default=0)
@@ -257,8 +257,10 @@ class _Stream:
         output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
         for node in self._nodes:
             place = self._classes.get(node["class"], "")
+            waits = pending.get(node["node"])
             label = node["node"] if node["is_named"] else node["node"].removeprefix("/")  # of a process
-            output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {_shown(place)}")
+            told = f"waits for {waits}" if waits else _shown(place)
+            output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {told}")
         output.talk("")
         output.talk("In another terminal:")
         name = next((node["node"] for node in self._nodes if node["is_named"]), "")
@@ -283,10 +285,10 @@ class _Stream:
         output.talk("")
 
 
-def _tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
+def tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
     """Tell of a supervisor that was killed, once nothing is left of its graph; returns the exit code of `up`."""
-    lost = GraphRun(**run)
-    has_gone = lost.wait_gone(_GONE_LIMIT)
+    lost = GraphRun(**run).renewed()
+    has_gone = lost.wait_gone(GONE_LIMIT)
     why = last_words(lost) or (end() if has_gone else silent(lost))
     output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
     return exits.FAILED
@@ -314,19 +316,19 @@ def _shown(place: str) -> str:
 
 
 def take_down(run: GraphRun, *, now: bool, as_json: bool = False) -> int:
-    """Stop a graph and say what ends; returns the exit code."""
+    """Stop a graph and say what ends; returns the exit code. Its consoles are told which terminal has stopped it."""
     output.talk(f"stopping graph {run.graph} in domain {run.domain}")
     if not _answers(run):
         end_silent(run)
     else:
         with ControlClient(run.socket) as client:
-            client.send(do="down", now=now)
+            client.send(do="down", now=now, reason=f"down, by {terminal_name()}")
             for event in client.receive(timeout=_DOWN_LIMIT):
                 if event["event"] == "exited":
                     output.talk(f"  {', '.join(event['nodes'])} ended")
                 elif event["event"] == "end":
                     break
-    is_down = run.wait_gone(2 * _GONE_LIMIT)
+    is_down = run.wait_gone(2 * GONE_LIMIT)
     if as_json:
         output.as_json({"graph": run.graph, "domain": run.domain, "is_down": is_down})
     if not is_down:

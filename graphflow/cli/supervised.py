@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from graphflow.errors import SupervisorError
 from graphflow.supervisor import rundir
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 from graphflow.wire.process import is_stopped
 
 LIMIT = 1.0

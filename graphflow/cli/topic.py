@@ -20,7 +20,7 @@ from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.matching import verdict
-from graphflow.names import did_you_mean, expand, is_hidden
+from graphflow.names import expand, is_hidden
 from graphflow.qos import DEFAULT, INFINITE_NS
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Entity, Kind
@@ -77,7 +77,7 @@ def info(name: str, verbose: bool, as_json: bool) -> int:
         cache = view.cache
     types = cache.topics(hidden=True).get(full)
     if types is None:
-        raise CallError(f"Unknown topic '{full}'{did_you_mean(full, cache.topics())}")
+        raise CallError(f"Unknown topic '{full}'{cache.instead(full, cache.topics())}")
     publishers, subscriptions = cache.endpoints(Kind.PUBLISHER, full), cache.endpoints(Kind.SUBSCRIPTION, full)
     if as_json:
         endpoints = {"publishers": publishers, "subscriptions": subscriptions}
@@ -155,9 +155,13 @@ def _described(e: Entity, cache: GraphCache) -> str:
 def echo(name: str, type_name: str | None, **options: Any) -> int:
     """Show the messages of a topic as they arrive. Ctrl-C stops it."""
     from graphflow.cli import echoing
-    from graphflow.cli.types import use_project
+    from graphflow.cli.types import refuse_turned, use_project
 
     use_project()
+    refuse_turned(name, type_name, "topic echo")
+    whole, dot, field = name.partition(".")
+    if dot:
+        raise UsageFault(f"a field is shown by: graphflow topic echo {whole} --field {field}")
     full = expand(name, "/", "cli")
     return echoing.run(full, _echo_type(full, type_name), taken(options))
 
@@ -169,31 +173,39 @@ def _warn_of_profile(view: View, full: str) -> None:
 
 def _echo_type(full: str, given: str | None) -> str:
     """The type to listen for: the one in the graph, else the given one."""
-    from graphflow.cli.types import agree
+    from graphflow.cli.types import agree, check_kind, type_of_word
     from graphflow.errors import SupervisorError
     from graphflow.introspect.definitions import learn
-    from graphflow.msgs import registry
 
     try:
         with View(domain_id()) as view:
-            topics = view.cache.topics(hidden=True)
+            cache, topics = view.cache, view.cache.topics(hidden=True)
             types = topics.get(full, [])
             if len(types) == 1:
                 learn(view, full, types[0])
             _warn_of_profile(view, full)
+            alone = "" if types else view.nobody_here()
     except SupervisorError:
         if given is None:
             raise
-        topics, types = {}, []
-    wanted = registry.full_name(given) if given else None
+        cache, topics, types, alone = GraphCache(), {}, [], ""
+    wanted = type_of_word(given, full, types, topics) if given else None
+    if wanted is not None:
+        check_kind(wanted, "msg")
     if wanted is None and not types:
         visible = [t for t in topics if not is_hidden(t)]
+        if alone:
+            raise CallError(f"topic {full} does not appear to be published{alone}")
+        near = cache.instead(full, visible)
+        if near.startswith("; it is"):
+            raise CallError(f"Unknown topic '{full}'{near}")
         raise CallError(
-            f"topic {full} does not appear to be published yet{did_you_mean(full, visible)}"
-            f"; to wait for it, give its type: graphflow topic echo {full} TYPE"
+            f"topic {full} does not appear to be published yet{near}{' To' if near.endswith('?') else '; to'} wait for "
+            f"it, give its type: graphflow topic echo {full} TYPE"
         )
     if not types:
-        output.talk(f"WARNING: topic [{full}] does not appear to be published yet")
+        near = cache.instead(full, (), topics) or alone
+        output.talk(f"WARNING: topic [{full}] does not appear to be published yet{near}")
         assert wanted is not None
         return wanted
     if len(types) > 1 and wanted is None:
@@ -207,10 +219,11 @@ def type_(name: str) -> int:
     """Print a topic's type."""
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
-        topics = view.cache.topics(hidden=True)
+        cache = view.cache
+    topics = cache.topics(hidden=True)
     output.lines(topics.get(full, []))
     if full not in topics:
-        output.error(f"Unknown topic '{full}'{did_you_mean(full, topics)}")
+        output.error(f"Unknown topic '{full}'{cache.instead(full, topics)}")
     return exits.OK if full in topics else exits.FAILED
 
 
@@ -282,11 +295,11 @@ def plot(names: tuple[str, ...], seconds: float, duration: float | None, **optio
     chosen = plotting.PlotOptions(seconds=seconds, duration=duration, **options)
     chosen.check()
     with View(domain_id()) as view:
-        topics = view.cache.topics(hidden=True)
+        cache, topics = view.cache, view.cache.topics(hidden=True)
     meant = plotting.wanted(names, topics)
     for full in meant:
         if full not in topics:
-            near = did_you_mean(full, [t for t in topics if not is_hidden(t)])
+            near = cache.instead(full, [t for t in topics if not is_hidden(t)])
             raise CallError(f"topic {full} does not appear to be published yet{near}")
     _learn(*meant)
     return plotting.live(meant, {full: topics[full][0] for full in meant}, chosen)
@@ -334,12 +347,12 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     `topic echo` prints them, with `---` between; each is published once.
     """
     from graphflow.cli import publishing
-    from graphflow.cli.types import agree, use_project
+    from graphflow.cli.types import agree, check_kind, refuse_turned, type_of_word, use_project
     from graphflow.errors import SupervisorError
     from graphflow.introspect.definitions import learn
-    from graphflow.msgs import registry
 
     use_project()
+    refuse_turned(name, type_name, "topic pub")
     full = expand(name, "/", "cli")
     try:
         with View(domain_id()) as view:
@@ -351,9 +364,10 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     if not type_name or type_name.startswith("{"):
         has, missing = (f"; it carries {known[0]}", known[0]) if known else ("", "TYPE")
         raise UsageFault(f"the topic's type comes before the values: graphflow topic pub {full} {missing} ...{has}")
-    wanted = registry.full_name(type_name)
+    wanted = type_of_word(type_name, full, known)
     if known:
         wanted = agree(wanted, known, full)
+    check_kind(wanted, "msg")
     file: Path | None = options.pop("yaml_file")
     from_stdin = options.pop("from_stdin")
     if file is not None and (values or from_stdin):

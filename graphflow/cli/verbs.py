@@ -5,9 +5,11 @@ Those that look at a graph take the options by which `ros2` finds its daemon; th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import click
 
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 
 _BUILT_IN = "its verbs are built in; graphflow pkg executables lists what packages bring"
 NOT_NEEDED = {
@@ -26,15 +28,59 @@ HABITS = {
 """Commands that a ROS 2 workspace needs there and not here, each with the answer to it."""
 
 
+OF_ONE = {
+    "node list": "node info",
+    "topic list": "topic info",
+    "service list": "service info",
+    "action list": "action info",
+    "interface list": "interface package",
+    "interface packages": "interface package",
+    "pkg list": "pkg executables",
+    "lifecycle nodes": "lifecycle get",
+    "ps": "status",
+    "waits": "groups",
+}
+"""Verbs that tell of all, and take no name; each with the one that takes it."""
+
+
+class Verb(click.Command):
+    """A verb that, where it tells of all, names the one that takes the name behind it."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        path = ctx.command_path.partition(" ")[2]
+        ctx.allow_extra_args |= path in OF_ONE
+        left = super().parse_args(ctx, args)
+        if left and path in OF_ONE:
+            one = "interface show" if path.startswith("interface") and "/" in left[0] else OF_ONE[path]
+            ctx.fail(f"{path} takes no name; for one: graphflow {one} {left[0]}")
+        return left
+
+
 class Verbs(click.Group):
     """Verbs, or the verbs of one verb."""
+
+    command_class = Verb
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        try:
+            return super().parse_args(ctx, list(args))
+        except click.NoSuchOption as error:
+            word = next((word for word in args if word.startswith(error.option_name)), error.option_name)
+            near = nearest(word.lstrip("-"), self.list_commands(ctx), cutoff=0.8)
+            if near is None:
+                raise
+            raise click.UsageError(f"no such option {word!r}; did you mean {near!r}?", ctx) from None
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
-            raise click.UsageError(self.unknown(ctx, args[0]), ctx)
+            raise click.UsageError(self.turned(ctx, args) or self.unknown(ctx, args[0]), ctx)
         return super().resolve_command(ctx, args)
+
+    def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
+        """An answer to words that are a command in another order; empty if they are none."""
+        return ""
 
     def unknown(self, ctx: click.Context, word: str) -> str:
         """What to say of a word that is no verb."""

@@ -46,6 +46,7 @@ async def _visit(
     stop = asyncio.Event()
     catch_signals(stop)
     context = await Context.open()
+    context.unmatched.close()  # verbs tell it themselves
     context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
     talk = _Talk(logging.WARNING)
     logging.getLogger("graphflow").addHandler(talk)

@@ -10,21 +10,36 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
 from graphflow.errors import GraphflowError
+from graphflow.reading import found_text
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _QUOTED = re.compile(r"""(?<!\w)("(?:\\.|[^"\\])*"|'[^']*')""")
 _TIGHT = re.compile(r"\w:\S")
+_REPAIRS = (
+    (re.compile(r"(?<=\w)'(?=\w)"), "''"),
+    (re.compile(r";(?=\s*\w+:\s)"), ","),
+    (re.compile(r"(\w+:)\s+(\w+:\s+[^\s{}:,]+)"), r"\1 {\2}"),
+    (re.compile(r"(?<=\w):(?=[^\s/])"), ": "),
+    (re.compile(r"(?<=\w)\s*=\s*(?=[^\s=])"), ": "),
+    (re.compile(r"(?<=\d),(?=\d)"), "."),
+    (re.compile(r"(?<=[\w.}\]'\"])\s+(?=\w+:\s)"), ", "),
+)
+"""Slips in the values of a message, and what is right: `{x: 'it's'}`, `{x: 1; y: 2}`, `{p: x: 1}`, `{x:1}`, `{x=1}`,
+`{x: 1,5}`, `{x: 1 y: 2}`."""
 _BETWEEN_DOCUMENTS = re.compile(r"^---(?=\s|\Z)", re.MULTILINE)
 """Nothing else begins a line so, not even in a text of several lines: YAML 1.2.2, section 9.1.2."""
 _IS_SAID = re.compile(r"^\s*[^\s#]", re.MULTILINE)
 """Something other than a comment."""
+_MESSAGES_BOUND = 1 << 30
+"""Bytes that a file of messages may have: what `topic echo` has printed can be long."""
 _WITH_NUMBER = re.compile(r"(-[A-Za-z])\d+(\.\d*)?\Z")
 
 
@@ -34,6 +49,9 @@ def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[
     Args:
         flags: Options without a value.
         valued: Options with one.
+
+    Raises:
+        NoSuchOption: A word is a long option but for a dash.
     """
     options: list[str] = []
     values: list[str] = []
@@ -46,6 +64,8 @@ def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[
             values.append(word)
         elif word in flags or (equals and name in valued) or (numbered and numbered[1] in valued):
             options.append(word)
+        elif f"-{word}" in flags | valued and len(word) > 2:
+            raise click.NoSuchOption(word, possibilities=[f"-{word}"])
         elif word in valued:
             options += [word, *rest[:1]]
             rest = rest[1:]
@@ -75,7 +95,11 @@ class ValueCommand(click.Command):
             if isinstance(parameter, click.Option):
                 (flags if parameter.is_flag or parameter.count else valued).update(parameter.opts)
                 flags.update(parameter.secondary_opts)
-        return super().parse_args(ctx, split_values(args, frozenset(flags), frozenset(valued)))
+        words = split_values(args, frozenset(flags), frozenset(valued))
+        last = words[words.index("--") - 1] if words[0] != "--" else ""
+        if last in valued and args[-1] == last:
+            raise click.BadOptionUsage(last, f"Option {last!r} requires an argument.", ctx)
+        return super().parse_args(ctx, words)
 
 
 def pattern_option(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -108,11 +132,52 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
     try:
         values = parse_value(text)
     except GraphflowError as error:
-        raise UsageFault(str(error)) from None
+        whole = next((n for n in range(1, len(words)) if _is_closed(" ".join(words[:n]))), None)
+        if whole is not None:
+            message = " ".join(words[:whole])
+            raise UsageFault(f"{words[whole]!r} is one word too many: {message!r} is a message by itself") from None
+        meant = repaired(text)
+        raise UsageFault(f"{text!r} is not valid YAML; did you mean {meant!r}?" if meant else str(error)) from None
     keys = [values] if isinstance(values, str) else values if isinstance(values, dict) else []
     if any(_TIGHT.search(key) for key in keys):
         raise UsageFault(f"{text!r}: write a space after each colon and quotes around all, for example '{{x: 2.0}}'")
+    if isinstance(values, str) and _is_message(values):
+        raise UsageFault(f"{text!r} is a text because of the quotes in it; did you mean {values!r}?")
+    if not _has_fields(values) and (meant := repaired(text)):
+        raise UsageFault(f"{text!r} has a key that is no name of a field; did you mean {meant!r}?")
     return values
+
+
+def repaired(text: str) -> str | None:
+    """The values that were probably meant, by adding braces, a space or comma or changing a sign; None if unclear."""
+    for slip, right in ((re.compile(r"\Z"), ""), *_REPAIRS):
+        other = slip.sub(right, text)
+        for whole in (other, f"{{{other}}}", f"{other}{'}' * (other.count('{') - other.count('}'))}"):
+            if whole != text and _is_message(whole):
+                return whole
+    return None
+
+
+def _is_closed(text: str) -> bool:
+    """Whether a text is the fields of a message in braces."""
+    return text.startswith("{") and _is_message(text)
+
+
+def _is_message(text: str) -> bool:
+    """Whether a text reads as fields with their values."""
+    from graphflow.graph.source import parse_value
+
+    with suppress(GraphflowError):
+        values = parse_value(text)
+        return isinstance(values, dict) and _has_fields(values)
+    return False
+
+
+def _has_fields(value: Any) -> bool:
+    """Whether the keys of a value, and of those in it, could all be names of fields."""
+    if isinstance(value, dict):
+        return all(str(key).isidentifier() and _has_fields(inner) for key, inner in value.items())
+    return all(map(_has_fields, value)) if isinstance(value, list) else True
 
 
 def messages_in(file: Path) -> list[tuple[str, Any]]:
@@ -125,7 +190,7 @@ def messages_in(file: Path) -> list[tuple[str, Any]]:
     from graphflow.graph.source import read
 
     try:
-        text = file.read_text(encoding="utf-8")
+        text = found_text(file, bound=_MESSAGES_BOUND)
     except (OSError, UnicodeDecodeError) as error:
         raise UsageFault(f"{file}: {getattr(error, 'strerror', None) or 'is not UTF-8 text'}") from None
     found, line = [], 0

@@ -28,6 +28,8 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     then 1.
     """
     from graphflow.errors import InterfaceError, UnknownInterface, UsageFault
+    from graphflow.graph.executables import of_ros
+    from graphflow.graph.manifest import fault_of, name_fault
     from graphflow.graph.unfound import no_packages, outer_workspace
     from graphflow.graph.workspace import KINDS, find_workspace
     from graphflow.msgs import registry
@@ -49,6 +51,14 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     for name, folder in found.interfaces.items():
         registry.add_package(name, folder)
     faults = lacking + [fault for package in found.packages.values() for fault in package.faults]
+    not_xml = [fault_of(package.folder / "package.xml") for package in found.packages.values()]
+    other_names = [name_fault(package.folder, package.name) for package in found.packages.values()]
+    faults += [fault for fault in [*not_xml, *other_names] if fault is not None]
+    faults += [
+        f"{package.folder} hides ROS 2's {package.name}; call it otherwise, there and in its files"
+        for package in found.packages.values()
+        if package.name in of_ros() and package.name not in found.replaced and package.import_roots
+    ]
     faults += [
         f"{double.folder}: another package is called {double.name!r}, too, and is the one that counts: "
         f"{found.packages[double.name].folder}"

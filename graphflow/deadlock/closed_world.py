@@ -76,6 +76,8 @@ class Setters(NamedTuple):
     """The module that holds what is set, or whose class does, if it is not the node that does."""
     pause: Pause | None = None
     """Where the loop pauses, if one polls."""
+    parts: frozenset[str] = frozenset()
+    """Methods that end it as parts of an `asyncio.gather` in one of those."""
 
     def is_shared(self, node: Subject, nodes: Iterable[Subject]) -> bool:
         """Whether other nodes of the process may end the wait too: those whose methods are in that module."""
@@ -107,7 +109,10 @@ def cancellers(thing: Any, node: Subject) -> Setters | None:
     alone = {runner.spec.handler for runner in node.runners if runner.spec.kind == "timer"}
     alone |= {method_of(task) for task in node.tasks}
     what = " and ".join(f"self.{name}" for name in sorted(held))
-    found = frozenset(source.above(methods - over, entries) & alone)
+    above = source.above(methods - over, entries)
+    if above & source.gathered:
+        raise Unknown
+    found = frozenset(above & alone)
     return Setters(what, found) if found else None
 
 
@@ -223,13 +228,13 @@ class Question:
         setters = setters and setters._replace(deed=DEEDS[methods])
         if methods != ("release",) or not any(use.kind == "entered" for use in uses):
             return setters
-        handlers = setters.handlers if setters else frozenset()
+        handlers, parts = (setters.handlers, setters.parts) if setters else (frozenset[str](), frozenset[str]())
         if isinstance(thing, (asyncio.Semaphore, threading.Semaphore)):
             places = {_places(use.value) for use in uses if use.kind == "assigned"}
             if len(places) != 1:
                 raise Unknown
-            return Setters(f"self.{name}", handlers, thing, places.pop(), deed=DEEDS[methods])
-        return Setters(f"self.{name}", handlers, thing, deed=DEEDS[methods])
+            return Setters(f"self.{name}", handlers, thing, places.pop(), deed=DEEDS[methods], parts=parts)
+        return Setters(f"self.{name}", handlers, thing, deed=DEEDS[methods], parts=parts)
 
     def _ended_in_container(self, name: str, methods: tuple[str, ...]) -> Setters | None:
         """Something in a list or dictionary may be ended by any method that ends such a thing."""
@@ -391,7 +396,7 @@ def handlers_above(what: str, methods: Iterable[str], node: Subject) -> Setters 
         if source.above({method}, entries) == {method}:  # no caller is seen, so some other code calls it
             raise Unknown
     found = frozenset(above & entries)
-    return Setters(what, found) if found else None
+    return Setters(what, found, parts=frozenset(above & source.gathered)) if found else None
 
 
 def method_of(task: Any) -> str:

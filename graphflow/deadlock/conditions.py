@@ -147,6 +147,8 @@ class Conditions:
         match node:
             case ast.Constant():
                 return
+            case ast.Compare(left=left, comparators=[ast.Constant(value=None)]) if self._is_goal(left):
+                return
             case (
                 ast.BoolOp() | ast.UnaryOp() | ast.BinOp() | ast.Compare() | ast.IfExp() | ast.Tuple() | ast.List()
                 | ast.Set() | ast.Dict() | ast.JoinedStr() | ast.FormattedValue() | ast.Subscript() | ast.Slice()
@@ -185,6 +187,15 @@ class Conditions:
                 self.names.add(name)
             case _:
                 raise Unknown
+
+    def _is_goal(self, node: ast.expr) -> bool:
+        """Whether an expression is a goal that is kept, which is noted then; what becomes of it is not asked."""
+        if isinstance(node, ast.Attribute) and (held := self._of_held(node)) is not None:
+            return held[0]._is_goal(held[1])
+        name = node.attr if isinstance(node, ast.Attribute) and _path(node) == [node.attr] else ""
+        is_goal = isinstance(getattr(self._instance, name, None), PendingGoal)
+        self._found |= {name} if is_goal else set()
+        return is_goal
 
     def _comprehension(
         self, element: ast.expr, loops: list[ast.comprehension], scope: _Scope, seen: frozenset[str]

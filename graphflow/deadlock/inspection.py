@@ -4,11 +4,13 @@
 @graphflow/<domain>/numbers/<zid>    what its nodes have counted, how late its loop is, the time on its clock, and what
                                      its nodes know to be wrong with themselves; answered likewise
 @graphflow/<domain>/look/<zid>       makes it look for a deadlock that another process found and it must report
-@graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
+@graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node;
+                                     {"node", "group", "limit"}: let so many run in it at a time, null for any number
 """
 
 from __future__ import annotations
 
+import inspect
 import json
 import threading
 import time
@@ -28,12 +30,14 @@ from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 LAG_LIMIT = 0.2
 """Seconds to wait for the event loop to come round before it is called late."""
 ANSWERS, LOOKS, MOVES = 50, 20, 200
-"""How often a second other processes can have the waits or the numbers told anew, a deadlock looked for, or a handler
-moved."""
+"""How often a second other processes can have the waits or the numbers told anew, a deadlock looked for, or groups
+changed."""
 MOVES_AT_ONCE = 64
 """Requests that are taken in before others have a turn of the loop."""
 MOVE_BOUND = 10_000
-"""Bytes of a request to move a handler."""
+"""Bytes of a request to change groups."""
+LIMIT_BOUND = 1_000_000
+"""The largest limit that a group can be given."""
 _KINDS = ("timer", "subscription", "service", "action")
 
 
@@ -125,7 +129,7 @@ class Inspection:
                 if len(request.payload) > MOVE_BOUND:
                     raise InvalidName(f"a request of {len(request.payload)} bytes names no handler")
                 wanted = json.loads(request.payload)
-                answer = self._move(str(wanted["node"]), str(wanted["handler"]), str(wanted["group"]))
+                answer = self._regroup(wanted)
             except (ValueError, KeyError, TypeError, RecursionError, GraphflowError) as error:
                 request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             else:
@@ -133,25 +137,49 @@ class Inspection:
         if self._inbox.items:  # whoever asks all the time must not hold the loop
             self._process.loop.call_soon(self._asked)
 
-    def _move(self, node_name: str, handler: str, group: str) -> dict[str, Any]:
-        node = next((n for n in self._process.nodes if n.full_name == node_name), None)
+    def _regroup(self, wanted: Any) -> dict[str, Any]:
+        """Move a handler, or change the limit of a group; returns the groups and how to keep them."""
+        name, group = str(wanted["node"]), str(wanted["group"])
+        node = self._named(name)
+        if "limit" in wanted:
+            self._limit(node, group, wanted["limit"])
+        else:
+            self._move(node, str(wanted["handler"]), group)
+        regrouping = node.groups.regrouping
+        return {"groups": groups_of(node), "where": regrouping.where, "yaml": regrouping.lines(name, "  ")}
+
+    def _named(self, name: str) -> Subject:
+        node = next((n for n in self._process.nodes if n.full_name == name), None)
         if node is None:
-            raise InvalidName(f"there is no node {node_name} in this process")
-        if any(node_name in other.groups() for other in self._process.elsewhere):
+            raise InvalidName(f"there is no node {name} in this process")
+        if any(name in other.groups() for other in self._process.elsewhere):
             raise InvalidName(
-                f"{node_name} is written for rclpy: its groups are those that its code gives, callback_group=..."
+                f"{name} is written for rclpy: its groups are those that its code gives, callback_group=..."
             )
+        return node
+
+    def _move(self, node: Subject, handler: str, group: str) -> None:
         mine = [r for r in _handlers(node) if r.spec.handler == handler]
         if not mine:
             known = sorted({r.spec.handler for r in _handlers(node)})
             near = did_you_mean(handler, known)
-            raise InvalidName(f"{node_name} has no handler {handler!r}{near or '; it has ' + ', '.join(known)}")
+            raise InvalidName(f"{node.full_name} has no handler {handler!r}{near or '; it has ' + ', '.join(known)}")
         target = node.groups.named(group)
         for runner in mine:
             runner.move(target)
         node.groups.note_move(handler, group)
-        regrouping = node.groups.regrouping
-        return {"groups": groups_of(node), "where": regrouping.where, "yaml": regrouping.lines(node_name, "  ")}
+
+    def _limit(self, node: Subject, name: str, limit: object) -> None:
+        if limit is not None and (type(limit) is not int or not 1 <= limit <= LIMIT_BOUND):
+            raise InvalidName(f"the limit {str(limit)[:40]!r} is not a number from 1 to {LIMIT_BOUND:,}, and not none")
+        known = node.groups.by_name
+        if name not in known:
+            near = did_you_mean(name, known)
+            make = f"graphflow groups move {node.full_name} HANDLER GROUP makes one"
+            there = f"; it has {', '.join(sorted(known))}" if known else f"; it has none, and {make}"
+            raise InvalidName(f"{node.full_name} has no group {name!r}{near or there}")
+        known[name].set_limit(limit, self._process.loop)
+        node.groups.note_limit(name, limit)
 
     def close(self) -> None:
         """Stop answering."""
@@ -166,8 +194,8 @@ def groups_of(node: Subject) -> list[dict[str, Any]]:
     found = []
     for name, group in list(node.groups.by_name.items()):
         about = {"name": name, "limit": group.limit, "when_full": group.when_full, "thread": group.is_threaded}
-        found.append({**about, "handlers": [_handler(r) for r in runners if r.group is group]})
-    rest = [_handler(r) for r in runners if r.group not in node.groups.by_name.values()]
+        found.append({**about, "handlers": [_handler(node, r) for r in runners if r.group is group]})
+    rest = [_handler(node, r) for r in runners if r.group not in node.groups.by_name.values()]
     return [*found, {"name": "", "limit": 1, "when_full": "wait", "thread": False, "handlers": rest}]
 
 
@@ -176,6 +204,8 @@ def _handlers(node: Subject) -> list[Runner]:
     return [r for r in list(node.runners) if r.spec.kind in _KINDS and not r.spec.is_inner and not r.closed]
 
 
-def _handler(runner: Runner) -> dict[str, Any]:
+def _handler(node: Subject, runner: Runner) -> dict[str, Any]:
+    is_async = inspect.iscoroutinefunction(getattr(type(node.instance), runner.spec.handler, None))
     numbers = {"running": len(runner.active), "waiting": len(runner.items), "runs": runner.runs}
-    return {"handler": runner.spec.handler, "kind": runner.spec.kind, **numbers, "errors": runner.errors}
+    about = {"handler": runner.spec.handler, "kind": runner.spec.kind, "async": is_async}
+    return {**about, **numbers, "errors": runner.errors}

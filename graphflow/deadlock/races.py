@@ -118,7 +118,8 @@ class _Log:
         if spot in self._told or now is value or _is_equal(now, value) or not _comes_of_read(name, frame):
             return
         self._told.add(spot)
-        self._logger.warning("%s", _text(self._full_name, name, seen, other, access))
+        # Told as if by the line that writes, which a reader of /rosout opens: it is above `write` here and in `watch`.
+        self._logger.warning("%s", _text(self._full_name, name, seen, other, access), stacklevel=4)
 
     def _access(self, version: int, actor: Any, frame: FrameType) -> _Access:
         # The line of the node's own code, where a helper of its class is the caller.

@@ -25,10 +25,10 @@ from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.user_code import Pause, where
 from graphflow.deadlock.watchdog import Watchdog
-from graphflow.deadlock.ways import Subtask, Way, subtasks
+from graphflow.deadlock.ways import Subtask, Way, gathered, limit_of, subtasks
 from graphflow.errors import DecodeError
 from graphflow.executor.activity import Activity
-from graphflow.executor.clock import ClockTimeout, WallClock
+from graphflow.executor.clock import WallClock
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Run, Runner
 from graphflow.machines.wait_graph import (
@@ -51,7 +51,6 @@ from graphflow.machines.wait_graph import (
     joined,
     parts_of,
 )
-from graphflow.times import to_ns
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Kind
 
@@ -341,15 +340,7 @@ class _Look:
         return frames
 
     def _limit_of(self, task: Any) -> int | None:
-        """When a task gives up waiting, in nanoseconds of the clock; None for never."""
-        found: list[float] = []
-        for coroutine in aio.coroutines(task):
-            found += aio.deadlines(coroutine)
-            for context in aio.entered(coroutine):
-                if isinstance(context, ClockTimeout):
-                    return context.until_ns
-        seconds = min(found, default=None)
-        return None if seconds is None else self._now_ns + to_ns(max(0.0, seconds - self._process.loop.time()))
+        return limit_of(task, self._now_ns, self._process.loop.time())
 
     def _of_future(self, future: Any, way: Way) -> Condition:
         ledger = self._ledger
@@ -367,9 +358,8 @@ class _Look:
             return FREE if self._servers[service] else Opening(service)  # it is there, and will be reached
         if future in ledger.goals:
             goal = ledger.goals[future]
-            if self._servers[f"{goal.action}/_action/send_goal"] > 1:
-                return FREE
-            return self._or_cancelled(Call(goal_id(goal.goal_id), goal.action), goal, way)
+            servers = max(1, self._servers[f"{goal.action}/_action/send_goal"])  # several may have accepted it
+            return self._or_cancelled(Call(goal_id(goal.goal_id), goal.action, servers), goal, way)
         if future in ledger.served:
             return Call(goal_id(ledger.served[future]), "")
         if isinstance(future, Activity) or asyncio.isfuture(future):
@@ -423,6 +413,13 @@ class _Look:
         known = entries_of(node)
         if not found.handlers <= known:  # one of them does not exist and cannot be waited for
             return FREE
+        if found.parts:
+            above = [activity for activity in (way.root, *others) if activity is not None]
+            parts = gathered(found.parts, above, self._limit_of, self._process.loop)
+            if parts is None:
+                return FREE
+            self._inner |= {self.task_id(part.task): (node, part) for part in parts}
+            others += [part.task for part in parts if id(part.task) not in way.tasks]
         is_held = False
         if found.lock is not None:
             inside = self._inside(found.lock)

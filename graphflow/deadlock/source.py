@@ -24,6 +24,7 @@ from graphflow.deadlock.uses import (
     Use,
     called_back,
     is_awaited,
+    is_gathered,
     is_own,
     is_part_of,
     is_super,
@@ -79,6 +80,8 @@ class ClassSource:
     """What the names of each file mean."""
     _handlers: set[str] = field(default_factory=set)
     """Methods that are given to one of the node's `create_...`."""
+    gathered: set[str] = field(default_factory=set)
+    """Methods that run as parts of an `asyncio.gather` of the class's own."""
     _is_known: bool = True
 
     def function(self, code: CodeType) -> Function | None:
@@ -147,7 +150,8 @@ class ClassSource:
         for use in self.uses(method):
             calls = use.kind == "invoked" or method in self._properties
             is_begun = (is_handler and use.is_registered) or use.is_answered
-            if use.is_nested or use.is_started or not (calls or is_begun):
+            is_elsewhere = use.is_started or (owner and method in self.gathered)
+            if use.is_nested or is_elsewhere or not (calls or is_begun):
                 raise Unknown
         if self.foreign(method, owner):
             raise Unknown
@@ -271,7 +275,10 @@ class ClassSource:
         if node.attr in self.methods:
             is_async = any(isinstance(f, ast.AsyncFunctionDef) for f in self.methods[node.attr])
             if is_async and use.kind == "invoked" and not is_awaited(parents):
-                use = Use(method, node, use.kind, is_nested=use.is_nested, is_started=True)
+                if is_gathered(parents):
+                    self.gathered.add(node.attr)
+                else:
+                    use = Use(method, node, use.kind, is_nested=use.is_nested, is_started=True)
             if node.attr != method:
                 self._callers.setdefault(node.attr, set()).add(method)
         if is_own(node):

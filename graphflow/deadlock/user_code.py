@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import inspect
+import linecache
 import sys
 import sysconfig
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path, PurePath
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import NamedTuple
 
 from graphflow.deadlock.frames import Frame
@@ -42,6 +43,12 @@ def is_users(file: str) -> bool:
     return not file.startswith(_PYTHONS) or "site-packages" in file
 
 
+def _is_users_frame(frame: FrameType) -> bool:
+    """Whether a frame is of the user's code; a method that `dataclass` writes belongs to the module of its class."""
+    file = frame.f_code.co_filename
+    return is_users(file) and (file != "<string>" or is_users_module(frame.f_globals.get("__name__", "")))
+
+
 def is_installed(file: str) -> bool:
     """Whether a source file belongs to an installed package."""
     return not {"site-packages", "dist-packages"}.isdisjoint(PurePath(file).parts)
@@ -52,6 +59,11 @@ def is_ours(file: str) -> bool:
     return file.startswith(_OURS) and not file.startswith(_DEMOS)
 
 
+def short_place(file: str, line: int) -> Place:
+    """A line of a file, which goes by its name alone: `lamp.py:12`."""
+    return Place(PurePath(file).name, line)
+
+
 def innermost(frames: Iterable[Frame]) -> Frame | None:
     """The last of the frames that is the user's own code; the outermost comes first."""
     found = None
@@ -59,6 +71,13 @@ def innermost(frames: Iterable[Frame]) -> Frame | None:
         if is_users(frame.f_code.co_filename):
             found = frame
     return found
+
+
+def users_frame(frame: FrameType | None) -> FrameType | None:
+    """A frame, or the nearest of those that have led to it, that is the user's own code; None where there is none."""
+    while frame is not None and not is_users(frame.f_code.co_filename):
+        frame = frame.f_back
+    return frame
 
 
 def called_by_loop(frames: Sequence[Frame]) -> Sequence[Frame]:
@@ -114,11 +133,40 @@ def _called_in(frames: Iterable[Frame], instance: object) -> str:
 
 
 def users_part(error: BaseException) -> TracebackType | None:
-    """An error's traceback without graphflow's frames at its beginning; whole if there are no others."""
-    rest = error.__traceback__
-    while rest is not None and is_ours(rest.tb_frame.f_code.co_filename):
-        rest = rest.tb_next
-    return rest or error.__traceback__
+    """An error's traceback without graphflow's frames, as far as it goes through the user's; whole if it does not.
+
+    It ends with the frames in which the error was raised, unless graphflow's code has raised it in words of its own:
+    then it is about what the user's last line has asked for.
+    """
+    parts = list(parts_of(error.__traceback__))
+    own = [place for place, part in enumerate(parts) if _is_users_frame(part.tb_frame)]
+    end = own[-1] + 1 if own and is_refusal(parts[-1]) else len(parts)
+    begins = next((i for i, part in enumerate(parts) if not is_ours(part.tb_frame.f_code.co_filename)), 0)
+    last = own[-1] if own else begins
+    kept = None
+    for place, part in reversed([*enumerate(parts)][begins:end]):
+        if place >= last or not is_ours(part.tb_frame.f_code.co_filename):
+            kept = TracebackType(kept, part.tb_frame, part.tb_lasti, part.tb_lineno)
+    return kept
+
+
+def parts_of(trace: TracebackType | None) -> Iterator[TracebackType]:
+    """The frames of a traceback, the outermost first."""
+    while trace is not None:
+        yield trace
+        trace = trace.tb_next
+
+
+def is_refusal(part: TracebackType, *words: str) -> bool:
+    """Whether graphflow's code has raised an error in words of its own here: about arguments of the caller's.
+
+    Args:
+        words: Statements besides `raise` that do so, such as `assert`.
+    """
+    code = part.tb_frame.f_code
+    is_own = is_ours(code.co_filename) or not (is_users(code.co_filename) or code.co_filename.startswith(_PYTHONS))
+    line = linecache.getline(code.co_filename, part.tb_lineno).lstrip()
+    return is_own and line.startswith(tuple(f"{word} " for word in ("raise", *words)))
 
 
 def place_in(error: BaseException) -> str:
@@ -129,7 +177,7 @@ def place_in(error: BaseException) -> str:
     place, is_theirs, trace = "", False, error.__traceback__
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
-        if is_users(file) and not (is_theirs and is_installed(file)):
+        if _is_users_frame(trace.tb_frame) and not (is_theirs and is_installed(file)):
             place, is_theirs = f"{file}:{trace.tb_lineno}", not is_installed(file)
         trace = trace.tb_next
     return place

@@ -200,6 +200,16 @@ def is_awaited(parents: Sequence[ast.AST]) -> bool:
     return isinstance(above, (ast.Await, ast.withitem, ast.Return))
 
 
+def is_gathered(parents: Sequence[ast.AST]) -> bool:
+    """Whether a call of a coroutine, whose function has these parents, is a part of `await asyncio.gather(...)`."""
+    match parents[:-1]:
+        case [*_, ast.Await(), ast.Call(func=function)]:
+            return ast.unparse(function) == "asyncio.gather"
+        case [*_, ast.Await(), ast.Call(func=function), ast.Starred(), ast.GeneratorExp() | ast.ListComp() as each]:
+            return ast.unparse(function) == "asyncio.gather" and each.elt is parents[-1]
+    return False
+
+
 def knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
     """Whether a call that receives the node leads to code that is read here too, or that only looks at it."""
     call = parents[-1] if isinstance(parents[-1], ast.Call) else parents[-2]

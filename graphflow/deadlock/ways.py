@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import asyncio
+from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from graphflow.deadlock import asyncio_frames as aio
+from graphflow.deadlock.closed_world import method_of
 from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
+from graphflow.executor.clock import ClockTimeout
+from graphflow.times import to_ns
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +60,37 @@ def subtasks(activity: Any, limit_of: Callable[[Any], int | None]) -> Iterator[S
         below = [Subtask(task, limit_ns, is_bounded) for task in found]
         yield from below
         todo += below
+
+
+def gathered(
+    methods: AbstractSet[str],
+    activities: Iterable[Any],
+    limit_of: Callable[[Any], int | None],
+    loop: asyncio.AbstractEventLoop,
+) -> list[Subtask] | None:
+    """The tasks of some methods that activities wait for.
+
+    Returns:
+        None if there are others: a `gather` in which one fails leaves the rest behind.
+    """
+    found = [below for above in activities for below in subtasks(above, limit_of) if method_of(below.task) in methods]
+    known = {id(below.task) for below in found}
+    living = [task for task in asyncio.all_tasks(loop) if method_of(task) in methods]
+    return found if all(id(task) in known for task in living) else None
+
+
+def limit_of(task: Any, now_ns: int, now: float) -> int | None:
+    """When a task gives up waiting, in nanoseconds of the clock; None for never.
+
+    Args:
+        now_ns: The time by that clock.
+        now: The time by the loop's.
+    """
+    found: list[float] = []
+    for coroutine in aio.coroutines(task):
+        found += aio.deadlines(coroutine)
+        for context in aio.entered(coroutine):
+            if isinstance(context, ClockTimeout):
+                return context.until_ns
+    seconds = min(found, default=None)
+    return None if seconds is None else now_ns + to_ns(max(0.0, seconds - now))

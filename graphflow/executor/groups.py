@@ -37,6 +37,9 @@ class Member(Protocol):
     def yields(self) -> None:
         """Drop what waits: newer work has come, in a group that keeps only the newest."""
 
+    def wake(self) -> None:
+        """Run what the group allows by now; a member that had all its slots has no ticket for more."""
+
 
 class HandlerGroup(GroupState[Member]):
     """A group of one node. On the node, the class's `Group` declaration reads as this."""
@@ -56,11 +59,13 @@ class HandlerGroup(GroupState[Member]):
         if successor is not None:
             loop.call_soon(successor.granted, self)
 
-    def set_limit(self, limit: int | None, loop: AbstractEventLoop | None) -> None:
+    def set_limit(self, limit: int | None, loop: AbstractEventLoop) -> None:
         """Allow this many runs at a time from now on; runs under way stay."""
         self.limit = limit
-        while loop is not None and (successor := self.grant()) is not None:
+        while (successor := self.grant()) is not None:
             loop.call_soon(successor.granted, self)
+        for member in self.members:
+            loop.call_soon(member.wake)
 
     @asynccontextmanager
     async def released(self) -> AsyncGenerator[None, None]:
@@ -129,6 +134,9 @@ class _Return:
 
     def yields(self) -> None:
         """Nothing: a run under way is not work that waits to begin."""
+
+    def wake(self) -> None:
+        """Nothing, likewise."""
 
 
 @dataclass(frozen=True)
@@ -222,6 +230,10 @@ class Groups:
     def note_move(self, handler: str, group: str) -> None:
         """A handler is in another group from now on."""
         self.regrouping = self.regrouping.moved([handler], group)
+
+    def note_limit(self, group: str, limit: int | None) -> None:
+        """A group has another limit from now on."""
+        self.regrouping = self.regrouping.limited(group, limit)
 
     def refuse_strays(self) -> None:
         """Raises DeclarationError when the graph file has placed a handler that the node has not made."""

@@ -5,14 +5,17 @@ from __future__ import annotations
 import asyncio
 import itertools
 from asyncio import CancelledError
+from asyncio.tasks import _enter_task, _leave_task
 from collections import deque
 from collections.abc import Callable, Coroutine
 from contextvars import Context, copy_context
 from dataclasses import dataclass
 from inspect import iscoroutine
+from sys import getrefcount
 from time import monotonic
 from types import CoroutineType
 from typing import Any, Literal
+from weakref import getweakrefcount
 
 from graphflow.executor.activity import Activity
 from graphflow.executor.groups import HandlerGroup
@@ -23,6 +26,14 @@ BURST = 64
 SLICE = 0.003
 """Seconds after which no further run follows in the row: timers, other handlers and Ctrl-C have waited that long."""
 
+
+def _references_of_one() -> int:
+    """The `getrefcount` of an object that only one local variable refers to: it depends on the interpreter."""
+    alone = object()
+    return getrefcount(alone)
+
+
+_ALONE = _references_of_one()
 _next_number = itertools.count(1).__next__
 
 RunnerKind = Literal["", "timer", "subscription", "service", "action", "reply"]
@@ -30,7 +41,7 @@ RunnerKind = Literal["", "timer", "subscription", "service", "action", "reply"]
 
 
 class Run(Activity):
-    """An activity of a `Runner`, to which it reports its end. One is made for every message.
+    """An activity of a `Runner`, to which it reports its end. A message has one for itself.
 
     Attributes:
         item: What the run was begun for.
@@ -91,6 +102,7 @@ class RunnerSpec:
         dropped: How many items were lost because the queue was full.
         is_inner: Whether the handler belongs to graphflow, as every node's parameter services do.
         is_serial: Whether its runs exclude each other in any group; None: only when they run in no group.
+        wants_results: Whether `finished` is called after runs that ended well, too.
     """
 
     handler: str
@@ -102,6 +114,7 @@ class RunnerSpec:
     dropped: Callable[[], int] = int
     is_inner: bool = False
     is_serial: bool | None = None
+    wants_results: bool = True
 
 
 class Runner:
@@ -122,7 +135,9 @@ class Runner:
         "_ledger",
         "_loop",
         "_scheduled",
+        "_spare",
         "_waking",
+        "_wants_results",
         "active",
         "at_hand",
         "errors",
@@ -152,6 +167,9 @@ class Runner:
         self._ledger, self._loop = ledger, ledger.loop
         # What every run needs, without going through the spec.
         self._invoke, self._finished, self._is_serial = spec.invoke, spec.finished, spec.is_serial
+        self._wants_results = spec.wants_results
+        self._spare: Run | None = None
+        """A run that ended in its first step and that nobody has kept: the next message's."""
         # Every run begins with the context variables of where the handler was made, never with those of an earlier run.
         self._context = copy_context()
         self._waking = False
@@ -187,31 +205,31 @@ class Runner:
         """Run what the group allows of what may be in the queue."""
         if self._waking or self._closed or self._scheduled:
             return
-        group, active, items = self.group, self.active, self.items
+        group, active, items, ledger = self.group, self.active, self.items, self._ledger
         self._waking = True
+        around, ledger.at_work = ledger.at_work, self
         try:
             until = monotonic() + SLICE
             for _ in range(BURST):
                 if not items or self._closed:
                     return
                 if active and (group is None if self._is_serial is None else self._is_serial):
-                    self._ledger.alert()
+                    ledger.alert()
                     return
                 # No runner asks for more slots than the group has: after a run it queues again, at the tail.
                 if group is not None and (self._fills(group) or not group.admit(self)):
                     if group.when_full != "wait" and self.spec.kind != "reply":
                         self._overflow(group)
-                    self._ledger.alert()
+                    ledger.alert()
                     return
-                self.runs += 1
-                context = self._context.copy()
-                context.run(self._begin, items.popleft(), context, group)
+                self._begin(items.popleft(), group)
                 if monotonic() > until:
                     break
                 group = self.group  # the handler may have moved itself
         finally:
             self._waking = False
-        if self.items:
+            ledger.at_work, self.at_hand = around, None
+        if items:
             self._scheduled = True
             self._loop.call_soon(self._go_on)
 
@@ -259,9 +277,11 @@ class Runner:
     def granted(self, group: HandlerGroup) -> None:
         may_run = not self._closed and group is self.group and not (self._is_serial and self.active)
         if self.items and may_run:
-            self.runs += 1
-            context = self._context.copy()
-            context.run(self._begin, self.items.popleft(), context, group)
+            around, self._ledger.at_work = self._ledger.at_work, self
+            try:
+                self._begin(self.items.popleft(), group)
+            finally:
+                self._ledger.at_work, self.at_hand = around, None
         else:
             group.give_back(self._loop)
         self.wake()
@@ -276,35 +296,64 @@ class Runner:
             group.members.append(self)
         self._loop.call_soon(self.wake)
 
-    def _begin(self, item: Any, context: Context, group: HandlerGroup | None) -> None:
-        """Run the handler within its context, to its end or to its first suspension."""
-        ledger = self._ledger
-        around, ledger.at_work, self.at_hand = ledger.at_work, self, item
+    def _begin(self, item: Any, group: HandlerGroup | None) -> None:
+        """Run the handler in a context of its own, to its end or to its first suspension."""
+        self.runs += 1
+        self.at_hand = item
+        context = self._context.copy()
+        run: Run | None = None
+        error: BaseException | None = None
         try:
-            try:
-                result = self._invoke(item)
-            except (KeyboardInterrupt, SystemExit):
-                raise
-            except BaseException as error:
-                self._ended(group, item, None, error)
+            result = context.run(self._invoke, item)
+            if result is not None and (result.__class__ is CoroutineType or iscoroutine(result)):
+                run = self._spare
+                if run is None:
+                    run = Run(self, item, result, context, group)
+                else:
+                    self._spare = None
+                    run._coroutine, run._context, run.item, run.group = result, context, item, group
+                    run.number = _next_number()
+                self.active.add(run)
+                # As `Activity.step`, without what cannot have happened before the first step.
+                _enter_task(self._loop, run)  # type: ignore[arg-type]
+                try:
+                    awaited = context.run(result.send, None)
+                finally:
+                    _leave_task(self._loop, run)  # type: ignore[arg-type]
+                run._wait_for(awaited)
+                self.at_hand = None
                 return
-            if result.__class__ is not CoroutineType and not iscoroutine(result):
-                self._ended(group, item, result, None)
-                return
-            run = Run(self, item, result, context, group)
-            self.active.add(run)
-            run.step()
-        finally:
-            ledger.at_work, self.at_hand = around, None
+        except StopIteration as stop:
+            if run is None:
+                result, error = None, stop
+            else:
+                result = stop.value
+        except (KeyboardInterrupt, SystemExit) as exit_:
+            self.at_hand = None
+            if run is not None:
+                run._end(None, exit_)
+            raise
+        except BaseException as raised:
+            result, error = None, raised
+        if run is not None:
+            group = run.group
+            self.active.discard(run)
+            run._coroutine = run.item = None
+            if getrefcount(run) == _ALONE and not run._cancel_requests and not getweakrefcount(run):
+                self._spare = run
+        if error is not None or self._wants_results or group is not None or self._idle is not None or not self._waking:
+            self._ended(group, item, result, error)
+        self.at_hand = error = None  # its traceback refers to this frame: leave no cycle for the garbage collector
 
     def _ended(self, group: HandlerGroup | None, item: Any, result: Any, error: BaseException | None) -> None:
         if error is not None and not isinstance(error, CancelledError):
             self.errors += 1
-        try:
-            self._finished(item, result, error)
-        except Exception as failure:
-            message = f"{self.name}: the end of a run could not be reported"
-            self._loop.call_exception_handler({"message": message, "exception": failure})
+        if error is not None or self._wants_results:
+            try:
+                self._finished(item, result, error)
+            except Exception as failure:
+                message = f"{self.name}: the end of a run could not be reported"
+                self._loop.call_exception_handler({"message": message, "exception": failure})
         if group is not None:
             group.give_back(self._loop)
         if self._idle is not None:

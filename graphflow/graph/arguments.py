@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from graphflow.errors import GraphFileError, Place
@@ -14,6 +15,8 @@ from graphflow.graph.tree import Item
 from graphflow.names import did_you_mean
 
 COMMAND_LINE = Place("command line")
+_SLIP = re.compile(r"([^\W\d]\w*) ?(?::=|[:=]) ?((?!\S*:=)\S+)")
+"""An argument with another sign or with spaces in it: `x=1`, `x:= 1`, `x: 1`."""
 
 
 class Arguments:
@@ -26,9 +29,12 @@ class Arguments:
     def __init__(self, given: Sequence[str], problems: Problems) -> None:
         self._problems = problems
         self._given = given_values(given)
-        for word in given:
-            if ":=" not in word or word.startswith(":="):
-                problems.add(COMMAND_LINE, f"{word!r}: an argument is written name:=value")
+        for text in _no_arguments(given):
+            slip = _SLIP.fullmatch(text)
+            meant = f"; write {slip[1]}:={slip[2]}" if slip else ""
+            if text.endswith((".yaml", ".yml")):
+                meant = f"; to start {text}, too, have a third file with include: [FILE, FILE]"
+            problems.add(COMMAND_LINE, f"{text!r}: an argument is written name:=value{meant}")
         self.values: dict[str, Any] = {}
         """By name, of those that the command line may set."""
 
@@ -134,6 +140,23 @@ def given_values(words: Sequence[str]) -> dict[str, str]:
     """What words of the command line, `name:=value`, give to which argument."""
     pairs = (word.partition(":=") for word in words)
     return {name: text for name, arrow, text in pairs if arrow and name}
+
+
+def behind_name(text: str) -> str:
+    """The fault of arguments that stand behind the name of an included file; empty for none."""
+    name, _, given = text.partition(" ")
+    pairs = ", ".join(f"{word}: {value}" for word, value in given_values(given.split()).items())
+    return f"arguments stand apart: include: {{file: {name}, args: {{{pairs}}}}}" if pairs else ""
+
+
+def _no_arguments(words: Sequence[str]) -> Iterator[str]:
+    """What is no `name:=value`, with the words around it that are one with it but for a space."""
+    rest = list(words)
+    while rest:
+        size = next((n for n in (3, 2) if len(rest) >= n and _SLIP.fullmatch(" ".join(rest[:n]))), 1)
+        if size > 1 or ":=" not in rest[0] or rest[0].startswith(":="):
+            yield " ".join(rest[:size])
+        del rest[:size]
 
 
 def _read(text: str, settings: Mapping[str, Item]) -> Any:

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import json
+import re
+import shlex
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
-from graphflow.interface import COMMON_PARAMETERS, EndpointKind, GroupInfo, Interface, may_make
+from graphflow.interface import (
+    COMMON_PARAMETERS,
+    COMMON_SERVICES,
+    LIFECYCLE_SERVICES,
+    EndpointKind,
+    GroupInfo,
+    Interface,
+    may_make,
+)
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
+_PLAIN = re.compile(r"[\w./-][\w ./-]*\Z")
+"""A word that YAML has as a text without quotes around it."""
 ImportFault = Problem
 Interfaces = Mapping[str, Interface | ImportFault]
 """What each class declares, or why it could not be imported, by class path."""
@@ -33,7 +46,7 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
 
 def _check_program(node: PlannedNode) -> Iterator[Problem]:
     program = node.command[0]
-    if program == "graphflow":
+    if program == "graphflow" or (program == "ros2" and not node.executable):  # see `offer_ros2`
         return
     if shutil.which(program, path=node.env.get("PATH")) is not None:
         return
@@ -42,7 +55,18 @@ def _check_program(node: PlannedNode) -> Iterator[Problem]:
         yield Problem(node.class_place, text)
     else:
         where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
+        if " " in program and shutil.which(program.partition(" ")[0], path=node.env.get("PATH")) is not None:
+            where = f"each word stands by itself: command: {_apart(program)}"
         yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")
+
+
+def _apart(line: str) -> str:
+    """A command line as a list in YAML."""
+    try:
+        words = shlex.split(line)
+    except ValueError:  # a quote that is not closed
+        words = line.split()
+    return f"[{', '.join(word if _PLAIN.match(word) else json.dumps(word) for word in words)}]"
 
 
 def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
@@ -218,16 +242,34 @@ def offered(plan: Plan, interfaces: Interfaces, kind: EndpointKind) -> dict[str,
         interface = interfaces.get(node.class_path)
         if isinstance(interface, Interface):
             names = resolver(node)
+            sort: Kind = "topic" if kind in ("publisher", "subscription") else "service"
             for endpoint in interface.endpoints:
                 if endpoint.kind == kind:
-                    found[names.resolve(endpoint.name, "service")] = endpoint.type
+                    found[names.resolve(endpoint.name, sort)] = endpoint.type
+    return found
+
+
+def _offered_anyway(plan: Plan, interfaces: Interfaces) -> dict[str, str]:
+    """Types by full name of the services that nodes have without declaring them."""
+    found: dict[str, str] = {}
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if isinstance(interface, Interface):
+            names = resolver(node)
+            services = COMMON_SERVICES | (LIFECYCLE_SERVICES if interface.is_managed else {})
+            found |= {names.resolve(f"~/{name}", "service"): type_ for name, type_ in services.items()}
     return found
 
 
 def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | None:
     """The type of the service or action that a step needs, as far as the file or the classes say."""
     kind = _SERVERS.get(step.do)
-    return None if kind is None else step.type or offered(plan, interfaces, kind).get(step.target)
+    if kind is None:
+        return None
+    if step.type:
+        return step.type
+    anyway = _offered_anyway(plan, interfaces) if kind == "service" else {}
+    return (anyway | offered(plan, interfaces, kind)).get(step.target)
 
 
 _SERVERS: dict[Deed, EndpointKind] = {"call": "service", "goal": "action"}
@@ -247,23 +289,42 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
     if type_ is None:
         if _may_have_more(plan, interfaces, step.target):
             return
-        near = did_you_mean(step.target, offered(plan, interfaces, kind))
-        yield Problem(
-            step.target_place,
-            f"no node of this graph offers the {what} {step.target}{near}"
-            f" (for one outside the graph add type: package/{'action' if step.do == 'goal' else 'srv'}/Name)",
-        )
+        anyway = _offered_anyway(plan, interfaces) if kind == "service" else {}
+        text = f"no node of this graph offers the {what} {step.target}"
+        if other := _other_kind(step, plan, interfaces):
+            yield Problem(step.target_place, f"{text}; it is {other}")
+            return
+        near = did_you_mean(step.target, offered(plan, interfaces, kind), hidden=anyway)
+        folder = "action" if step.do == "goal" else "srv"
+        outside = f" (for one outside the graph add type: package/{folder}/Name)"
+        yield Problem(step.target_place, f"{text}{near}{outside}")
         return
     if not type_:  # it is offered, but the source does not show its type
         return
     try:
         full = registry.full_name(type_)
+        served = offered(plan, interfaces, kind).get(step.target)
+        if served and registry.full_name(served) != full:
+            yield Problem(step.target_place, f"{step.target} is of type {served}, not {type_}; leave out type:")
+            return
         sent = f"{full}_Goal" if step.do == "goal" else registry.service_schema(full).request.name
         message_class = registry.interface_class(sent)
     except GraphflowError as error:
         yield Problem(step.target_place, str(error))
         return
     yield from _check_request(step, message_class)
+
+
+def _other_kind(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str:
+    """What a step's target is in place of a service or an action, with the key for it; empty for nothing known."""
+    others: dict[EndpointKind, str] = {
+        "action": f"an action: goal: {step.target}",
+        "service": f"a service: call: {step.target}",
+        "publisher": "a topic",
+        "subscription": "a topic",
+    }
+    found = (word for kind, word in others.items() if step.target in offered(plan, interfaces, kind))
+    return next(found, "a node" if any(node.name == step.target for node in plan.nodes) else "")
 
 
 def _may_have_more(plan: Plan, interfaces: Interfaces, name: str) -> bool:

@@ -41,13 +41,15 @@ class ViewForm(NamedTuple):
 
 
 VIEWS: Mapping[str, ViewForm] = {
-    "nodes": ViewForm(),
+    "nodes": ViewForm(options=("by", "order", "find")),
+    "detail": ViewForm(options=("tab",)),
     "log": ViewForm("node or namespace", options=("level", "filter", "follow", "wrap")),
-    "topics": ViewForm(),
+    "topics": ViewForm("node"),
     "echo": ViewForm("topic", needs_it=True),
     "hz": ViewForm("topic", needs_it=True),
-    "plot": ViewForm("topic.field", needs_it=True, options=("seconds",)),
+    "plot": ViewForm("topic.field", needs_it=True, options=("seconds", "axes")),
     "graph": ViewForm("namespace"),
+    "tree": ViewForm("node", options=("find",)),
     "calls": ViewForm("service"),
     "goals": ViewForm("action"),
     "params": ViewForm("node"),

@@ -77,11 +77,13 @@ def with_group(
     group: str,
     handlers: Sequence[str],
     said: Mapping[str, GroupChange] = MappingProxyType({}),
+    settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> str:
     """A file in which a node's handlers are in a group, and in no other of its groups.
 
     Args:
         said: What another file says of the node's groups, which this one would replace as a whole.
+        settings: What is set for the group besides: its `limit`, `thread`.
     """
 
     def change(node: CommentedMap) -> None:
@@ -98,12 +100,18 @@ def with_group(
                         listed.remove(handler)
         present = groups.get(group)
         if isinstance(present, CommentedMap):
-            here = present.setdefault("handlers", [])
-            here.extend(h for h in handlers if h not in here)
+            if handlers:
+                here = present.setdefault("handlers", [])
+                here.extend(h for h in handlers if h not in here)
         elif isinstance(present, list):
             present.extend(h for h in handlers if h not in present)
         else:
             groups[group] = _flow_list(handlers)
+        if settings:
+            members = groups[group]
+            if not isinstance(members, CommentedMap):
+                members = groups[group] = _flow({"handlers": members} if members else {})
+            members.update(settings)
 
     return _changed(text, path, change)
 

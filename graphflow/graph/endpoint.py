@@ -14,5 +14,10 @@ def endpoint(text: str) -> str:
     protocol, _, rest = text.partition("/")
     host, _, port = rest.rpartition(":")
     if protocol not in PROTOCOLS or not host or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise ValueError(f"{text!r} is not an endpoint; write tcp/HOST:7447 or tls/HOST:7447")
+        raise ValueError(f"{text!r} is not an endpoint; {port_fault(port) or 'write tcp/HOST:7447 or tls/HOST:7447'}")
     return text
+
+
+def port_fault(port: str) -> str:
+    """That a number is too large or too small for a port; empty for others, and for what is no number."""
+    return f"a port is 1 to 65535, not {port}" if port.isdecimal() and not 0 < int(port) < 65536 else ""

@@ -18,9 +18,10 @@ from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
 from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_ros
+from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.reading import found_text
-from graphflow.system import ROS2
+from graphflow.system import ROS2, SITE
 
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
@@ -93,7 +94,7 @@ def as_class(node: Item, root: Path) -> Item:
     if package is None or name is None or not isinstance(package.value, str) or not isinstance(name.value, str):
         return node
     found = find(package.value, name.value, root)
-    if found is None:
+    if found is None or "class" in node.entries:  # both is refused later
         return node
     return node._replace(
         value={"class": Item(found.class_path, name.place, name.key), **node.without("pkg", "exec").value}
@@ -144,8 +145,10 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
             text = f"{name} of the package {package!r} is C++, which only colcon builds; graphflow runs Python"
             raise NoExecutable(text, is_slip=False)
         if not own.executables:
-            raise NoExecutable(f"the package {package!r} has no executable that graphflow can run", is_slip=False)
+            text = f"the package {package!r} has no executable that graphflow can run{own.why_no_executable}"
+            raise NoExecutable(text, is_slip=bool(own.why_no_executable))
         near = did_you_mean(name, own.executables) or f"; there is {', '.join(own.executables)}"
+        near += own.why_no_executable
         raise NoExecutable(f"the package {package!r} has no executable {name!r}{near}", is_slip=True)
     fault = own.fault_of(known)
     if fault is not None:
@@ -182,6 +185,12 @@ def with_graphflow() -> list[tuple[str, str]]:
     """The executables that come with graphflow, each with its package."""
     programs = [(own.name, name.removesuffix(".py")) for own in bundled().packages.values() for name in own.executables]
     return [*EXECUTABLES, *programs]
+
+
+def of_ros() -> set[str]:
+    """The packages of ROS 2's that graphflow has in some form: messages, modules or executables."""
+    messages = {f.name for f in registry.BUNDLED.iterdir() if any((f / kind).is_dir() for kind in registry.KINDS)}
+    return messages | {*os.listdir(SITE), *(package for package, _ in with_graphflow())}
 
 
 class Listed(NamedTuple):

@@ -9,8 +9,7 @@ the place where it was written.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 from pathlib import Path
@@ -20,9 +19,10 @@ from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph import executables
-from graphflow.graph.arguments import Arguments
-from graphflow.graph.faults import Problems, example, unknown_key, validated
+from graphflow.graph.arguments import Arguments, behind_name
+from graphflow.graph.faults import Problems, colon_fault, example, unknown_key, validated
 from graphflow.graph.inherit import BY_ENTRY, after_groups, with_groups
+from graphflow.graph.loops import values_of
 from graphflow.graph.model import (
     BLOCKS,
     FROM_LAUNCH,
@@ -36,6 +36,7 @@ from graphflow.graph.model import (
 from graphflow.graph.project import no_file, shown
 from graphflow.graph.reading import read
 from graphflow.graph.ros_launch import ignore
+from graphflow.graph.substitution_words import misspelt
 from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, Written, truth
 from graphflow.graph.tree import Item, located, merged, shared, source_of
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
@@ -45,8 +46,6 @@ MAX_ROUNDS = 10_000
 MAX_FILES = 200
 MAX_MADE = 500_000
 """Values that a graph has once all is taken apart."""
-
-_SPAN = re.compile(r"(-?\d{1,9})\.\.(-?\d{1,9})\Z")
 
 
 @dataclass(frozen=True)
@@ -189,7 +188,7 @@ class Expansion:
         if "$(" in str(path):  # which has been reported
             return None
         if not path.is_file():
-            raise GraphFileError([*self._problems, Problem(place, no_file(path))])
+            raise GraphFileError([*self._problems, Problem(place, behind_name(path.name) or no_file(path))])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
         self._included += 1
@@ -240,7 +239,7 @@ class Expansion:
                         self._group(block, scope) if key == "group" else self._for(block, scope)
         return scope
 
-    def _group(self, block: Item, scope: _Scope) -> None:
+    def _group(self, block: Item, scope: _Scope, what: str = "group") -> None:
         if self._is_left_out(block, scope):
             return
         settings = self._substituted(block.without("if", "unless", *BLOCKS), scope)
@@ -253,6 +252,9 @@ class Expansion:
             shared=(settings.entries, *scope.shared),
             is_top=False,
         )
+        if not bodies and block.at.file not in self._problems.launch_files:
+            self._problems.add(block.at, f"the {what} has no nodes; indent nodes: below it")
+            return
         before = self._relative
         self._body(bodies, inner)
         if "namespace" in settings.entries and self._relative == before and inner.namespace != scope.namespace:
@@ -271,23 +273,12 @@ class Expansion:
             self._problems.add(name.place, f"var: expected a name for the loop's values, got {name.plain()!r}")
             return
         body = block.without("var", "in", "if", "unless")
-        for value in self._rounds_of(over):
-            self._group(body, replace(scope, values={**scope.values, name.value: value}))
-
-    def _rounds_of(self, over: Item) -> Iterator[Any]:
-        """The values of a loop."""
-        values = over.plain()
-        span = _SPAN.match(values) if isinstance(values, str) else None
-        if span:
-            values = range(int(span[1]), int(span[2]) + 1)
-        if not isinstance(values, (list, range)):
-            self._problems.add(over.place, f"in: expected a list or a span such as 1..10, got {values!r}")
-            return
-        for value in values:
+        is_written_out = over.plain() == entries["in"].plain()
+        for value in values_of(over, self._problems, is_written_out=is_written_out):
             self._rounds += 1
             if self._rounds > MAX_ROUNDS:
                 raise GraphFileError([Problem(over.place, f"the loops have more than {MAX_ROUNDS:,} rounds")])
-            yield value
+            self._group(body, replace(scope, values={**scope.values, name.value: value}), "loop")
 
     def _namespace(self, settings: Item, scope: _Scope) -> str:
         """The namespace in a block that may have one of its own."""
@@ -356,9 +347,8 @@ class Expansion:
             short = split(key)[1]
             text = f"{key} is a full name, so a namespace would have no effect; name the node {short}, or remove this"
             self._problems.add(own.place if own else item.at, text)
-        if ":" in key:
-            text = f"the name {key!r} has a colon in it; write a space after the colon that ends a key"
-            self._problems.add(item.place, text)
+        if colon := colon_fault(key):
+            self._problems.add(item.place, colon)
             return None
         self._relative += not key.startswith("/") and not namespace.startswith("/")
         try:
@@ -426,7 +416,9 @@ class Expansion:
             self._problems.add(base.place, f"templates.{name}: expected a mapping, as for a node, got {base.plain()!r}")
             return None
         for key, entry in base.entries.items():
-            if key not in keys_of(NodeSpec) or key == "template":
+            if key == "template":
+                self._problems.add(entry.at, "a template cannot use a template; write here what it has")
+            elif key not in keys_of(NodeSpec):
                 self._problems.add(entry.at, unknown_key(key, keys_of(NodeSpec)))
         return merged(base, item, BY_ENTRY)
 
@@ -441,14 +433,18 @@ class Expansion:
                 continue
             try:
                 value = self._one(condition.value, condition.place, scope)
-                left_out |= truth(value) is not wanted
+                left_out |= truth(value, condition.place.file) is not wanted
             except SubstitutionError as error:
-                text = f"{key}: {error}; compare with $(eval NAME == 'text')"
-                self._problems.add_unknown(condition.place, text)
+                self._problems.add_unknown(condition.place, f"{key}: {error}")
         return left_out
 
     def _one(self, value: Any, place: Place, scope: _Scope, *, is_word: bool = False) -> Any:
-        if not isinstance(value, str) or "$(" not in value:
+        if not isinstance(value, str):
+            return value
+        if not is_word and place.file not in self._problems.launch_files:
+            for written, name in misspelt(value, scope.values):
+                self._problems.remark(place, f"{written} stays as it is; for the value of {name!r} write $(var {name})")
+        if "$(" not in value:
             return value
         file = self.files.get(place.file, Path())
         params = shared("params", scope.shared) if "param" in value else {}

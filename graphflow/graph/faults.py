@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, TypeVar, get_args, get_origin
@@ -10,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import source
-from graphflow.graph.model import keys_of
+from graphflow.graph.model import BLOCKS, GroupBlock, NodeSpec, keys_of
 from graphflow.graph.source import Source
 from graphflow.names import did_you_mean, nearest
 
@@ -86,6 +87,10 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
     except ValidationError as error:
         faults = [(_written_path(src, fault), fault) for fault in error.errors()]
     wanted: dict[source.Path, list[str]] = {}
+    strays = {path[:2]: str(path[1]).lstrip("/") for path, fault in faults if _is_stray(path, fault)}
+    for path, key in strays.items():
+        problems.add(src.key_place(path), _belongs_to_a_node(key))
+    faults = [(path, fault) for path, fault in faults if path[:2] not in strays]
     paths = [path for path, _ in faults]
     for path, fault in faults:
         # Alternatives of a union report once each; the one that got furthest was meant.
@@ -101,7 +106,7 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
         elif fault["type"] == "value_error":
             problems.add(src.place(path), str(fault["ctx"]["error"]))
         elif path in wanted:
-            problems.add(src.place(path), _wrong_type(path, wanted.pop(path), fault["input"]))
+            problems.add(src.place(path), _wrong_type(model, path, wanted.pop(path), fault["input"]))
     return None
 
 
@@ -112,6 +117,18 @@ def _written_path(src: Source, fault: Any) -> source.Path:
         if (*path, part) in src.places or (*path, part) in src.keys:
             path = (*path, part)
     return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
+
+
+def _is_stray(path: source.Path, fault: Any) -> bool:
+    """Whether what stands among the nodes is a key of a node: one of its name, and without a class."""
+    if len(path) < 2 or path[0] != "nodes" or str(path[1]).lstrip("/") not in keys_of(NodeSpec):
+        return False
+    return len(path) == 2 or (len(path) == 3 and path[2] == "class" and fault["type"] == "missing")
+
+
+def _belongs_to_a_node(key: str) -> str:
+    several = ", or for several nodes into a group: with its nodes:" if key in keys_of(GroupBlock) else ""
+    return f"{key}: belongs to a node; indent it below the node's name, beside class:{several}"
 
 
 def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
@@ -151,15 +168,39 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
     for ours, why in (_OF_ROS.get(key, ("", "")), _OF_GROUPS.get(key, ("", ""))):
         if ours in known:
             return f"unknown key {key!r}; {why or f'it is called {ours!r} here'}"
+    if "for" in known and (loop := _LOOP.match(key)):
+        return f"unknown key {key!r}; write for: {{var: {loop[1]}, in: {loop[2]}, nodes: ...}}"
+    if "namespace" in known and isinstance(value, dict) and not value.keys().isdisjoint(BLOCKS):
+        return f"unknown key {key!r}; a group is named by its namespace: group: {{namespace: {key}, nodes: ...}}"
+    if "call" in known and key.startswith("pub"):
+        return f"unknown key {key!r}; no step publishes: let a node do it, or graphflow topic pub"
+    if "call" in known and key in _REQUESTS:
+        return f"unknown key {key!r}; the values of a call or a goal are written under request:"
+    if "nodes" in known and key in keys_of(NodeSpec):
+        return _belongs_to_a_node(key)
     if head in known and head != key:
         return f"unknown key {key!r}; write a space after '{head}:'"
+    if "params" in known and isinstance(value, (bool, int, float)) and nearest(key, known, cutoff=0.75) is None:
+        return (
+            f"unknown key {key!r}; a parameter is written under params:, as in params: {{{key}: {str(value).lower()}}}"
+        )
     return f"unknown key {key!r}{did_you_mean(key, known)}"
+
+
+def colon_fault(key: str) -> str:
+    """The fault of the colon that should end a node's name; empty for none."""
+    if ":" in key:
+        return f"the name {key!r} has a colon in it; write a space after the colon that ends a key"
+    name, brace, _ = key.partition("{")
+    return f"a colon is missing after {name.rstrip()!r}" if brace else ""
 
 
 def _is_node(key: str, value: object) -> bool:
     return key.startswith("/") or (isinstance(value, dict) and not {"class", "exec", "command"}.isdisjoint(value))
 
 
+_REQUESTS = ("args", "arguments", "data", "fields", "values")
+_LOOP = re.compile(r"for +(\w+) +in +(.+)")
 _OF_GROUPS = {"ns": ("namespace", "")}
 _IN_A_NAMESPACE = (
     "the namespace is part of the node's name, as in /robot1/talker, or stands in a group: namespace: robot1"
@@ -177,6 +218,8 @@ _OF_ROS = {
     "ns": ("pkg", _IN_A_NAMESPACE),
     "namespace": ("pkg", _IN_A_NAMESPACE),
     "required": ("critical", ""),
+    "delay": ("exec", "a step waits: steps: {soon: {delay: 2.0}}, and after: soon at the node"),
+    "launch-prefix": ("prefix", ""),
 }
 """Words of ROS's launch files in Python for a node: the key that is meant, and what to say other than that."""
 
@@ -198,12 +241,15 @@ def _wanted(fault: Any) -> str:
     return words.get(fault["type"], str(fault["msg"]))
 
 
-def _wrong_type(path: source.Path, wanted: list[str], value: Any) -> str:
+def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], value: Any) -> str:
     if "a number" in wanted:
         wanted = [w for w in wanted if w != "a whole number"]
     parts = path[2:] if path[0] in ("nodes", "steps") and len(path) > 2 else path[-1:] if path[0] == "nodes" else path
     where = ".".join(str(p) for p in parts)
     text = " or ".join(dict.fromkeys(wanted))
+    head = str(value).partition(":")[0]
+    if isinstance(value, str) and head in _known_keys(model, (*path, head)):
+        return f"{where}: write a space after '{head}:'"
     got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
     return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
 

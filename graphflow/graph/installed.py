@@ -11,10 +11,14 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import Distribution, distributions
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from graphflow.graph.workspace import EntryPoint, uses_ros
+from graphflow.graph.setup_file import EntryPoint
+from graphflow.graph.workspace import uses_ros
+
+if TYPE_CHECKING:
+    from importlib.metadata import Distribution
 
 GROUP = "graphflow.nodes"
 """The group of entry points that are node classes."""
@@ -49,6 +53,8 @@ class Installed:
 @cache
 def installed() -> dict[str, Installed]:
     """The distributions that have nodes, or programs for rclpy, by their names."""
+    from importlib.metadata import distributions  # a tenth of what a short command imports
+
     found: dict[str, Installed] = {}
     for one in map(_read, distributions()):
         if one is not None:

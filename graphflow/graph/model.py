@@ -51,6 +51,12 @@ def _graph_name(text: str) -> str:
     return text
 
 
+def _command(words: list[Any]) -> list[Any]:
+    if not words:
+        raise ValueError("command: is empty; write the program and its words: command: [rviz2, -d, robot.rviz]")
+    return words
+
+
 def _limit(value: Any) -> Any:
     if value != "none" and (not isinstance(value, int) or isinstance(value, bool) or value < 1):
         raise ValueError(f"limit: expected 1 or more, or none for no limit, got {value!r}")
@@ -204,7 +210,7 @@ class NodeSpec(_Settings):
     """One node of the graph, or a foreign program. Its key is its name, absolute or relative to `namespace`."""
 
     class_: Annotated[StrictStr, AfterValidator(_class_path)] = Field(alias="class")
-    command: list[StrictStr | StrictInt | StrictFloat] = []
+    command: Annotated[list[StrictStr | StrictInt | StrictFloat], AfterValidator(_command)] = []
     pkg: StrictStr = ""
     exec_: StrictStr = Field("", alias="exec")
     args: list[StrictStr | StrictInt | StrictFloat] = []
@@ -230,7 +236,7 @@ class NodeSpec(_Settings):
             data = {k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}
         elif has & {"pkg", "exec"}:
             is_file = "/" in str(data.get("exec")) or str(data.get("exec")).endswith(".py")
-            if "exec" not in has or ("pkg" not in has and not is_file):
+            if data.get("exec") in (None, "") or ("pkg" not in has and not is_file):
                 raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file")
             if "class" in has:
                 raise ValueError("write class:, or pkg: and exec:, not both")
@@ -240,7 +246,10 @@ class NodeSpec(_Settings):
         else:
             if has & {"args", "keep_names"}:
                 [key, *_] = sorted(has & {"args", "keep_names"})
-                raise ValueError(f"{key}: goes with pkg: and exec:, and this is a node with a class; remove it")
+                which = f"the class {data['class']}" if isinstance(data.get("class"), str) else "a node with a class"
+                raise ValueError(
+                    f"{key}: is for programs, and this is {which}, which takes params: and remap:; remove it"
+                )
             return data
         if wrong:
             raise ValueError(f"{wrong}: is for nodes, and this is a program; {_HELP.get(wrong, 'remove it')}")

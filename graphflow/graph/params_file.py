@@ -23,7 +23,7 @@ from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import source
 from graphflow.graph.plan import Setting
 from graphflow.graph.source import Source
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 
 PARAMETERS = "ros__parameters"
 
@@ -62,7 +62,7 @@ def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems:
             if isinstance(value, dict):
                 walk(f"{name}.", value, (*at, key))
             elif value is None:
-                text = f"parameter {name!r} has no value; an empty string is ''"
+                text = f"parameter {name!r} has no value; {_instead_of(key)}"
                 problems.append(Problem(src.key_place((*at, key)), text))
             elif name in found:
                 first = found[name].place.line
@@ -72,6 +72,16 @@ def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems:
 
     walk("", params, path)
     return found
+
+
+def _instead_of(key: str) -> str:
+    """The line to write for a key without a value."""
+    if key.isdecimal():
+        return "a number is written with a point, as 2.5"
+    word, sign, given = re.fullmatch(r"([^:=]*)(:?=?)(.*)", key, re.DOTALL).groups()  # type: ignore[union-attr]
+    if sign == ":" and given:
+        return f"as a whole it is read as a name: write {word}: {given.strip()}, without quotes"
+    return f"write {word}: {given.strip()}" if sign and given else "an empty string is ''"
 
 
 def read(path: Path, name: str) -> list[Section]:
@@ -95,12 +105,20 @@ def read(path: Path, name: str) -> list[Section]:
 
 def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
     def walk(values: Mapping[str, Any], at: source.Path) -> Iterator[Section]:
+        fault = _not_indented(src, values, at)
+        if fault is not None:
+            problems.append(fault)
+            return
         for key, value in values.items():
             here = (*at, key)
-            if not isinstance(value, dict):
+            if key != PARAMETERS and nearest(key, [PARAMETERS], cutoff=0.85) is not None:
+                problems.append(
+                    Problem(src.key_place(here), f"{key!r}: did you mean {PARAMETERS!r}, with two _ in a row?")
+                )
+            elif not isinstance(value, dict):
                 place = src.key_place(here)
                 if at and key == PARAMETERS:
-                    problems.append(Problem(place, f"{PARAMETERS} is a mapping, for example {{rate: 2.0}}"))
+                    problems.append(Problem(place, f"{PARAMETERS} is a mapping{_with_colon(value)}"))
                 else:
                     problems.append(Problem(place, f"{key!r}: put parameters below NODE and {PARAMETERS}"))
             elif key == PARAMETERS and at:
@@ -121,6 +139,26 @@ def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
     yield from walk(src.data, ())
 
 
+def _not_indented(src: Source, values: Mapping[str, Any], at: source.Path) -> Problem | None:
+    """The problem of a mapping in which the parameters stand beside their node, or beside what they are below."""
+    if PARAMETERS not in values:
+        return None
+    bare = next((key for key, value in values.items() if value is None), None)
+    indented = PARAMETERS if bare != PARAMETERS else next((key for key in values if key != PARAMETERS), None)
+    if bare is not None and indented is not None and (at or bare != PARAMETERS):
+        place = src.key_place((*at, indented))
+        return Problem(place, f"{indented!r} belongs below {bare!r}: indent it and what follows by two more spaces")
+    if at:
+        return None
+    return Problem(src.key_place((PARAMETERS,)), f"{PARAMETERS} belongs below a node: write NODE: above, and indent it")
+
+
+def _with_colon(value: object) -> str:
+    """The end of a sentence on what is no mapping: how its first parameter is written."""
+    found = re.match(r"([\w.]+)\s*[=:]\s*(\S+)", value) if isinstance(value, str) else None
+    return ", for example {rate: 2.0}" if found is None else f"; write {found[1]}: {found[2]}"
+
+
 def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
     """What the sections have for the node with this full name."""
     found: dict[str, Setting] = {}
@@ -128,6 +166,15 @@ def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
         if section.fits(node):
             found |= section.params
     return found
+
+
+def meant(sections: Sequence[Section], node: str) -> str:
+    """The end of a sentence on a file that has nothing for a node: the section that is to be written otherwise."""
+    places = {section.pattern: section.place for section in sections}
+    near = nearest(node, places)
+    return (
+        did_you_mean(node, places) if near is None else f"; did you mean {node} in place of {near} at {places[near]}?"
+    )
 
 
 def strays(sections: Sequence[Section], nodes: Sequence[str]) -> list[Problem]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
@@ -110,6 +110,14 @@ class PlannedNode:
     def to_json(self) -> dict[str, Any]:
         """Plain data that `node_from_json` reads back."""
         return asdict(self)
+
+    def with_threads(self, handlers: Sequence[str]) -> PlannedNode:
+        """The same node with handlers in threads."""
+        groups = self.regrouping("").in_threads(handlers).groups
+        planned = {
+            name: self.concurrency.get(name, PlannedGroup(change, self.place)) for name, change in groups.items()
+        }
+        return replace(self, concurrency={name: replace(group, change=groups[name]) for name, group in planned.items()})
 
     def regrouping(self, file: str) -> Regrouping:
         """What the graph file says of the node's groups, and where.

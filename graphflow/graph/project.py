@@ -23,6 +23,15 @@ def project_root(path: Path) -> Path:
     to them as their project.
     """
     start = path.resolve()
+    found = _marked_above(start)
+    if found is not None:
+        return found
+    folder = start if start.is_dir() else start.parent
+    return folder.parent if folder.name == "graphs" and (folder.parent / "nodes").is_dir() else folder
+
+
+def _marked_above(start: Path) -> Path | None:
+    """The nearest folder that says by its files that it is a project's root."""
     if start.is_relative_to(INSTALLED_DEMOS):
         return INSTALLED_DEMOS
     for folder in [start, *start.parents]:
@@ -30,16 +39,16 @@ def project_root(path: Path) -> Path:
             break
         if (folder / "pyproject.toml").is_file() and ((folder / "graphs").is_dir() or (folder / "nodes").is_dir()):
             return folder
-    folder = start if start.is_dir() else start.parent
-    return folder.parent if folder.name == "graphs" and (folder.parent / "nodes").is_dir() else folder
+    return None
 
 
 def module_of(file: Path) -> tuple[Path, str]:
-    """The folder that a file's classes are imported from, and its name there: seen from the working directory, if it
-    is below that.
+    """The folder that a file's classes are imported from, and its name there.
+
+    It is the file's project; a file in none is seen from the working directory, if it is below that.
     """
     here, path = project_root(Path.cwd()), file.resolve()
-    root = here if path.is_relative_to(here) else project_root(path)
+    root = _marked_above(path) or (here if path.is_relative_to(here) else project_root(path))
     return root, ".".join(path.relative_to(root).with_suffix("").parts)
 
 
@@ -65,6 +74,8 @@ def bundled_graphs() -> dict[str, Path]:
 
 def no_file(path: Path) -> str:
     """What to say of a file that is not there: the one that is most like it."""
+    if path.exists():
+        return f"{shown(path)} is not a regular file"
     beside = {file.stem: file.name for file in path.parent.glob("*.*")}
     found = beside.get(nearest(path.stem, beside) or "")
     return f"there is no file {shown(path)}" + (f"; did you mean {found!r}?" if found else "")

@@ -55,7 +55,18 @@ def read(
             remark(Place(name, left_out["line"], 1), left_out["message"])
         recorded = ros_launch.recorded(told["actions"], name)
         return ros_launch.native(recorded, project_root(path), complain, note, number, leave_out)
-    top = xml_source.read_file(path, name) if path.suffix in (".xml", ".launch") else tree(source.read_file(path, name))
+    if path.suffix in (".xml", ".launch"):
+        top = xml_source.read_file(path, name)
+    else:
+        top = tree(source.read_file(path, name, complain=complain))
     if ros_launch.is_launch_file(top):
         return ros_launch.native(unescaped(top), project_root(path), complain, note, number, leave_out)
+    if "launch" in top.entries and top.entries["launch"].entries:
+        raise _error(name, top.entries["launch"], "launch: expected a list of actions; write - before each")
+    if isinstance(top.value, list) and any(action.entries.keys() & ros_launch.KNOWN_ACTIONS for action in top.value):
+        raise _error(name, top, "a launch file begins with launch:, and its actions are listed below that")
     return top
+
+
+def _error(name: str, item: Item, message: str) -> GraphFileError:
+    return GraphFileError([Problem(item.place or Place(name), message)])

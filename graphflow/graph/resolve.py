@@ -31,7 +31,7 @@ from graphflow.graph.tree import Item, source_of, tree
 from graphflow.graph.workspace import Workspace, find_workspace
 from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
-from graphflow.names import Resolver, check_references, did_you_mean, expand, split
+from graphflow.names import Resolver, check_references, expand, split
 
 _ANYBODY = (
     "allow_control: whoever reaches this graph over the network can load code into its processes; remove it, unless "
@@ -248,8 +248,9 @@ class _ParamsFiles:
             if place.file not in self._problems.launch_files:
                 self._strict.add(path)
             if sections and not any(s.fits(node) for s in sections):
-                patterns = [s.pattern for s in sections]
-                self._problems.add_unless_ros(place, f"{name} has nothing for {node}{did_you_mean(node, patterns)}")
+                self._problems.add_unless_ros(
+                    place, f"{name} has nothing for {node}{params_file.meant(sections, node)}"
+                )
             settings = params_file.params_for(sections, node)
             if place.file in self._problems.launch_files:  # ROS lets pass what the node does not have
                 settings = {n: replace(s, is_optional=True, is_unchecked=True) for n, s in settings.items()}

@@ -8,6 +8,32 @@ from collections.abc import Callable
 
 from graphflow.graph.substitution_words import UnclosedError, spans
 from graphflow.graph.tree import Item
+from graphflow.names import did_you_mean
+
+_LISTS = {"param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let"}
+"""Attributes that are lists in YAML, of which XML has an element for each of their items."""
+_OUTPUTS = ("screen", "log", "both", "own_log", "full")
+"""Where launch lets the output of a program go."""
+
+
+def shape_fault(key: str, value: Item) -> str | None:
+    """What is wrong with the form of an attribute; launch refuses a mapping in the place of a list."""
+    if key == "output":
+        return output_fault(value.value)
+    if key not in _LISTS or not isinstance(value.value, dict):
+        return None
+    if key == "param" and not value.value.keys() & {"name", "from"}:
+        return None  # values by their names, which is told where they are read
+    first = next(iter(value.value), "name")
+    is_flow = value.key is not None and value.key.line == value.place.line
+    return f"{key} is a list: " + ("write [ ] around { }" if is_flow else f"put '- ' before '{first}:'")
+
+
+def output_fault(output: object) -> str | None:
+    """What is wrong with where the output of a program is to go, be it told apart for stdout and stderr."""
+    if not isinstance(output, str) or "$(" in output or output in _OUTPUTS:
+        return None
+    return f"output: {output!r} is none of launch's{did_you_mean(output, _OUTPUTS)}"
 
 
 def children(item: Item) -> list[Item]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from graphflow.graph import executables
 from graphflow.graph.ros_attributes import items
 from graphflow.graph.ros_commands import Complain
+from graphflow.graph.ros_settings import conditions
 from graphflow.graph.tree import Item
 from graphflow.names import did_you_mean
 
@@ -57,7 +58,7 @@ def components(item: Item, root: Path, complain: Complain, leave_out: Complain) 
                 leave_out(plugin.place, f"{plugin.value} is left out: {text}")
             continue
         entries = {key: component.entries[key] for key in _OF_NODES if key in component.entries}
-        entries |= {key: item.entries[key] for key in _ANY if key in item.entries}
+        entries |= conditions(item, component)
         entries |= {"pkg": package, "exec": plugin._replace(value=name), "process": process}
         found.append(component._replace(value=entries))
     return found

@@ -21,18 +21,18 @@ from typing import Any
 from graphflow.errors import Place
 from graphflow.graph import executables
 from graphflow.graph.model import FROM_LAUNCH
-from graphflow.graph.ros_attributes import children, items, says, split
+from graphflow.graph.ros_attributes import children, items, says, shape_fault, split
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
-from graphflow.graph.ros_settings import as_text, conditional, pair, params, ros_words, setting
+from graphflow.graph.ros_settings import as_text, conditional, conditions, pair, params, ros_words, setting
 from graphflow.graph.tree import Item, located
 from graphflow.graph.workspace import bundled, find_workspace
 from graphflow.names import did_you_mean
 
 _ANY = {"if", "unless"}
 _IGNORED = {"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout", "exec_name", "log_cmd"}
-"""Attributes without a meaning here: output is always logged, and stopping is always the same."""
+"""Attributes without an effect here: output is always logged, and stopping is always the same."""
 _RECORDED = {"number", "after_number", "after_what", "brought_to"}
 """Attributes that `recorded` adds: which action it is, after which it comes, the state that it is brought to."""
 _RUN = {
@@ -66,6 +66,7 @@ _KNOWN: dict[str, set[str]] = {
     "shutdown": {"reason", *_ANY, *_RECORDED},
 }
 """Actions that have words here, and their attributes."""
+KNOWN_ACTIONS = frozenset(_KNOWN)
 _SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace", "lifecycle_node": "node"}
 _ELSEWHERE = {
     "unset_env": "write env: in a group or at a node",
@@ -73,6 +74,8 @@ _ELSEWHERE = {
     "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
+_FORMER = {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace"}
+"""Attributes of ROS 1, and of launch files in Python."""
 PATIENCE = 60.0
 """Seconds that a command of ROS's may take, which would wait for ever for a server."""
 _SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
@@ -179,18 +182,22 @@ class _Translation:
             return False
         for key, value in item.entries.items():
             if key not in _KNOWN[name]:
-                known = sorted(_KNOWN[name] - _IGNORED)
-                self._complain(value.at, f"{name}: unknown attribute {key!r}{did_you_mean(key, known)}")
+                ours, known = _FORMER.get(key, ""), sorted(_KNOWN[name] - _IGNORED)
+                hint = f"; it is called {ours!r} here" if ours in known else did_you_mean(key, known)
+                self._complain(value.at, f"{name}: unknown attribute {key!r}{hint}")
+            elif (fault := shape_fault(key, value)) is not None:
+                self._complain(value.place, f"{name}: {fault}")
         return True
 
     def _around(self, name: str, item: Item, after: list[Item]) -> Item:
         """A group around the actions that come after one which sets something for them."""
-        if self._conditions(item) and name != "let":
+        if self._conditions(item) and name not in ("let", "push_ros_namespace"):
             self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
         nothing = Item("", item.place)
         if name == "let":
-            values = Item([as_text(conditional(item, item.entries.get("value", nothing)))], item.place)
-            loop = {"var": item.entries.get("name", nothing), "in": values, **self._block(after)}
+            variable = item.entries.get("name", nothing)
+            value = conditional(item, item.entries.get("value", nothing), f"$(var {variable.value} '')")
+            loop = {"var": variable, "in": Item([as_text(value)], item.place), **self._block(after)}
             return item._replace(value={"for": Item(loop, item.place)})
         key, value = setting(name, item, self._complain)
         rest = self._block(after)
@@ -277,13 +284,12 @@ class _Translation:
 
     def _each_if(self, group: Item) -> list[Item]:
         """The actions in a group, each with the group's condition."""
-        conditions, made = self._conditions(group), []
+        made = []
         for action in children(group):
-            for name, inner in action.entries.items() if conditions else ():
-                if self._conditions(inner):
-                    text = "two conditions, its own and its group's with scoped: false, have no words in a graph file"
-                    self._complain(inner.at, f"{name}: {text}")
-                inner = inner._replace(value={**inner.entries, **conditions})
+            for name, inner in action.entries.items() if self._conditions(group) else ():
+                if isinstance(inner.value, list):  # a group
+                    inner = inner._replace(value={"children": inner})
+                inner = inner.without("if", "unless")._replace(value={**inner.entries, **conditions(group, inner)})
                 action = action._replace(value={name: inner})
             made.append(action)
         return made
@@ -295,7 +301,8 @@ class _Translation:
         package, name = item.entries.get("pkg"), item.entries.get("exec")
         is_file = package is None and name is not None and "/" in str(name.value)
         if name is None or not isinstance(name.value, str) or not (is_file or _is_text(package)):
-            self._complain(item.at, "node: the attributes 'pkg' and 'exec' are needed")
+            if not item.entries.keys() & _FORMER.keys():  # else that is told
+                self._complain(item.at, "node: the attributes 'pkg' and 'exec' are needed")
             return
         found = executables.find(package.value, name.value, self._root) if package is not None else None
         own = item.entries.get("name")

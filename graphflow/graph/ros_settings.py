@@ -24,7 +24,7 @@ def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
     """What an action sets for all after it: the key of a group, and its value."""
     match name:
         case "push_ros_namespace":
-            return "namespace", item.entries.get("namespace", Item("", item.place))
+            return "namespace", conditional(item, item.entries.get("namespace", Item("", item.place)), "")
         case "set_parameter":
             named = pair(item, "name", "value", complain)
             kind = str(item.entries["type"].value) if "type" in item.entries else "yaml"
@@ -48,15 +48,24 @@ def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
             return "env", pair(item, "name", "value", complain)
 
 
-def conditional(item: Item, value: Item) -> Item:
-    """What a variable becomes that is set under a condition: else it stays what it is, or empty."""
-    name = item.entries.get("name", Item("", item.place)).value
+def conditional(item: Item, value: Item, otherwise: str) -> Item:
+    """A value that is set under a condition, as a substitution that gives `otherwise` where that is not met."""
     for key in ("if", "unless"):
         if key in item.entries:
-            ways = [str(value.value), f"$(var {name} '')"]
+            ways = [str(value.value), otherwise]
             chosen = " ".join(map(as_word, [str(item.entries[key].value), *(ways if key == "if" else ways[::-1])]))
             value = value._replace(value=f"$(if {chosen})")
     return value
+
+
+def conditions(*items: Item) -> dict[str, Item]:
+    """The condition under which all of some actions are carried out, such as one and the group that it is in."""
+    given = [(key, item.entries[key]) for item in items for key in ("if", "unless") if key in item.entries]
+    if len(given) < 2:
+        return dict(given)
+    words = [as_word(as_text(value).value) for _, value in given]
+    words = [word if key == "if" else f"$(not {word})" for (key, _), word in zip(given, words, strict=True)]
+    return {"if": given[0][1]._replace(value=f"$(all {' '.join(words)})")}
 
 
 def pair(item: Item, key: str, value: str, complain: Complain, *, is_written: bool = False) -> Item:
@@ -67,9 +76,14 @@ def pair(item: Item, key: str, value: str, complain: Complain, *, is_written: bo
     """
     name = item.entries.get(key)
     if name is None or not isinstance(name.value, str):
-        complain(item.at, f"the attribute {key!r} is missing")
+        complain(item.at, f"the attribute {key!r} is missing; one is written {key}: ..., {value}: ...")
         return Item({}, item.place)
     found = item.entries.get(value, Item("", item.place))
+    others = () if value in item.entries else sorted(item.entries.keys() - {key, "if", "unless", "type", "default"})
+    for strange in others:
+        complain(item.entries[strange].at, f"unknown attribute {strange!r}{did_you_mean(strange, (value,))}")
+    if others:
+        return Item({}, item.place)
     return Item({name.value: (as_text(found) if is_written else found)._replace(key=name.place)}, item.place)
 
 
@@ -86,11 +100,21 @@ def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
 
     def take(params: list[Item], into: dict[str, Item]) -> None:
         for param in params:
+            if isinstance(param.value, dict) and not param.entries.keys() & {*_OF_PARAMS}:
+                first = next(iter(param.entries), "rate")
+                complain(
+                    param.place, f"param: expected a list of names and values, such as - {{name: {first}, value: 1}}"
+                )
+                continue
             for key, value in param.entries.items():
                 if key not in _OF_PARAMS:
                     complain(value.at, f"param: unknown attribute {key!r}{did_you_mean(key, _OF_PARAMS)}")
             if "from" in param.entries:
-                files.append(param.entries["from"])
+                file = param.entries["from"]
+                is_substituted = says(param, "allow_substs", "true", "1")
+                files.append(
+                    file._replace(value=f"$(substituted {as_word(str(file.value))})") if is_substituted else file
+                )
             elif "param" in param.entries and isinstance(name := param.entries.get("name"), Item):
                 inner: dict[str, Item] = {}
                 take(items(param.entries["param"]), inner)

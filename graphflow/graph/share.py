@@ -16,7 +16,8 @@ from glob import glob
 from pathlib import Path, PurePosixPath
 
 from graphflow.folders import state_root
-from graphflow.graph.workspace import Package, cmake_text, constant_text, constants
+from graphflow.graph.setup_file import constant_text, constants
+from graphflow.graph.workspace import Package, cmake_text
 from graphflow.reading import found_text
 
 FILES_BOUND = 5000

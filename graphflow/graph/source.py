@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import pathlib
 import re
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import yaml
 
 from graphflow.errors import GraphFileError, GraphflowError, Place, Problem
+from graphflow.reading import found_bytes
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 40
@@ -27,6 +29,12 @@ _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _INT = re.compile(r"[-+]?[0-9]+\Z|0o[0-7]+\Z|0x[0-9a-fA-F]+\Z")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z")
 _UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_KEYS_ONLY = re.compile(r"\{\s*([-\d.]+)\s*(?:,[^:{}]*)?\}")
+"""A mapping of values without names: `{255, 0}`."""
+_APOSTROPHE = re.compile(r"'[^']*\w'\w")
+"""A quoted text that ends where a word goes on."""
+_COMMA = re.compile(r"(?<![\w.])([-+]?\d+),\Z")
+"""The whole part of a number with a comma for its point."""
 _SPECIAL: dict[str, Any] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
@@ -80,37 +88,39 @@ class _Frame(NamedTuple):
     path: Path
 
 
-def read_file(path: pathlib.Path, name: str, *, is_params: bool = False) -> Source:
+def read_file(
+    path: pathlib.Path, name: str, *, is_params: bool = False, complain: Callable[[Place, str], None] | None = None
+) -> Source:
     """Read a YAML file.
 
     Args:
         name: The file as messages show it.
-        is_params: As for `read`.
+        is_params, complain: As for `read`.
 
     Raises:
-        GraphFileError: As for `read`; also when there is no such file, or it is not text.
+        GraphFileError: As for `read`; also when there is no such file, it is not a regular one, or it is not text.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        data = found_bytes(path, MAX_BYTES)
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
-    if len(data) > MAX_BYTES:
-        raise _error(Place(name), f"the file is larger than {MAX_BYTES:,} bytes")
     try:
-        return read(data.decode("utf-8-sig"), name, is_params=is_params)
+        return read(data.decode("utf-8-sig"), name, is_params=is_params, complain=complain)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
 
 
-def read(text: str, file: str, *, is_params: bool = False) -> Source:
+def read(
+    text: str, file: str, *, is_params: bool = False, complain: Callable[[Place, str], None] | None = None
+) -> Source:
     """Read one YAML document.
 
     Args:
         file: The name to give in messages.
         is_params: Whether it is read as ROS reads files of parameters: every key is a text, and mappings under the
             same key are one.
+        complain: Called with each key that is not a text, which is left out then; None for an error.
 
     Raises:
         GraphFileError: `text` is not YAML, or uses what is refused here; the first such place.
@@ -123,7 +133,7 @@ def read(text: str, file: str, *, is_params: bool = False) -> Source:
         place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
         raise _error(place, f"the character U+{ord(unprintable[0]):04X} is not allowed in a YAML file; delete it")
     try:
-        return _build(text, file, is_params=is_params)
+        return _build(text, file, is_params=is_params, complain=complain or _refuse)
     except yaml.MarkedYAMLError as error:
         mark: Any = error.problem_mark or error.context_mark
         lines = text.splitlines()
@@ -153,6 +163,8 @@ def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
         return " (quote a text that has ': ' in it; indent more below a key)"
     if "cannot start any token" in problem and line:
         return f" (quote a text that begins with {line[mark.column]})"
+    if _APOSTROPHE.search(line[: mark.column + 1 if mark else 0]):
+        return " (an apostrophe in quotes is written twice: 'it''s')"
     where = f"line {start.line + 1}, column {start.column + 1}" if start else ""
     bracket = lines[start.line][start.column : start.column + 1] if start and start.line < len(lines) else ""
     if bracket in ("{", "["):
@@ -168,12 +180,17 @@ def _error(place: Place, message: str) -> GraphFileError:
     return GraphFileError([Problem(place, message)])
 
 
-def _build(text: str, file: str, *, is_params: bool) -> Source:
+def _refuse(place: Place, message: str) -> None:
+    raise _error(place, message)
+
+
+def _build(text: str, file: str, *, is_params: bool, complain: Callable[[Place, str], None]) -> Source:
     places: dict[Path, Place] = {}
     keys: dict[Path, Place] = {}
     stack: list[_Frame] = []
     pending: list[str | None] = []
     root: list[Any] = []
+    refused: list[tuple[dict[str, Any], str]] = []
     documents = count = 0
 
     def twice(key: str, first: Place, place: Place) -> GraphFileError:
@@ -221,8 +238,11 @@ def _build(text: str, file: str, *, is_params: bool) -> Source:
                 raise _error(place, f"{written}: tags are not used here; write a plain value")
             waits_for_key = bool(stack) and isinstance(stack[-1].container, dict) and pending[-1] is None
             if waits_for_key:
-                key = _key(event, place, is_params=is_params)
+                key = _key(event, place)
                 container, above = stack[-1]
+                if not is_params and (fault := _key_fault(event, place, text)):
+                    complain(place, fault)
+                    refused.append((container, key))
                 if key in container and not (is_params and isinstance(container[key], dict)):
                     raise twice(key, keys[(*above, key)], place)
                 keys.setdefault((*above, key), place)
@@ -242,18 +262,30 @@ def _build(text: str, file: str, *, is_params: bool) -> Source:
                 pending.append(None)
             if len(stack) > MAX_DEPTH:
                 raise _error(place, f"nested more than {MAX_DEPTH} deep")
+    for mapping, key in refused:
+        mapping.pop(key, None)
     if not root:
         root.append(None)
         places[()] = Place(file, 1, 1)
     return Source(root[0], places, keys)
 
 
-def _key(event: Any, place: Place, *, is_params: bool) -> str:
+def _key(event: Any, place: Place) -> str:
     if not isinstance(event, yaml.ScalarEvent):
         raise _error(place, "a key must be a word, not a list or mapping")
-    if not (is_params or event.style) and not isinstance(_scalar_value(event, place), str):
-        raise _error(place, f"the key {event.value} is not text; write it in quotes: '{event.value}'")
     return str(event.value)
+
+
+def _key_fault(event: Any, place: Place, text: str) -> str:
+    """Why a key is none: it is no text. Empty for others."""
+    if event.style or isinstance(_scalar_value(event, place), str):
+        return ""
+    if found := _KEYS_ONLY.search(text.split("\n")[event.start_mark.line]):
+        return f"values have names: {{name: {found[1]}, ...}}"
+    before = _COMMA.search(text.split("\n")[event.start_mark.line][: event.start_mark.column])
+    if before and event.value.isdecimal():
+        return f"a number is written with a point: {before[1]}.{event.value}, not {before[1]},{event.value}"
+    return f"the key {event.value} is not text; write it in quotes: '{event.value}'"
 
 
 def _scalar_value(event: Any, place: Place) -> Any:

@@ -9,15 +9,15 @@ Source: launch.frontend, the grammar of its substitutions. Unlike there, words w
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 QUOTES = ("'", '"')
 _LITERAL = re.compile(r"""[^\s\\'"()$]+\Z""")
 """Text that needs no quotes as a word."""
 _SPECIAL = re.compile(r"""[\s\\'"()$]""")
-
-
+_VARIABLE = re.compile(r"\$\{ *(\w+) *\}|\$(\w+)|\{\{ *(\w+) *\}\}")
+"""A variable in a shell, or in a template."""
 _QUOTED = {mark: re.compile(rf"{mark}[^{mark}\\]*(?:\\.[^{mark}\\]*)*{mark}", re.DOTALL) for mark in QUOTES}
 """A text in quotes of either kind."""
 
@@ -101,6 +101,14 @@ def as_word(text: str) -> str:
 def quoted(text: str) -> str:
     """A text without substitutions, as one word of a substitution."""
     return text if _LITERAL.match(text) else "'" + re.sub(r"[\\']|\$(?=\()", r"\\\g<0>", text) + "'"
+
+
+def misspelt(text: str, names: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Places where a name stands as other languages have their variables, as `${rate}`; each with the name."""
+    for found in _VARIABLE.finditer(text):
+        name = next(filter(None, found.groups()))
+        if name in names:
+            yield found[0], name
 
 
 def _closing(text: str, start: int) -> int:

@@ -16,6 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from graphflow.graph.copies import copy_of
 from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
 from graphflow.graph.param_types import as_type, from_yaml
@@ -24,10 +25,11 @@ from graphflow.graph.substitution_words import UnclosedError, Word, as_word, quo
 from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
+from graphflow.reading import found_bytes
 
 MAX_DEPTH = 20
 MAX_TEXT = 100_000
-"""Characters of a text, and bytes of a file that `$(file-content ...)` takes in, or that `$(command ...)` prints."""
+"""Characters of a text, and bytes of a file that a substitution reads, or that `$(command ...)` prints."""
 ON_STDERR = ("fail", "ignore", "warn", "capture")
 """What may be done with what a program of `$(command ...)` writes to its error output."""
 
@@ -117,7 +119,8 @@ class Substitutions:
         name, _, rest = inside.strip().partition(" ")
         function = _FUNCTIONS.get(name)
         if function is None:
-            raise SubstitutionError(f"$({inside}): unknown substitution {name!r}{did_you_mean(name, _FUNCTIONS)}")
+            near = f"; write $(var {name})" if name in self._args else did_you_mean(name, _FUNCTIONS)
+            raise SubstitutionError(f"$({inside}): unknown substitution {name!r}{near}")
         try:
             written = words(rest)
         except UnclosedError as error:
@@ -223,16 +226,28 @@ class Substitutions:
 
     def _content(self, given: list[Word]) -> str:
         text = _joined(given)
-        path = self._file.parent / text
+        return self._read(text, f"$(file-content {text})")
+
+    def _read(self, path: str, written: str) -> str:
         try:
-            with path.open("rb") as file:
-                data = file.read(MAX_TEXT + 1)
-            content = data.decode()
+            return found_bytes(self._file.parent / path, MAX_TEXT).decode()
         except (OSError, ValueError) as error:
-            raise SubstitutionError(f"$(file-content {text}): {error}") from None
-        if len(data) > MAX_TEXT:
-            raise SubstitutionError(f"$(file-content {text}): the file is larger than {MAX_TEXT:,} bytes")
-        return content
+            raise SubstitutionError(f"{written}: {error}") from None
+
+    def _substituted(self, given: list[Word]) -> str:
+        """The path of a copy of a file, with its substitutions made; those in comments are left out."""
+        text = _joined(given)
+        written = f"$(substituted {text})"
+        lines = self._read(text, written).splitlines(keepends=True)
+        content = "".join("\n" if line.lstrip().startswith("#") else line for line in lines)
+        if "$(" not in content:
+            return str(self._file.parent / text)
+        if "$(substituted " in content:  # it could be of itself
+            raise SubstitutionError(f"{written}: the file has a substitution of this kind itself")
+        try:
+            return str(copy_of(self.apply(content, is_word=True), Path(text).name))
+        except OSError as error:
+            raise SubstitutionError(f"{written}: {error}") from None
 
     def _anonymous(self, given: list[Word]) -> str:
         text = _joined(given)
@@ -297,8 +312,15 @@ def _found(folder: Path | None, package: str, written: str, root: Path) -> str:
     return str(folder)
 
 
-def truth(value: Any) -> bool:
+_TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false", "off": "false"}
+"""Words for truth values that conditions do not take, each with the right one."""
+
+
+def truth(value: Any, file: str) -> bool:
     """A condition's value.
+
+    Args:
+        file: Where it stands: a launch file in Python has other comparisons.
 
     Raises:
         SubstitutionError: It is neither true nor false.
@@ -308,7 +330,10 @@ def truth(value: Any) -> bool:
         return bool(value)
     if isinstance(value, str) and value.strip().lower() in words:
         return words[value.strip().lower()]
-    raise SubstitutionError(f"expected true or false, got {value!r}")
+    meant = _TRUTHS.get(str(value).strip().lower())
+    compare = "EqualsSubstitution(..., 'text')" if file.endswith(".py") else "$(eval NAME == 'text')"
+    way = f"write {meant!r}" if meant is not None else f"compare with {compare}"
+    raise SubstitutionError(f"expected true or false, got {value!r}; {way}")
 
 
 def _is_true(text: str) -> bool:
@@ -317,6 +342,11 @@ def _is_true(text: str) -> bool:
         return bool(as_type("bool", text))
     except ValueError as error:
         raise SubstitutionError(str(error)) from None
+
+
+def _truths(texts: list[str]) -> list[bool]:
+    """The truth values of all texts, so that a wrong one is told even if others decide."""
+    return [_is_true(text) for text in texts]
 
 
 def _is_equal(left: str, right: str) -> bool:
@@ -353,16 +383,17 @@ _FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Any]] = {
     "exec-in-pkg": Substitutions._program,
     "find-exec": Substitutions._executable,
     "file-content": Substitutions._content,
+    "substituted": Substitutions._substituted,
     "anon": Substitutions._anonymous,
     "eval": Substitutions._eval,
     "command": Substitutions._command,
     "if": Substitutions._chosen,
     "as": Substitutions._typed,
     "not": lambda _, given: not _is_true(_joined(given)),
-    "and": lambda _, given: all(map(_is_true, _words(given, 2, "and A B"))),
-    "or": lambda _, given: any(map(_is_true, _words(given, 2, "or A B"))),
-    "all": lambda _, given: all(_is_true(word.text) for word in given),
-    "any": lambda _, given: any(_is_true(word.text) for word in given),
+    "and": lambda _, given: all(_truths(_words(given, 2, "and A B"))),
+    "or": lambda _, given: any(_truths(_words(given, 2, "or A B"))),
+    "all": lambda _, given: all(_truths([word.text for word in given])),
+    "any": lambda _, given: any(_truths([word.text for word in given])),
     "equals": lambda _, given: _is_equal(*_words(given, 2, "equals A B")),
     "not-equals": lambda _, given: not _is_equal(*_words(given, 2, "not-equals A B")),
 }

@@ -6,19 +6,20 @@ What a package installs is read from its `setup.py`, `setup.cfg` or `CMakeLists.
 from __future__ import annotations
 
 import ast
-import configparser
 import os
 import re
 from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
+from importlib.machinery import PathFinder
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.folders import home
-from graphflow.names import did_you_mean
+from graphflow.graph.setup_file import EntryPoint, SetupFile, entry_point, function_fault
+from graphflow.names import nearest
 from graphflow.reading import found_text
 from graphflow.system import SITE
 
@@ -34,24 +35,20 @@ _LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
 _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files that say that nothing below is a package."""
 _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
-_SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
 _INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
 _COMPILED = re.compile(r"add_executable\s*\(\s*([\w${}-]+)", re.IGNORECASE)
 _SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^()]+?)\s*\)", re.IGNORECASE)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
+_SETUPS = ("setup.py", "CMakeLists.txt", "pyproject.toml")
+"""Files of a package that may say what it has to be run."""
 KINDS = ("msg", "srv", "action")
+_NEAR_KINDS = {*KINDS, "msgs", "message", "messages", "srvs", "service", "services", "actions"}
+"""Names of folders, in any case, that are meant for definitions."""
 _ROS = ("rclpy", "launch", "launch_ros")
 """Packages of ROS's that a program of ROS's imports one of."""
 BUNDLED = Path(__file__).parents[1] / "rclpy" / "packages"
 """The packages with programs of ROS 2's that come with graphflow; they lie there as in any workspace."""
-
-
-class EntryPoint(NamedTuple):
-    """A function of a module that is an executable."""
-
-    module: str
-    function: str
 
 
 @dataclass(frozen=True)
@@ -73,19 +70,35 @@ class Package:
         return sorted(roots)
 
     @cached_property
+    def setup(self) -> SetupFile:
+        """Its `setup.py`, which need not be there."""
+        return SetupFile(self.folder / "setup.py", _text(self.folder / "setup.py"))
+
+    @cached_property
     def python_folder(self) -> Path:
         """Where its modules begin: its folder, unless `setup.py` says `package_dir={"": "src"}`."""
-        return self.folder / _package_dir(self.folder / "setup.py")
+        return self.folder / self.setup.package_dir
 
     @property
     def has_interfaces(self) -> bool:
         """Whether messages, services or actions are defined in it."""
         return any(next((self.folder / kind).rglob(f"*.{kind}"), None) is not None for kind in KINDS)
 
+    @property
+    def misplaced_interfaces(self) -> dict[Path, Path]:
+        """Definitions in folders such as `msgs/`, which nothing reads, and where each has to be."""
+        files = [(kind, file) for kind in KINDS for file in sorted(self.folder.glob(f"*/*.{kind}"))]
+        wrong = [(kind, file) for kind, file in files if file.parent.name != kind]
+        return {f: self.folder / kind / f.name for kind, f in wrong if f.parent.name.lower() in _NEAR_KINDS}
+
     @cached_property
     def entry_points(self) -> Mapping[str, EntryPoint]:
         """Its executables that are functions, by name."""
-        return {**_of_setup_py(self.folder / "setup.py"), **_of_setup_cfg(self.folder / "setup.cfg")}
+        return {**self.setup.entry_points, **self._setup_cfg[0]}
+
+    @cached_property
+    def _setup_cfg(self) -> tuple[dict[str, EntryPoint], list[str]]:
+        return _of_setup_cfg(self.folder / "setup.cfg")
 
     @cached_property
     def programs(self) -> Mapping[str, Path]:
@@ -107,29 +120,84 @@ class Package:
     @property
     def faults(self) -> list[str]:
         """What is wrong with its executables."""
-        found = [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
-        setup = self.folder / "setup.py"
-        if _computes_scripts(setup):
-            found.append(
-                f"{setup}: it computes some executables, and is only read; run their files: graphflow run FILE"
-            )
+        found = self._no_setup + self.build_faults
+        found += [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
+        found += [f"{file} must be {right}" for file, right in self.misplaced_interfaces.items()]
+        if self.setup.computes_scripts:
+            file = self.setup.file
+            found.append(f"{file}: it computes some executables, and is only read; run their files: graphflow run FILE")
         return found
 
+    @property
+    def build_faults(self) -> list[str]:
+        """Faults of its `setup.py`, and folders that a build would leave out though they run from here."""
+        line = self.setup.finds_packages
+        lacking = [f for f in self._module_folders if not (f / "__init__.py").is_file()] if line is not None else []
+        where = f"find_packages() in {self.setup.file}:{line}"
+        return [*self.setup.faults, *self._setup_cfg[1]] + [
+            f"{folder} has no __init__.py: {where} leaves such folders out of what ROS 2 builds; make an empty one: "
+            f"touch {folder / '__init__.py'}"
+            for folder in lacking
+        ]
+
+    @property
+    def _module_folders(self) -> list[Path]:
+        """The folders that a build has to know as packages of Python's: of its own name, and of its executables."""
+        own = self.python_folder / self.name
+        folders = {own} if next(own.glob("*.py"), None) is not None else set()
+        for entry in self.entry_points.values():
+            file = self.file_of(entry)
+            if file.is_file():
+                folders |= {parent for parent in file.parents if parent.is_relative_to(self.python_folder)}
+        return sorted(folders - {self.python_folder})
+
+    @property
+    def why_no_executable(self) -> str:
+        """Why an executable may be missing: the faults of `setup.py`, to stand after a sentence; or nothing."""
+        return "".join(f"; {fault}" for fault in [*self._no_setup, *self.setup.faults, *self._setup_cfg[1]])
+
+    @property
+    def _no_setup(self) -> list[str]:
+        """That it has modules, and none of the files that say what is run."""
+        has_modules = {file.name for file in (self.folder / self.name).glob("*.py")} - {"__init__.py"}
+        if not has_modules or self.entry_points or any((self.folder / name).is_file() for name in _SETUPS):
+            return []
+        return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
+
     def fault_of(self, executable: str) -> str | None:
-        """What is wrong with one: the module of its function is not there."""
+        """What is wrong with one: its module is not there, or has not its function."""
         entry = self.entry_points.get(executable)
         if entry is None:
             return None
-        file, place = self.file_of(entry), self.folder / "setup.py"
+        file, line = self.file_of(entry), self.setup.lines.get(executable)
+        place = f"{self.setup.file}:{line}" if line is not None else f"{self.folder / 'setup.cfg'}"
+        says = f"{place}: {executable} is {entry.module}:{entry.function}, and"
         if file.is_file():
+            fault = None if is_graphflows(file) else function_fault(entry, file, _text(file))
+            return None if fault is None else f"{says} {fault}"
+        top = entry.module.partition(".")[0]
+        if (folder := self.setup.renamed.get(top)) is not None:
+            return f"{says} package_dir has {top} in {folder}, which cannot be run from source; call it {top}"
+        if not (self.python_folder / top).exists() and _is_elsewhere(top, self.folder):
             return None
-        near = did_you_mean(file.stem, (), hidden=[one.stem for one in file.parent.glob("*.py")])
-        next_step = near or "; write that module, or name another one there"
-        return f"{place}: {executable} is {entry.module}:{entry.function}, and there is no {file}{next_step}"
+        if entry.module.endswith(".py"):
+            return f"{says} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
+        near = self._nearest_module(entry.module)
+        meant = "write that module, or name another one there"
+        return f"{says} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")
+
+    def _nearest_module(self, name: str) -> str | None:
+        """The module of the package that is most like a name, or has it as the last part of its own."""
+        files = (self.python_folder / self.name).rglob("*.py")
+        known = [".".join(file.relative_to(self.python_folder).with_suffix("").parts) for file in sorted(files)]
+        known = [module for module in known if not module.endswith("__init__")]
+        last = name.rpartition(".")[2]
+        return next((module for module in known if module.endswith(f".{last}")), None) or nearest(name, known)
 
     def file_of(self, entry: EntryPoint) -> Path:
-        """Where the module of an executable has to be."""
-        return self.python_folder.joinpath(*entry.module.split(".")).with_suffix(".py")
+        """Where the module of an executable is, or has to be."""
+        path = self.python_folder.joinpath(*entry.module.split("."))
+        return path / "__init__.py" if (path / "__init__.py").is_file() else path.with_suffix(".py")
 
     def path_of(self, executable: str, root: Path) -> str:
         """The module and the function of an executable, as `src.lamp.lamp.node:main`; without one for a file."""
@@ -169,8 +237,8 @@ class Workspace:
 
     @property
     def interfaces(self) -> dict[str, Path]:
-        """The folders of packages that define messages, services or actions."""
-        return {p.name: p.folder for p in self.packages.values() if p.has_interfaces}
+        """The folders of packages that define messages, services or actions, be it in folders of other names."""
+        return {p.name: p.folder for p in self.packages.values() if p.has_interfaces or p.misplaced_interfaces}
 
 
 def find_workspace(start: Path) -> Workspace:
@@ -283,108 +351,32 @@ def cmake_text(package: Package) -> str:
     return put_in(text)
 
 
-def _package_dir(file: Path) -> str:
-    """The folder that a `setup.py` has its modules in, from its own on."""
-    try:
-        tree = ast.parse(_text(file))
-    except (SyntaxError, ValueError):
-        return ""
-    for node in ast.walk(tree):
-        match node:
-            case ast.keyword(arg="package_dir", value=ast.Dict(keys=[ast.Constant(value="")], values=[value])):
-                return constant_text(value, constants(tree)) or ""
-    return ""
+def _is_elsewhere(module: str, folder: Path) -> bool:
+    """Whether a module is of another package beside a package's folder, or installed."""
+    return (folder.parent / module / "package.xml").is_file() or PathFinder.find_spec(module) is not None
 
 
-def _of_setup_cfg(file: Path) -> dict[str, EntryPoint]:
-    parser = configparser.ConfigParser()
+def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:
+    """The executables of a `setup.cfg`, and the faults of the lines that should name one."""
+    import configparser
+
+    parser, text = configparser.ConfigParser(), _text(file)
     try:
-        parser.read_string(_text(file))
+        parser.read_string(text)
         lines = parser.get("options.entry_points", "console_scripts", fallback="").splitlines()
-    except configparser.Error:
-        return {}
-    return dict(script for line in lines if (script := _script(line)) is not None)
-
-
-def _script(text: str) -> tuple[str, EntryPoint] | None:
-    found = _SCRIPT.fullmatch(text)
-    return None if found is None else (found[1], EntryPoint(found[2], found[3]))
-
-
-def _of_setup_py(file: Path) -> dict[str, EntryPoint]:
-    """The texts of the form `name = module:function` in `entry_points`; names of the file's own are put in."""
-    try:
-        tree = ast.parse(_text(file))
-    except (SyntaxError, ValueError):
-        return {}
-    known = constants(tree)
-    found = {}
-    for node in _of_console_scripts(tree):
-        text = constant_text(node, known)
-        script = None if text is None else _script(text)
-        if script is not None:
-            found[script[0]] = script[1]
-    return found
-
-
-def _computes_scripts(file: Path) -> bool:
-    """Whether `console_scripts` of a `setup.py` are not all plain to see."""
-    try:
-        tree = ast.parse(_text(file))
-    except (SyntaxError, ValueError):
-        return False
-    known = constants(tree)
-    return any(
-        not isinstance(value, (ast.List, ast.Tuple)) or any(constant_text(one, known) is None for one in value.elts)
-        for value in _under_console_scripts(tree)
-    )
-
-
-def _under_console_scripts(tree: ast.Module) -> list[ast.expr]:
-    dicts = (node for node in ast.walk(tree) if isinstance(node, ast.Dict))
-    pairs = (pair for one in dicts for pair in zip(one.keys, one.values, strict=True))
-    return [value for key, value in pairs if isinstance(key, ast.Constant) and key.value == "console_scripts"]
-
-
-def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
-    """What stands under `console_scripts`: in a literal list, or else anywhere in a file that has such a group."""
-    literal = [value for value in _under_console_scripts(tree) if isinstance(value, (ast.List, ast.Tuple))]
-    texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str))
-    tops: list[ast.AST] = [*literal] if literal else [tree] if any("console_scripts" in text for text in texts) else []
-    return (node for top in tops for node in ast.walk(top))
-
-
-def constants(tree: ast.Module) -> dict[str, str]:
-    """The names of a module that stand for texts."""
-    known: dict[str, str] = {}
-    for statement in tree.body:
-        match statement:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                text = constant_text(value, known)
-                if text is not None:
-                    known[name] = text
-    return known
-
-
-def constant_text(node: ast.AST, known: Mapping[str, str]) -> str | None:
-    """The text that an expression is; None where that is not plain to see."""
-    match node:
-        case ast.Constant(value=str(text)):
-            return text
-        case ast.Name(id=name):
-            return known.get(name)
-        case ast.JoinedStr(values=values):
-            parts = [constant_text(value, known) for value in values]
-            return None if any(part is None for part in parts) else "".join(part or "" for part in parts)
-        case ast.FormattedValue(value=value):
-            return constant_text(value, known)
-        case ast.BinOp(left=left, op=ast.Add(), right=right):
-            one, other = constant_text(left, known), constant_text(right, known)
-            return None if one is None or other is None else one + other
-        case ast.Call(func=ast.Attribute(attr="join"), args=[_, *_] as parts):
-            texts = [constant_text(part, known) for part in parts]
-            return None if None in texts else os.path.join(*map(str, texts))
-    return None
+    except configparser.ParsingError as error:
+        line = getattr(error, "lineno", 0) or error.errors[0][0]
+        return {}, [f"{file}:{line}: it is no [section] and no KEY = VALUE, so that it has no executables"]
+    except configparser.Error as error:
+        return {}, [f"{file}: {error}"]
+    written = [line.strip() for line in text.splitlines()]
+    faults = [
+        f"{file}:{written.index(line.strip()) + 1}: {line.strip()!r} names no function; write "
+        "'NAME = PACKAGE.MODULE:FUNCTION'"
+        for line in lines
+        if line.strip() and entry_point(line) is None and line.strip() in written
+    ]
+    return dict(script for line in lines if (script := entry_point(line)) is not None), faults
 
 
 def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
@@ -403,6 +395,11 @@ def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
             file = package.folder / word
             if file.is_file():
                 yield renamed or file.name, file
+
+
+def is_graphflows(file: Path) -> bool:
+    """Whether a Python file is written for graphflow, and not for rclpy."""
+    return "graphflow" in _text(file) and not uses_ros(file)
 
 
 def uses_ros(file: Path) -> bool:

@@ -8,6 +8,7 @@ Source: launch_xml, "Entity"; design article "ROS 2 Launch XML Format".
 from __future__ import annotations
 
 import pathlib
+import re
 from typing import Any
 from xml.parsers import expat
 
@@ -15,6 +16,7 @@ from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.param_types import from_yaml
 from graphflow.graph.source import MAX_BYTES, MAX_DEPTH
 from graphflow.graph.tree import Item, located
+from graphflow.reading import found_bytes
 
 LISTS = ("param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let")
 """Elements that are attributes of the one around them, as lists; any other in it is an action."""
@@ -31,13 +33,14 @@ def read_file(path: pathlib.Path, name: str) -> Item:
         GraphFileError: It cannot be read, is no XML, or has what is refused here: entities of its own, great size.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        data = found_bytes(path, MAX_BYTES)
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
-    if len(data) > MAX_BYTES:
-        raise _error(Place(name), f"the file is larger than {MAX_BYTES:,} bytes")
     return _Reader(name).read(data)
+
+
+_NO_QUOTES = re.compile(r"\s([\w-]+)\s*=\s*([^\s\"'/>]+)")
+"""An attribute whose value stands without quotes."""
 
 
 class _Reader:
@@ -56,10 +59,21 @@ class _Reader:
         try:
             self._parser.Parse(data, True)
         except expat.ExpatError as error:
-            text = expat.ErrorString(error.code)
+            text = expat.ErrorString(error.code) + self._hint(error, data)
             raise _error(Place(self._name, error.lineno, error.offset + 1), f"not valid XML: {text}") from None
         assert self._top is not None
         return self._top
+
+    def _hint(self, error: expat.ExpatError, data: bytes) -> str:
+        """A correction, as far as the mistake shows it."""
+        lines = data.decode(errors="replace").splitlines()
+        line = lines[error.lineno - 1] if error.lineno <= len(lines) else ""
+        if bare := _NO_QUOTES.search(line):
+            return f'; write quotes: {bare[1]}="{bare[2]}"'
+        if self._open and "tag" in expat.ErrorString(error.code):
+            name, attributes, _ = self._open[-1]
+            return f"; <{name}> of line {attributes.place.line} is not closed: end it with /> or </{name}>"
+        return ""
 
     @property
     def _place(self) -> Place:

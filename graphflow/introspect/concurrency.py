@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from graphflow.errors import CallTimeout, RemoteError
 from graphflow.introspect.view import View
 from graphflow.machines.explain import group_of, offer, title
 from graphflow.machines.reduction import deadlocked
@@ -25,6 +27,7 @@ from graphflow.machines.wait_graph import (
     joined,
 )
 from graphflow.machines.wait_graph_json import from_json
+from graphflow.wire.process import GROUPS, answer_key
 
 
 @dataclass
@@ -77,6 +80,30 @@ def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
         if nodes and zid not in waits.processes:
             found.append(f"NODE UNRESPONSIVE: {' and '.join(nodes)} ({process}) did not answer: {process.why_silent}")
     return sorted(found)
+
+
+def change_groups(view: View, node: str, requests: Sequence[Mapping[str, Any]], timeout: float) -> dict[str, Any]:
+    """Have a node change its groups; returns the groups as they are then, and the lines of a graph file that say so.
+
+    Args:
+        requests: See `deadlock.inspection`; at least one.
+        timeout: Seconds for each.
+
+    Raises:
+        CallTimeout: The node does not answer.
+        RemoteError: It refuses.
+    """
+    zid = view.cache.owners(node)[0].zid
+    for request in requests:
+        try:
+            answer = view.ask(answer_key(view.domain, GROUPS, zid), json.dumps(request).encode(), timeout)
+        except TimeoutError:
+            text = f"{node} did not answer within {timeout:g} s; its event loop may be blocked: see graphflow waits"
+            raise CallTimeout(text) from None
+        if answer.is_error:
+            raise RemoteError.from_payload(answer.payload, node)
+    told: dict[str, Any] = json.loads(answer.payload)
+    return told
 
 
 def stuck(waits: ConcurrencyReport) -> set[str]:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from graphflow.introspect.fields import number_path, value_at
+from graphflow.introspect.units import unit
 
 CURVES = 6
 """Curves in one picture, unless more were asked for by name."""
@@ -36,6 +37,8 @@ class Curve:
         """Seconds."""
         self.values = array("d")
         self._path = number_path(field, type_name)
+        self.unit = unit(self._path, type_name)
+        """As `m/s`; empty where the message's definition gives none."""
 
     def add(self, at: float, message: Any) -> None:
         """Take in a message; what is no number, or is not there, is a gap."""
@@ -66,8 +69,8 @@ class Curve:
 
     @property
     def legend(self) -> str:
-        """The curve's name and its last number."""
-        return f"{self.label} {self.values[-1]:.4g}" if self.values else f"{self.label} -"
+        """The curve's name, its last number, and the unit."""
+        return f"{self.label} {self.values[-1]:.4g} {self.unit}".rstrip() if self.values else f"{self.label} -"
 
 
 def chart(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 from graphflow.domain import domain_id
-from graphflow.names import is_hidden
+from graphflow.machines.domains import COMMANDS, SHOWN, by_domain
 from graphflow.transport.client import Client
-from graphflow.wire.liveliness import ADMIN_SPACE, Kind, parse_token
+from graphflow.wire.liveliness import NODES
 
 
 def nothing_here(what: str) -> str:
@@ -19,12 +17,13 @@ def nothing_here(what: str) -> str:
     here = domain_id()
     client = Client()
     try:
-        found = [parse_token(token) for token in client.tokens(f"{ADMIN_SPACE}/**")]
+        others = by_domain(client.tokens(NODES))
     finally:
         client.close()
-    visible = [e.domain for e in found if e is not None and e.kind is Kind.NODE and not is_hidden(e.node)]
-    others = Counter(domain for domain in visible if domain != here)
+    del others[here]
     if not others:
         return f"{what} in domain {here}, and none in others"
-    listing = ", ".join(f"{n} node{'s' if n > 1 else ''} in domain {d}" for d, n in sorted(others.items())[:5])
-    return f"{what} in domain {here}; there are {listing}: graphflow --domain {min(others)} ..."
+    counts = sorted(others.items())[:SHOWN]
+    is_one = counts[0][1] == 1
+    listing = ", ".join(f"{n} node{'s' if n > 1 else ''} in domain {d}" for d, n in counts)
+    return f"{what} in domain {here}; there {'is' if is_one else 'are'} {listing}: {COMMANDS.format(min(others))}"

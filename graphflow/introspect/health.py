@@ -1,5 +1,5 @@
-"""What is wrong with a graph besides its waits: nodes that share a name, hear themselves, lose messages, log in floods,
-or listen where nobody speaks; remaps that match nothing; clocks that differ.
+"""Faults of a graph besides its waits: nodes that share a name or offer the same service, hear themselves,
+lose messages, log in floods, or listen where nobody speaks; remaps that match nothing; clocks that differ.
 """
 
 from __future__ import annotations
@@ -12,9 +12,11 @@ from typing import Any, NamedTuple
 from graphflow.introspect.numbers import REPLY_BOUND
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
+from graphflow.machines.matching import shared
+from graphflow.machines.near_topics import EVERYBODYS, is_misspelt
 from graphflow.names import is_hidden, nearest
 from graphflow.system import host_name
-from graphflow.wire.liveliness import Kind
+from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import ProcessToken
 
 FLOOD = 50.0
@@ -27,7 +29,6 @@ TOLD_BOUND = 10
 """Nodes, or texts of one node, that are told."""
 SKEW = 0.1
 """Seconds by which clocks differ, beyond the time of the answer, from which on that is told."""
-_EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
 
 Counts = Mapping[tuple[str, str], Mapping[str, float]]
 """What each part of each node has counted: by node and part."""
@@ -53,12 +54,19 @@ class Look(NamedTuple):
     """When they were asked, in seconds by a clock that only goes forward."""
 
 
+def needs_second(view: View, first: Look) -> bool:
+    """Whether one look does not tell all: nodes may hear themselves, or do not say how much they log a second."""
+    logs = [numbers for (_, part), numbers in read(first.replies).items() if part == "log"]
+    return any(_own_topics(view.cache)) or any("rate" not in numbers for numbers in logs)
+
+
 def examine(view: View, first: Look, second: Look) -> Health:
-    """What is wrong, by two looks at what the processes have counted."""
-    before, now, seconds = first.replies, second.replies, second.at - first.at
+    """What is wrong, by two looks at what the processes have counted, or one and the same where that is enough."""
+    before, now, seconds = first.replies, second.replies, second.at - first.at or 1.0
     then, counts = read(before), read(now)
     faults = [
         *_twins(view),
+        *shared(view.cache),
         *_echoes(view.cache, then, counts, seconds),
         *_losses(counts),
         *_floods(then, counts, seconds),
@@ -94,10 +102,7 @@ def _twins(view: View) -> Iterator[str]:
 
 def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Iterator[str]:
     """Nodes that hear what they say."""
-    spoken = {(e.node_name, e.name, e.type) for e in cache.endpoints(Kind.PUBLISHER)}
-    for entity in cache.endpoints(Kind.SUBSCRIPTION):
-        if (entity.node_name, entity.name, entity.type) not in spoken or entity.name in _EVERYBODYS:
-            continue
+    for entity in _own_topics(cache):
         rate = _rate(then, now, (entity.node_name, f"subscription {entity.name}"), ("received",), seconds)
         said = _rate(then, now, (entity.node_name, f"publisher {entity.name}"), ("published",), seconds)
         if min(rate, said) >= ECHO:
@@ -105,6 +110,14 @@ def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Ite
                 f"{entity.node_name} hears what it says itself on {entity.name}, {rate:.0f} messages a second: remap "
                 "one of the two, or subscribe with ignore_local=True"
             )
+
+
+def _own_topics(cache: GraphCache) -> Iterator[Entity]:
+    """Subscriptions of topics that their own node publishes."""
+    spoken = {(e.node_name, e.name, e.type) for e in cache.endpoints(Kind.PUBLISHER)}
+    for entity in cache.endpoints(Kind.SUBSCRIPTION):
+        if (entity.node_name, entity.name, entity.type) in spoken and entity.name not in EVERYBODYS:
+            yield entity
 
 
 def _losses(now: Counts) -> Iterator[str]:
@@ -120,7 +133,8 @@ def _losses(now: Counts) -> Iterator[str]:
 def _floods(then: Counts, now: Counts, seconds: float) -> Iterator[str]:
     for node, part in now:
         if part == "log":
-            rate = _rate(then, now, (node, part), ("lines", "gathered"), seconds)
+            told = now[node, part].get("rate")
+            rate = _rate(then, now, (node, part), ("lines", "gathered"), seconds) if told is None else told
             if rate >= FLOOD:
                 yield f"{node} logs {rate:.0f} lines a second: say throttle=1.0 where it does"
 
@@ -190,17 +204,17 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
     """
     near: list[str] = []
     far: list[str] = []
-    for here, there, listens, speaks in (
-        (Kind.SUBSCRIPTION, Kind.PUBLISHER, "listens to", "publishes"),
-        (Kind.CLIENT, Kind.SERVICE, "calls", "offers"),
+    for here, there, verbs, speaks in (
+        (Kind.SUBSCRIPTION, Kind.PUBLISHER, ("listens to", "listen to"), "publishes"),
+        (Kind.CLIENT, Kind.SERVICE, ("calls", "call"), "offers"),
     ):
         offered = {e.name for e in cache.endpoints(there) if not is_hidden(e.name)}
         for name in sorted({e.name for e in cache.endpoints(here)} - offered):
             who = sorted({e.node_name for e in cache.endpoints(here, name) if not is_hidden(e.node_name)})
-            if not who or is_hidden(name) or name in _EVERYBODYS:
+            if not who or is_hidden(name) or name in EVERYBODYS:
                 continue
-            text = f"{' and '.join(who)} {listens} {name}, which nobody {speaks}"
-            best = next((other for other in sorted(offered) if _is_misspelt(name, other)), "")
+            text = f"{' and '.join(who)} {verbs[len(who) > 1]} {name}, which nobody {speaks}"
+            best = next((other for other in sorted(offered) if is_misspelt(name, other)), "")
             if best:
                 near.append(f"{text}; did you mean {best}?")
             else:
@@ -211,22 +225,10 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
 def _nearest(cache: GraphCache, name: str, here: Kind, there: Kind) -> str:
     """Names on offer instead of one that nobody offers: the most similar, else those of its type."""
     type_ = {e.type for e in cache.endpoints(here, name)}
-    same = sorted(
-        {e.name for e in cache.endpoints(there) if e.type in type_ and not is_hidden(e.name)} - {*_EVERYBODYS}
-    )
+    same = sorted({e.name for e in cache.endpoints(there) if e.type in type_ and not is_hidden(e.name)} - {*EVERYBODYS})
     like = nearest(name, same)
     of_its_type = [like] if like else same[:TOLD_BOUND]
     return f"; of that type there is {', '.join(of_its_type)}" if of_its_type else ""
-
-
-def _is_misspelt(name: str, other: str) -> bool:
-    """Whether two names differ in one part, by a few letters; numbers are no mistakes."""
-    ours, theirs = name.split("/"), other.split("/")
-    apart = [pair for pair in zip(ours, theirs, strict=False) if pair[0] != pair[1]]
-    if len(ours) != len(theirs) or len(apart) != 1:
-        return False
-    [(a, b)] = apart
-    return nearest(a, [b], cutoff=0.75) is not None and a.strip("0123456789") != b.strip("0123456789")
 
 
 def _rate(then: Counts, now: Counts, key: tuple[str, str], words: tuple[str, ...], seconds: float) -> float:

@@ -12,6 +12,7 @@ from graphflow.names import did_you_mean
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
 
+STARTING = 1.0  # seconds between a node's token and the tokens of its services, at most, on a busy machine
 _WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
@@ -33,7 +34,7 @@ class RemoteParameters:
         from graphflow.msgs.values import from_plain
 
         full, type_ = f"{self._node}/{service}", f"rcl_interfaces/srv/{type_name}"
-        self._view.service_types(full)
+        self._view.wait_for_service(full, min(self._timeout, STARTING))
         message = from_plain(registry.interface_class(f"{type_}_Request"), request)
         return self._view.call(full, type_, message, self._timeout, plain=True)
 

@@ -17,12 +17,13 @@ from graphflow.errors import (
     SupervisorError,
 )
 from graphflow.machines.cache import GraphCache
+from graphflow.machines.domains import COMMANDS, elsewhere
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Answer
 from graphflow.transport.client import Client
 from graphflow.wire import attachment, net, process
 from graphflow.wire.keyexpr import DataKey
-from graphflow.wire.liveliness import Kind, watch_key
+from graphflow.wire.liveliness import NODES, Kind, watch_key
 from graphflow.wire.net import NetToken
 from graphflow.wire.process import ProcessToken
 
@@ -30,6 +31,8 @@ logger = logging.getLogger("graphflow")
 
 TAKEN_SHOWN = 5
 """Names with their owners that are told when many are taken."""
+STOPPED_SHOWN = 3
+"""Stopped processes that are told."""
 PATIENCE = 0.5
 """Seconds that a node has to answer when it is asked whether it is there."""
 ASKED = {
@@ -80,10 +83,16 @@ class View:
         if wanted in nodes:
             return wanted
         visible = self.cache.nodes(hidden=False)
-        raise CallError(f"there is no node {wanted}{did_you_mean(wanted, visible) or self._empty(visible)}")
+        why = self.cache.instead(wanted, visible) or self._empty(visible)
+        raise CallError(f"there is no node {wanted}{why}{_stopped()}")
 
     def _empty(self, names: Iterable[str]) -> str:
-        return "" if names else f"; domain {self.domain} has no nodes"
+        return "" if names else self.nobody_here() or f"; domain {self.domain} has no nodes"
+
+    def nobody_here(self) -> str:
+        """`; this domain, 5, has no other nodes; domain 0 has 3: ...`, for the end of a sentence, if it is so."""
+        text = elsewhere(self.domain, self._client.tokens(NODES), COMMANDS)
+        return text and f"; {text}"
 
     def service_types(self, name: str) -> list[str]:
         """The types of a service that is offered: several, if nodes announce different ones. Anybody may announce any.
@@ -94,7 +103,10 @@ class View:
         types = sorted({server.type for server in self.cache.endpoints(Kind.SERVICE, name)})
         if types:
             return types
-        raise ServiceUnavailable(f"no node offers the service {name}{did_you_mean(name, *self.cache.offered())}")
+        client = any(e.kind is Kind.CLIENT for e in self.cache.named(name))
+        offered = self.cache.offered()
+        near = did_you_mean(name, *offered) if client else self.cache.instead(name, *offered)
+        raise ServiceUnavailable(f"no node offers the service {name}{near or self.nobody_here()}{_stopped()}")
 
     def wait_for_service(self, name: str, timeout: float) -> None:
         """Wait until a node offers the service.
@@ -131,7 +143,7 @@ class View:
         try:
             reply = self._client.call(key, request.to_bytes(), beside, timeout)
         except TimeoutError:
-            raise CallTimeout(f"{name} did not answer within {timeout:g} s") from None
+            raise CallTimeout(f"{name} did not answer within {timeout:g} s{_stopped()}") from None
         if reply is None:
             raise ServerLost(self._no_answer(name, type_name, registry.hash_of(type_name)))
         if reply.is_error:
@@ -157,12 +169,17 @@ class View:
 
     def owner(self, name: str) -> str:
         """The owner of the node `name`: the process it lives in, as far as its tokens say."""
+        token = self.process_of(name)
+        if token is not None:
+            return f"{token}: {token.command}" if token.command else str(token)
         zids = {e.zid for e in self.cache.owners(name)}
-        for zid, token in self.processes().items():
-            if zid in zids:
-                return f"{token}: {token.command}" if token.command else str(token)
         beyond = f", or beyond {self.profiles()[0]}" if self.profiles() else ""
         return f"session {', '.join(sorted(zids))}, not a graphflow process{beyond}"
+
+    def process_of(self, name: str) -> ProcessToken | None:
+        """The process that the node `name` lives in; None if that is no process of graphflow's."""
+        processes = self.processes()
+        return next((processes[e.zid] for e in self.cache.owners(name) if e.zid in processes), None)
 
     def profiles(self) -> list[NetToken]:
         """The net profiles that are in force on this machine."""
@@ -176,10 +193,7 @@ class View:
         offering = {e.zid for e in self.cache.endpoints(kind, name)}
         if not offering or not offering.isdisjoint(self.processes()):
             return ""
-        blocking = [profile for profile in self.profiles() if not profile.passes(name)]
-        if not blocking:
-            return ""
-        return f"{name} does not pass {blocking[0]}; if its node is on another machine, add it to `allow` on both"
+        return net.refusal(name, self.profiles())
 
     def is_there(self, name: str) -> bool:
         """Whether a node is more than a token, which anybody can announce.
@@ -218,7 +232,12 @@ class View:
         if kept_back := self.kept_back(name, Kind.SERVICE):
             return kept_back
         other = ", or the net profile of the other machine keeps the call back" if self.profiles() else ""
-        return f"{name}: the server went away before it answered{other}"
+        return f"{name}: the server went away before it answered{other}{_stopped()}"
+
+
+def _stopped() -> str:
+    """Processes that are forgotten by now because they are stopped, for the end of a sentence."""
+    return "".join(f"; {text}" for text in list(process.stopped().values())[:STOPPED_SHOWN])
 
 
 def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename the node in the graph file") -> None:
@@ -250,6 +269,6 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
             owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken[:TAKEN_SHOWN])
             more = f"; and {len(taken) - TAKEN_SHOWN} more" if len(taken) > TAKEN_SHOWN else ""
             raise SupervisorError(
-                f"already in domain {domain}: {owners}{more}. Stop what runs there, {hint}, or choose another domain "
-                "with --domain N"
+                f"already in domain {domain}: {owners}{more}. Stop what runs there, {hint}, or choose another domain: "
+                "graphflow --domain N ..."
             )

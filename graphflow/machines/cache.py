@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from graphflow.names import is_hidden
+from graphflow.names import did_you_mean, is_hidden
 from graphflow.wire.liveliness import Entity, Kind, parse_token
 
 ACTION_FEEDBACK = "/_action/feedback"
+ACTION_SEND_GOAL = "/_action/send_goal"
 ACTION_FEEDBACK_TYPE = "_FeedbackMessage"
 _OF_EVERY_NODE = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
 """Types of the services that nodes have without anybody writing them."""
@@ -118,6 +119,44 @@ class GraphCache:
             for name, types in self.topics(hidden=True).items()
             if name.endswith(ACTION_FEEDBACK)
         }
+
+    def served_actions(self) -> list[str]:
+        """The actions that have a server; others are known by their clients."""
+        topics = {entity.name for entity in self.endpoints(Kind.PUBLISHER)}
+        return [name for name in self.actions() if f"{name}{ACTION_FEEDBACK}" in topics]
+
+    def instead(self, name: str, known: Iterable[str], hidden: Iterable[str] = ()) -> str:
+        """The end of a sentence on a name that is not there as what it was taken for.
+
+        Args:
+            known: Names that are, one of which may have been meant; `hidden` are named only if they are near.
+        """
+        topics, services, actions = self.topics(hidden=True), self.services(hidden=True), self.actions()
+        for kind, names in (("a topic", topics), ("a service", services), ("an action", actions)):
+            if name in names:
+                return f"; it is {kind}, of type {' and '.join(names[name])}"
+        return "; it is a node" if name in self.nodes() else did_you_mean(name, known, hidden)
+
+    def unpublished(self, topic: str, known: Iterable[str] | None = None) -> str:
+        """Say that nobody publishes a topic: who waits for it, else what it is instead, or the name that was meant.
+
+        Args:
+            known: Names that may have been meant; None for those that somebody publishes.
+        """
+        if self.endpoints(Kind.SUBSCRIPTION, topic):
+            return f"topic [{topic}] has subscriptions, and no publisher yet"
+        if known is None:
+            known = [name for name in self.topics() if self.endpoints(Kind.PUBLISHER, name)]
+        return f"topic [{topic}] does not appear to be published yet{self.instead(topic, known)}"
+
+    def without_events(self, service: str) -> str:
+        """Say that a service publishes no events of its calls: what its node lacks, or the name that was meant."""
+        if not self.endpoints(Kind.SERVICE, service):
+            return f"no node offers the service {service}{self.instead(service, *self.offered())}"
+        return (
+            f"{service} does not tell of its calls yet; its node must call configure_introspection('contents'), "
+            "or give the service introspection='contents'"
+        )
 
     def _types(self, *kinds: Kind, hidden: bool) -> dict[str, list[str]]:
         found: dict[str, set[str]] = {}

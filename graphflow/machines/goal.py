@@ -20,6 +20,7 @@ Source: rcl_action goal_state_machine.c; action_msgs/srv/CancelGoal.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum, IntEnum, auto
@@ -287,6 +288,10 @@ class GoalBook:
         self.goals: dict[bytes, GoalRecord] = {}
         """Accepted goals, in the order of acceptance."""
         self.deciding: dict[bytes, GoalRecord] = {}
+        self._ended: dict[bytes, int] = {}
+        """When goals have ended whose results are kept, the first first."""
+        self._shown: deque[tuple[bytes, int]] = deque()
+        """The same of those that are in the status list."""
 
     def has_room(self) -> bool:
         """Whether one more goal may be accepted now."""
@@ -326,6 +331,9 @@ class GoalBook:
                 self.goals[goal_id] = record
         if record.phase.is_over and not before.is_over:
             record.ended_ns = now_ns
+            if goal_id in self.goals:
+                self._ended[goal_id] = now_ns
+                self._shown.append((goal_id, now_ns))
         told = (*([following.through] if following.through else []), record.status)
         return Outcome(record, following.do, told if record.status is not before.status else ())
 
@@ -336,25 +344,24 @@ class GoalBook:
 
     def active(self) -> int:
         """Goals that have not ended."""
-        return sum(1 for record in self.goals.values() if record.ended_ns is None)
+        return len(self.goals) - len(self._ended)
 
-    def shown(self, now_ns: int) -> list[tuple[bytes, GoalRecord]]:
-        """The goals in the status list: those that have not ended, or ended recently."""
-        return [
-            (goal_id, record)
-            for goal_id, record in self.goals.items()
-            if record.ended_ns is None or now_ns - record.ended_ns <= self._show_ns
-        ]
+    def hide(self, now_ns: int) -> list[bytes]:
+        """Take goals out of the status list that ended long ago or are forgotten; returns their ids, each once."""
+        hidden = []
+        while self._shown and (now_ns - self._shown[0][1] > self._show_ns or self._shown[0][0] not in self.goals):
+            hidden.append(self._shown.popleft()[0])
+        return hidden
 
     def expire(self, now_ns: int) -> list[bytes]:
         """Forget goals whose results were kept long enough; returns their ids."""
-        ended = sorted(
-            ((record.ended_ns, goal_id) for goal_id, record in self.goals.items() if record.ended_ns is not None)
-        )
-        surplus = len(ended) - self._keep_most
-        gone = [goal_id for i, (when, goal_id) in enumerate(ended) if i < surplus or now_ns - when > self._keep_ns]
-        for goal_id in gone:
-            del self.goals[goal_id]
+        gone = []
+        while self._ended:
+            goal_id, when = next(iter(self._ended.items()))
+            if len(self._ended) <= self._keep_most and now_ns - when <= self._keep_ns:
+                break
+            del self._ended[goal_id], self.goals[goal_id]
+            gone.append(goal_id)
         return gone
 
     def to_cancel(self, goal_id: bytes, stamp_ns: int) -> tuple[CancelCode, list[bytes]]:

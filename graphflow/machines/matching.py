@@ -8,14 +8,16 @@ Source: rmw_zenoh graph_cache (matching by data key); OMG DDS 1.4, 2.2.3 (reques
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from graphflow.qos import incompatible
+from graphflow.machines.cache import ACTION_SEND_GOAL
+from graphflow.names import is_hidden
+from graphflow.qos import incompatible, on_offer
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.profile import PROFILES, advice
 
-_COUNTERPARTS = {
+COUNTERPARTS = {
     Kind.PUBLISHER: Kind.SUBSCRIPTION,
     Kind.SUBSCRIPTION: Kind.PUBLISHER,
     Kind.SERVICE: Kind.CLIENT,
@@ -27,6 +29,8 @@ _WORDS = {
     Kind.SERVICE: "server",
     Kind.CLIENT: "client",
 }
+SHARED_SHOWN = 4
+"""Services, and nodes that share them, that are named."""
 
 
 class Verdict(NamedTuple):
@@ -47,7 +51,7 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
         profile: The wire profile of this process.
         where: How the complaint says whose `own` is.
     """
-    if other.name != own.name or other.kind is not _COUNTERPARTS.get(own.kind):
+    if other.name != own.name or other.kind is not COUNTERPARTS.get(own.kind):
         return None
     who, what = f"the {_WORDS[other.kind]} of {other.node_name}", f"the {_WORDS[own.kind]} {where}"
     if other.type != own.type:
@@ -74,7 +78,8 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
         True,
         policies,
         f"{own.name}: the publisher of {offered.node_name} offers less than the subscription of "
-        f"{requested.node_name} asks for: {', '.join(policies)}. Over Zenoh messages pass; over DDS none would",
+        f"{requested.node_name} asks for: {', '.join(policies)}. Over Zenoh messages pass; over DDS none would: "
+        f"have the subscription ask for {on_offer(offered.qos, policies)}",
     )
 
 
@@ -82,7 +87,7 @@ def complaints(entities: Iterable[Entity], profile: str = PROFILES[0]) -> list[s
     """What is wrong between any two endpoints of a graph, each pair once."""
     by_name: dict[str, list[Entity]] = {}
     for entity in entities:
-        if entity.kind in _COUNTERPARTS:
+        if entity.kind in COUNTERPARTS:
             by_name.setdefault(entity.name, []).append(entity)
     found: dict[str, None] = {}
     for same in by_name.values():
@@ -93,6 +98,33 @@ def complaints(entities: Iterable[Entity], profile: str = PROFILES[0]) -> list[s
                     if judged is not None and judged.complaint:
                         found[judged.complaint] = None
     return list(found)
+
+
+def shared(entities: Iterable[Entity]) -> list[str]:
+    """Services and actions that nodes of several names offer: a sentence for each group of such nodes."""
+    nodes: dict[str, set[str]] = {}
+    for entity in entities:
+        name = entity.name.removesuffix(ACTION_SEND_GOAL)
+        if entity.kind is Kind.SERVICE and not is_hidden(name):
+            nodes.setdefault(name, set()).add(entity.node_name)
+    names: dict[tuple[str, ...], list[str]] = {}
+    for name in sorted(nodes):
+        if len(nodes[name]) > 1:
+            names.setdefault(tuple(sorted(nodes[name])), []).append(name)
+    return [_sharing(who, what) for who, what in names.items()]
+
+
+def _sharing(nodes: Sequence[str], names: Sequence[str]) -> str:
+    is_one = len(names) == 1
+    first = ", ".join(names[:SHARED_SHOWN]) + (f" and {len(names) - SHARED_SHOWN} more" * (len(names) > SHARED_SHOWN))
+    shown = nodes if len(nodes) <= SHARED_SHOWN else [*nodes[:SHARED_SHOWN], f"{len(nodes) - SHARED_SHOWN} more"]
+    way = (
+        f"remap one: --ros-args -r {names[0].rpartition('/')[2]}:=NAME, or -r" if is_one else "move one: --ros-args -r"
+    )
+    return (
+        f"{first} {'is' if is_one else 'are'} offered by {', '.join(shown[:-1])} and {shown[-1]}: each call reaches "
+        f"all of them; {way} __ns:=/NAMESPACE"
+    )
 
 
 def _short(hash_: str) -> str:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from graphflow.machines.reduction import deadlocked
+from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.rings import Deadlock, Edge
 from graphflow.machines.wait_graph import GroupView, QueueView, SetBy, WaitGraph
 
@@ -22,6 +23,31 @@ class Move(NamedTuple):
     def command(self) -> str:
         """The shell command that makes the move."""
         return f"graphflow groups move {self.node} {' '.join(self.handlers)} {self.group}"
+
+    @property
+    def title(self) -> str:
+        """The move in words."""
+        own = "a group of its own" if len(self.handlers) == 1 else "a group of their own"
+        return f"give {' and '.join(self.handlers)} of {self.node} {own}"
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Settings of the group besides its handlers: none."""
+        return {}
+
+    @property
+    def requests(self) -> list[dict[str, Any]]:
+        """The requests to the node: see `deadlock.inspection`."""
+        return [{"node": self.node, "handler": handler, "group": self.group} for handler in self.handlers]
+
+    @property
+    def caution(self) -> str:
+        """A caution for the user: none."""
+        return ""
+
+    def made_in(self, regrouping: Regrouping) -> Regrouping:
+        """The node's groups, as a graph file has them with this move."""
+        return regrouping.moved(self.handlers, self.group)
 
 
 def moves(deadlock: Deadlock, graph: WaitGraph) -> list[Move]:

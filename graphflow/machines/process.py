@@ -22,6 +22,7 @@ Source: docs/architecture.md, "The rules of processes"; systemd's and Erlang's s
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -30,6 +31,8 @@ START_LIMIT = 20.0
 """Seconds a process may take from its start until all its nodes are ready."""
 STOP_LIMIT = 5.0
 """Seconds between SIGTERM and SIGKILL."""
+BLOCKED_STOP_LIMIT = 0.5
+"""The same for a process whose event loop is blocked by handlers that are to run in threads: it cannot clean up."""
 
 
 class State(Enum):
@@ -199,6 +202,11 @@ class Order:
             if any(need.what != "ready" and need.name in processes for need in needs):
                 found.add(name)
         return found
+
+    def lacking(self, name: str, met: AbstractSet[Need]) -> str:
+        """The unmet needs of a name, as a list in words."""
+        needs = sorted(self.after[name] - met)
+        return ", ".join(need.name if need.what == "ready" else f"the end of {need.name}" for need in needs)
 
     def stop_layers(self, names: Iterable[str]) -> list[list[str]]:
         """Names in the order of stopping: last started first, those of one layer together."""

@@ -12,6 +12,9 @@ from typing import Any
 from graphflow.interface import GroupChange
 from graphflow.machines.clauses import WIDTH
 
+THREADS = "blocking"
+"""The group of handlers that are put in threads."""
+
 
 @dataclass(frozen=True, slots=True)
 class Regrouping:
@@ -42,6 +45,10 @@ class Regrouping:
             here, handlers=(*here.handlers, *handlers), thread=here.thread if thread is None else thread
         )
         return replace(self, groups=left)
+
+    def in_threads(self, handlers: Sequence[str]) -> Regrouping:
+        """The same with handlers in a group whose `def` handlers run in threads."""
+        return self.moved(handlers, THREADS, thread=True)
 
     def limited(self, group: str, limit: int | None) -> Regrouping:
         """The same with another limit of a group."""

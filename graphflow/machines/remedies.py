@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from graphflow.machines.clauses import filled
+from graphflow.machines.group_fixes import Limit, Thread, larger
 from graphflow.machines.moves import moves
 from graphflow.machines.rclpy_remedies import in_rclpys_words, members_of
-from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.rings import Deadlock, Edge
 from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueView, SetBy, WaitGraph
 
@@ -81,8 +81,8 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
     if queue.has_answers:
         yield _text("let replies through:", f"declare the client of {queue.handler} without group=")
     if group.name:
-        if group.limit is not None and not isinstance(edge.via, SetBy):
-            yield _larger(group, sum(group.id in a.holds for a in graph.activities.values()) + 1, graph)
+        if (limit := larger(edge, graph)) is not None:
+            yield _larger(group, limit, graph)
     elif queue.label.startswith("action "):
         yield _text("let several goals run at a time:", f"policy='parallel' where {queue.handler} is declared")
     elif not isinstance(edge.via, SetBy):
@@ -108,8 +108,10 @@ def _off_the_loop(edge: Edge, graph: WaitGraph) -> Iterator[str]:
     blocker = graph.activities[edge.to]
     wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
     yield _text(f"{wait} in {blocker.line}")
+    if blocker.is_async:  # only a `def` handler can run in a thread
+        return
     handler = blocker.handler
-    regrouping = graph.regrouping(blocker.node).moved([handler], "blocking", thread=True)
+    regrouping = Thread(blocker.node, (handler,)).made_in(graph.regrouping(blocker.node))
     yield _text(
         f"let {handler} run in a thread,",
         regrouping.where,
@@ -128,12 +130,12 @@ def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
         )
 
 
-def _larger(group: GroupView, limit: int, graph: WaitGraph) -> str:
-    made = f"Group({limit}{', thread=True' if group.is_threaded else ''})"
+def _larger(group: GroupView, limit: Limit, graph: WaitGraph) -> str:
+    made = f"Group({limit.limit}{', thread=True' if group.is_threaded else ''})"
     text = "allow more runs, if its handlers share no state"
     if not group.is_declared:
         return _text(f"{text}:", f"{made} where {group.node} makes the group called {group.name} here")
-    regrouping: Regrouping = graph.regrouping(group.node).limited(group.name, limit)
+    regrouping = limit.made_in(graph.regrouping(group.node))
     yaml = regrouping.lines(group.node, "      ")
     return _text(f"{text},", regrouping.where, yaml=yaml, instead=(f"or in the class: {group.name} = {made}",))
 

@@ -4,39 +4,38 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
+from typing import Any, ClassVar, Generic, Self, TypeVar
+
+from msgspec import Struct
 
 from graphflow.names import did_you_mean
+from graphflow.wire.cdr import Codec
 from graphflow.wire.schema import Message as Schema
-
-if TYPE_CHECKING:
-    import inspect
-
-    from graphflow.wire.cdr import Codec
+from graphflow.wire.unchecked import LENT, unchecked
 
 
-class _NoField(AttributeError):
-    """A message has no such field; what it has instead is looked up when somebody reads that."""
+def lent_or_missing(self: Message, name: str) -> object:
+    """`__getattr__` of messages with arrays: a field that was lent to receivers (see `wire.lending`) gets a copy.
 
-    def __str__(self) -> str:
-        message: Any = self.obj
-        return no_field(type(message), str(self.name))
+    Other classes have none: on Python 3.11 it would make the reading of each field seven times slower.
 
-
-_NoField.__name__ = _NoField.__qualname__ = "AttributeError"  # which is what it is to whoever reads of it
-
-
-class _Signature:
-    """What `help` and editors show of a message's constructor: its fields, and not what it refuses."""
-
-    def __get__(self, instance: object, cls: Any) -> inspect.Signature:
-        import inspect
-
-        taken = inspect.signature(cls.__init__).parameters.values()
-        return inspect.Signature([p for p in taken if p.kind is p.KEYWORD_ONLY])
+    Raises:
+        AttributeError: There is no such field.
+    """
+    lent = None if name == LENT else self._lent  # type: ignore[attr-defined]  # of messages with arrays
+    if lent is None or name not in lent:
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
+    setattr(self, name, lent.pop(name).copy())
+    return object.__getattribute__(self, name)
 
 
-class Message:
+def copy_of_arrays(self: Message) -> Message:
+    """`__copy__` of messages with arrays: it has those that were lent, too."""
+    copy: Message = unchecked(*self.__reduce__()[1])
+    return copy
+
+
+class Message(Struct, eq=False):
     """A ROS 2 message. Classes are made from definitions; see `graphflow.msgs`.
 
     The constructor takes fields by keyword, checks them, and widens: integers for floats, sequences for arrays,
@@ -47,8 +46,6 @@ class Message:
     names that no definition is known to use.
     """
 
-    __slots__ = ()
-    __signature__ = _Signature()
     SCHEMA: ClassVar[Schema]
     NESTED: ClassVar[Mapping[str, type[Message]]]
     """Classes of the message types that the fields hold, by name."""
@@ -78,22 +75,6 @@ class Message:
         """Field names and types as ROS 2 prints them."""
         return {f.name: str(f.type).replace("/msg/", "/") for f in cls.SCHEMA.fields}
 
-    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
-
-        def __getattr__(self, name: str) -> object:
-            """Raise AttributeError: this is called for what is not there.
-
-            A field that was lent to receivers (see `wire.lending`) gets a copy of its own.
-            """
-            try:
-                lent = object.__getattribute__(self, "_lent")
-            except AttributeError:
-                lent = {}
-            if name not in lent:
-                raise _NoField(name=name, obj=self)
-            setattr(self, name, lent.pop(name).copy())
-            return object.__getattribute__(self, name)
-
     def __eq__(self, other: object) -> bool:
         if other.__class__ is not self.__class__:
             return NotImplemented
@@ -105,18 +86,9 @@ class Message:
         values = ", ".join(f"{f.name}={_text(getattr(self, f.name))}" for f in self.SCHEMA.fields)
         return f"{self.SCHEMA.name.replace('/', '.')}({values})"
 
-    def __copy__(self) -> Self:
+    def __reduce__(self) -> tuple[Any, ...]:
         # Not through the constructor: a received message can break a bound, and is copied as it is.
-        copy = object.__new__(type(self))
-        copy.__setstate__(self.__getstate__())
-        return copy
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {f.name: getattr(self, f.name) for f in self.SCHEMA.fields}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        for name, value in state.items():
-            setattr(self, name, value)
+        return unchecked, (type(self), *(getattr(self, f.name) for f in self.SCHEMA.fields))
 
 
 def name_of(cls: type[Message]) -> str:

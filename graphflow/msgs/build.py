@@ -1,7 +1,7 @@
 """Makes Python classes from schemas.
 
-A class's constructor is written for its fields, so that the usual case (floats where floats belong) costs one type
-test per field; everything else goes through `values.convert`.
+A message is a struct of msgspec's, made in C. What checks a new one is written for its fields, so that the usual case
+(floats where floats belong) costs one type test per field; everything else goes through `values.convert`.
 """
 
 from __future__ import annotations
@@ -9,12 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from msgspec import defstruct
+from msgspec import field as struct_field
+
 from graphflow.msgs import base
 from graphflow.msgs.values import Nested, convert
 from graphflow.msgs.views import VIEWS
 from graphflow.times import DurationFields, TimeFields
 from graphflow.wire import schema
-from graphflow.wire.schema import INTEGER_RANGES, Field, Message
+from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType, Message
+from graphflow.wire.unchecked import LENT
 
 if TYPE_CHECKING:
     from graphflow.wire.cdr import Codec
@@ -24,8 +28,6 @@ Classes = Callable[[str], type]
 
 ARITHMETIC = {"builtin_interfaces/msg/Time": (TimeFields,), "builtin_interfaces/msg/Duration": (DurationFields,)}
 """Message types that can be added, subtracted and compared."""
-_EXACT = {"bool": bool, "float64": float, "string": str}
-"""Types whose values need no further check when their Python type is exactly this and they have no bound."""
 
 
 def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]) -> type[base.Message]:
@@ -39,18 +41,30 @@ def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]
     nested: Nested = {f.type.base: classes(f.type.base) for f in message.fields if not f.type.is_primitive}
     has_arrays = any(f.type.array and f.type.base in schema.NUMERIC for f in message.fields)
     namespace: dict[str, Any] = {
-        "__slots__": (*(f.name for f in message.fields), *(["_lent"] if has_arrays else [])),
-        "__module__": f"graphflow.msgs.{package}.{kind}",
         "__doc__": f"{message.name}: {', '.join(f'{f.type} {f.name}' for f in message.fields) or 'no fields'}.",
         "SCHEMA": message,
         "NESTED": nested,
         "CODEC": staticmethod(codec),
-        "__init__": _constructor(message, nested),
         **{c.name: c.value for c in message.constants},
     }
+    if message.fields:
+        namespace["__post_init__"] = _check(message, nested)
+    if has_arrays:
+        namespace |= {"__getattr__": base.lent_or_missing, "__copy__": base.copy_of_arrays}
     if message.name in VIEWS:
         namespace["to_numpy"] = VIEWS[message.name]
-    return type(name, (*ARITHMETIC.get(message.name, ()), base.Message), namespace)
+    fields = [(f.name, Any, _default(f, nested)) for f in message.fields]
+    made: Any = defstruct(
+        name,
+        [*fields, (LENT, Any, None)] if has_arrays else fields,
+        bases=(*ARITHMETIC.get(message.name, ()), base.Message),
+        module=f"graphflow.msgs.{package}.{kind}",
+        namespace=namespace,
+        kw_only=True,
+        eq=False,
+    )
+    cls: type[base.Message] = made
+    return cls
 
 
 def service_class(service: schema.Service, classes: Classes) -> type[base.Service[Any, Any]]:
@@ -85,46 +99,51 @@ def action_class(action: schema.Action, classes: Classes) -> type[base.Action[An
     )
 
 
-def _constructor(message: Message, nested: Nested) -> Callable[..., None]:
-    # No field can have a name in capitals, so none hides what the constructor refers to.
-    names: dict[str, Any] = {"CONVERT": convert, "ABSENT": _ABSENT, "REFUSE": _refuse}
-    parameters, lines = [], []
+def _check(message: Message, nested: Nested) -> Callable[[base.Message], None]:
+    """Writes `__post_init__`, which checks and converts what the constructor was given."""
+    # No field can have a name in capitals, so none hides what the function refers to.
+    names: dict[str, Any] = {"CONVERT": convert, "CONVERT_ALL": _convert_all, "ABSENT": _ABSENT}
+    tests, lines, single = [], [], []
     for i, field in enumerate(message.fields):
-        name, type_ = field.name, field.type
-        names[f"F{i}"] = field
-        if type_.is_primitive and not type_.array:
-            names[f"D{i}"] = default = _scalar_default(field)
-            parameters.append(f"{name}=D{i}")
-            exact = _EXACT.get(type_.base) if not type_.string_bound else None
-            if exact is not None and type(default) is exact:
-                names[f"E{i}"] = exact
-                lines.append(f"SELF.{name} = {name} if {name}.__class__ is E{i} else CONVERT(F{i}, {name}, SELF)")
-            else:
-                lines.append(f"SELF.{name} = {name} if {name} is D{i} else CONVERT(F{i}, {name}, SELF)")
+        value = f"SELF.{field.name}"
+        if field.type.array:
+            names[f"F{i}"], names[f"M{i}"] = field, _array_factory(field, nested)
+            lines.append(f"{value} = M{i}() if {value} is ABSENT else CONVERT(F{i}, {value}, SELF)")
         else:
-            parameters.append(f"{name}=ABSENT")
-            names[f"M{i}"] = make = _factory(field, nested)
-            if not type_.is_primitive and not type_.array:
-                names[f"E{i}"] = make
-                lines.append(f"if {name} is ABSENT: SELF.{name} = M{i}()")
-                lines.append(f"elif {name}.__class__ is E{i}: SELF.{name} = {name}")
-                lines.append(f"else: SELF.{name} = CONVERT(F{i}, {name}, SELF)")
-            else:
-                lines.append(f"SELF.{name} = M{i}() if {name} is ABSENT else CONVERT(F{i}, {name}, SELF)")
-    head = f"def __init__({', '.join(['SELF, /, *ARGUMENTS', *parameters, '**OTHERS'])}):"
-    source = "\n    ".join([head, "if ARGUMENTS or OTHERS: REFUSE(SELF, OTHERS)", *lines])
+            single.append(field)
+            names[f"C{i}"] = nested.get(field.type.base)
+            tests.append(_fits(field.type, value) if field.type.is_primitive else f"{value}.__class__ is C{i}")
+    if tests:
+        names["FIELDS"] = tuple(single)
+        lines.insert(0, f"if not ({' and '.join(tests)}): CONVERT_ALL(FIELDS, SELF)")
+    source = "\n    ".join(["def __post_init__(SELF):", *lines])
     exec(compile(source, f"<{message.name}>", "exec"), names)  # noqa: S102 - written above from a checked schema
-    init: Callable[..., None] = names["__init__"]
-    return init
+    check: Callable[[base.Message], None] = names["__post_init__"]
+    return check
 
 
-def _refuse(message: base.Message, others: dict[str, Any]) -> None:
-    """Raise TypeError for arguments that are no fields."""
-    cls = type(message)
-    if not others:
-        example = f"{cls.SCHEMA.fields[0].name}=..." if cls.SCHEMA.fields else ""
-        raise TypeError(f"{base.name_of(cls)} takes its fields by name: {cls.__name__.rpartition('_')[2]}({example})")
-    raise TypeError(base.no_field(cls, next(iter(others))))
+def _fits(type_: FieldType, value: str) -> str:
+    """An expression that is true for the usual values of a type, and for none that needs to be converted."""
+    match type_.base:
+        case "bool":
+            return f"{value}.__class__ is bool"
+        case "float64":
+            return f"{value}.__class__ is float"
+        case "float32":
+            return f"{value}.__class__ is float and -1e38 < {value} < 1e38"
+        case "string" if not type_.string_bound:
+            return f"{value}.__class__ is str"
+        case "string" | "wstring":
+            bound = f" and len({value}) <= {type_.string_bound}" if type_.string_bound else ""
+            return f"{value}.__class__ is str and {value}.isascii(){bound}"
+        case integer:
+            low, high = INTEGER_RANGES[integer]
+            return f"{value}.__class__ is int and {low} <= {value} <= {high}"
+
+
+def _convert_all(fields: tuple[Field, ...], message: base.Message) -> None:
+    for field in fields:
+        setattr(message, field.name, convert(field, getattr(message, field.name), message))
 
 
 class _Absent:
@@ -135,7 +154,15 @@ class _Absent:
 _ABSENT = _Absent()
 
 
-def _scalar_default(field: Field) -> Any:
+def _default(field: Field, nested: Nested) -> Any:
+    """The default of a field, as msgspec takes it. That of an array is made by `__post_init__`."""
+    if field.type.array:
+        return _ABSENT
+    if not field.type.is_primitive:
+        cls: Any = nested[field.type.base]
+        is_flat = all(f.type.is_primitive and not f.type.array for f in cls.SCHEMA.fields)
+        # A copy is as new as a new one where all values are constants, and needs no check.
+        return struct_field(default_factory=cls().__copy__ if is_flat else cls)
     if field.default is not None:
         return field.default
     if field.type.base in INTEGER_RANGES:
@@ -143,11 +170,9 @@ def _scalar_default(field: Field) -> Any:
     return {"string": "", "wstring": "", "bool": False}.get(field.type.base, 0.0)
 
 
-def _factory(field: Field, nested: Nested) -> Callable[[], Any]:
-    """Makes the default of an array or a nested message."""
+def _array_factory(field: Field, nested: Nested) -> Callable[[], Any]:
+    """Makes the default of an array."""
     type_ = field.type
-    if not type_.is_primitive and not type_.array:
-        return nested[type_.base]
     if type_.base in schema.NUMERIC:
         default, count = field.default, type_.size if type_.array == "fixed" else 0
 

@@ -41,6 +41,10 @@ class _InterfaceFinder:
             elsewhere = f"; there is graphflow.msgs.{package}.{others[0]}.{rest[1]}" if others else ""
             hint = elsewhere or registry.misplaced(package, rest[1]) or did_you_mean(rest[1], known)
             raise ImportError(f"package {package!r} has no {rest[0]} {rest[1]!r}{hint}", name=fullname)
+        if len(rest) == 1 and rest[0] not in registry.KINDS:  # `from package import Name`, without the kind
+            kinds = [kind for kind in registry.KINDS if rest[0] in registry.names_in(package, kind)]
+            if kinds:
+                raise ImportError(f"write from {_ROOT}{package}.{kinds[0]} import {rest[0]}", name=fullname)
         if rest and (len(rest) > 1 or rest[0] not in registry.KINDS):
             return None
         return importlib.machinery.ModuleSpec(fullname, self, is_package=True)  # type: ignore[arg-type]  # a loader by its methods

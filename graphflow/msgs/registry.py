@@ -11,7 +11,7 @@ from typing import Any
 from graphflow.errors import InterfaceError, UnknownInterface
 from graphflow.msgs import build
 from graphflow.msgs.values import checked
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 from graphflow.reading import found_text
 from graphflow.wire import idl
 from graphflow.wire.cdr import Codec
@@ -19,10 +19,13 @@ from graphflow.wire.codegen import FORMATS, Style, Types
 from graphflow.wire.described import DESCRIBING, VALUES_BOUND, verified
 from graphflow.wire.extent import extent
 from graphflow.wire.profile import wire_profile, wire_type
-from graphflow.wire.schema import Action, Interface, Message, Service
+from graphflow.wire.schema import PRIMITIVES, Action, Interface, Message, Service
 from graphflow.wire.typehash import referenced, type_hash
 
 KINDS = ("msg", "srv", "action")
+CALLED = {"msg": "a message", "srv": "a service", "action": "an action"}
+HAVING_SHOWN = 4
+"""Types of the same name that are named."""
 BUNDLED = Path(__file__).parent
 _SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
 """Kilted moved turtlesim's interfaces to a package of their own: different names on the wire, the same text."""
@@ -137,7 +140,7 @@ def packages() -> list[str]:
     """The names of all packages that can be found."""
     _look_further()
     found = {f.name for root in roots() for f in root.iterdir() if f.is_dir() and package_folders(f.name)}
-    found |= _packages.keys()
+    found |= {name for name in _packages if package_folders(name)}
     found |= {alias for alias, name in _SAME_DEFINITIONS.items() if name in found}
     return sorted(found)
 
@@ -153,33 +156,79 @@ def full_name(text: str) -> str:
     Raises:
         UnknownInterface: There is no such interface, or the short form fits several kinds.
     """
+    if _is_file(text) or text.partition("/")[0] in KINDS:
+        raise UnknownInterface(f"{text!r} is not an interface name; {_meant(text)}")
     parts = text.replace(".", "/").split("/")
-    if len(parts) == 3:
+    if len(parts) == 3 and parts[0]:
         definition("/".join(parts))
         return "/".join(parts)
-    if len(parts) != 2:
-        raise UnknownInterface(
-            f"{text!r} is not an interface name; write package/msg/Name, for example std_msgs/msg/String"
-        )
+    if len(parts) != 2 or not parts[0]:
+        raise UnknownInterface(f"{text!r} is not an interface name; {_meant(text)}")
     package, name = parts
     found = [kind for kind in KINDS if name in names_in(package, kind) or f"{package}/{kind}/{name}" in _given]
     if not found:
-        raise UnknownInterface(_unknown(package, name, [n for k in KINDS for n in names_in(package, k)]))
+        raise UnknownInterface(_unknown(package, "", name, [n for k in KINDS for n in names_in(package, k)]))
     if len(found) > 1:
         raise UnknownInterface(f"{text!r} is a {' and a '.join(found)}; write {package}/{found[0]}/{name}")
     return f"{package}/{found[0]}/{name}"
 
 
-def _unknown(package: str, name: str, known: list[str]) -> str:
+def having(name: str) -> list[str]:
+    """The types of that name in all packages, a few of them; `Twist` is `geometry_msgs/msg/Twist`."""
+    found = (f"{package}/{kind}/{name}" for package in packages() for kind in KINDS if name in names_in(package, kind))
+    return [one for one in found if one.partition("/")[0] not in _SAME_DEFINITIONS][:HAVING_SHOWN]
+
+
+def _is_file(text: str) -> bool:
+    """Whether a text ends as the file of a definition does, and is no module of Python's such as `std_msgs.msg`."""
+    stem, _, ending = text.rpartition(".")
+    return ending in KINDS and stem != "" and not package_folders(stem)
+
+
+def _meant(text: str) -> str:
+    """How the type is written that a text may be meant as, that is none: a name alone, or that of a file."""
+    stem, kind = text.rpartition(".")[::2] if _is_file(text) else (text, "")
+    *above, name = ["", *(part for part in stem.split("/") if part not in KINDS)]
+    if not name.isidentifier():
+        return "write package/msg/Name, for example std_msgs/msg/String"
+    inside = [f"{p}/{k}/{name}" for p in above[-1:] for k in KINDS if name in names_in(p, k)]
+    found = inside or having(name) or having(nearest(name, _all_names(), cutoff=0.8) or "")
+    if found:
+        return f"did you mean {' or '.join(map(repr, found))}?"
+    return f"write package/{kind}/{name}" if kind else "write package/msg/Name, for example std_msgs/msg/String"
+
+
+def _all_names() -> set[str]:
+    return {name for package in packages() for kind in KINDS for name in names_in(package, kind)}
+
+
+def _unknown(package: str, kind: str, name: str, known: list[str]) -> str:
     if not package_folders(package):
         return f"there is no interface package {package!r}{no_kinds(package) or did_you_mean(package, packages())}"
+    found = [other for other in KINDS if name in names_in(package, other)]
+    if found:
+        written = f"{package}/{kind}/{name}"
+        right = f"{package}/{found[0]}/{name}"
+        return f"there is no {written}; " + (
+            f"{name} is {CALLED[found[0]]}: {right}" if kind in KINDS else f"write {right}"
+        )
+    elsewhere = [] if misplaced(package, name) else having(name)
+    if elsewhere and nearest(name, known, cutoff=0.8) is None:
+        field = [f"{name.lower()} (of a field)"] if name.lower() in PRIMITIVES else []
+        return f"package {package!r} has no interface {name!r}; did you mean {' or '.join(field + elsewhere)}?"
     return f"package {package!r} has no interface {name!r}{misplaced(package, name) or did_you_mean(name, known)}"
 
 
 def no_kinds(package: str) -> str:
-    """What a package's folder lacks, if there is one without definitions; else empty."""
+    """What a package's folder lacks, be it definitions or the package's name; empty if there is none."""
+    if package in _packages:
+        file = next((f for kind in KINDS for f in sorted(_packages[package].glob(f"*/*.{kind}"))), None)
+        return f"; {file} must be {_packages[package] / file.suffix[1:] / file.name}" if file is not None else ""
     found = [root / package for root in roots() if package.isidentifier() and (root / package).is_dir()]
-    return f"; {found[0]} has no folder msg, srv or action" if found else ""
+    if found:
+        return f"; {found[0]} has no folder msg, srv or action"
+    alike = (folder for root in roots() for folder in root.iterdir() if folder.name.replace("-", "_") == package)
+    return next((f"; rename {folder} to {package}" for folder in alike if folder.is_dir()), "")
 
 
 def misplaced(package: str, name: str) -> str:
@@ -214,7 +263,7 @@ def definition_file(name: str) -> Path:
             deeper = next((folder / kind).rglob(path.name), None)  # folders below are no part of the name
             if deeper is not None:
                 return deeper
-    raise UnknownInterface(_unknown(package, base, names_in(package, kind)))
+    raise UnknownInterface(_unknown(package, kind, base, names_in(package, kind)))
 
 
 @cache

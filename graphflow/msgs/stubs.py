@@ -72,7 +72,7 @@ def _imports(body: str) -> str:
     ours += ["from graphflow import times"] if "times." in body else []
     numpy = ["import numpy as np", "import numpy.typing as npt"] if "npt." in body else []
     standard = _import("collections.abc", ("Mapping", "Sequence"), words)
-    standard += _import("typing", ("Any", "Final", "TypeAlias"), words)
+    standard += _import("typing", ("Any", "ClassVar", "Literal", "TypeAlias"), words)
     return "\n\n".join("\n".join(group) for group in (standard, numpy, sorted(ours)) if group)
 
 
@@ -112,7 +112,7 @@ def _holder(name: str, base: str, parts: tuple[str, ...], more: tuple[str, ...] 
 
 def _message(message: Message) -> str:
     module, _, name = message.name.rpartition("/")
-    constants = (f"{c.name}: Final = {_literal(c.value)}" for c in message.constants)
+    constants = (f"{c.name}: ClassVar[{_constant(c.value)}]" for c in message.constants)
     attributes = (f"{f.name}: {_held(f.type, module)}" for f in message.fields)
     methods = [_constructor(message.fields, module)]
     if message.name in VIEWS:
@@ -121,8 +121,11 @@ def _message(message: Message) -> str:
     return "\n    ".join([f"class {name}({', '.join(bases)}):", *constants, *attributes, *methods])
 
 
-def _literal(value: bool | float | str) -> str:
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+def _constant(value: bool | float | str) -> str:
+    """The type of a constant. There are no literal types of floats."""
+    if isinstance(value, float):
+        return "float"
+    return f"Literal[{json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)}]"
 
 
 def _constructor(fields: tuple[Field, ...], module: str) -> str:

@@ -7,9 +7,11 @@ from typing import Any
 
 from graphflow.errors import EncodeError
 from graphflow.msgs import base
+from graphflow.msgs.instead import instead
 from graphflow.names import did_you_mean
 from graphflow.wire import schema
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
+from graphflow.wire.unchecked import unchecked
 
 Nested = Mapping[str, type[base.Message]]
 """Classes of the message types that a message's fields hold, by name."""
@@ -38,10 +40,10 @@ def _value(type_: FieldType, value: Any, nested: Nested) -> Any:
         return _array(type_, value, nested)
     if type_.is_primitive:
         return _scalar(type_, value)
-    return _nested(nested[type_.base], value)
+    return _nested(type_, nested[type_.base], value)
 
 
-def _nested(cls: type[base.Message], value: Any) -> Any:
+def _nested(type_: FieldType, cls: type[base.Message], value: Any) -> Any:
     if value.__class__ is cls:
         return value
     fields = [f.name for f in cls.SCHEMA.fields]
@@ -53,7 +55,7 @@ def _nested(cls: type[base.Message], value: Any) -> Any:
     elif fields and not isinstance(value, base.Message) and all(hasattr(value, f) for f in fields):
         given = {f: getattr(value, f) for f in fields}
     else:
-        raise _Wrong(f"expected {cls.SCHEMA.name}, got {value!r}")
+        raise _Wrong(f"expected {cls.SCHEMA.name}, got {value!r}{instead(type_, value, cls.SCHEMA.fields)}")
     try:
         return cls(**given)
     except EncodeError as error:
@@ -63,18 +65,24 @@ def _nested(cls: type[base.Message], value: Any) -> Any:
 
 def _array(type_: FieldType, value: Any, nested: Nested) -> Any:
     if isinstance(value, (str, Mapping)) or not hasattr(value, "__len__") or getattr(value, "shape", None) == ():
-        raise _Wrong(f"expected {type_}, got {value!r}")
+        raise _Wrong(f"expected {type_}, got {value!r}{instead(type_, value)}")
+    element = type_._replace(array="", size=0)
     if type_.base in schema.NUMERIC:
         from graphflow.wire.arrays import as_array
 
         try:
             array = as_array(value, type_.base)
         except (ValueError, TypeError) as error:
-            raise _Wrong(str(error)) from None
+            if isinstance(value, (list, tuple)):
+                _items(element, value, nested)  # which says what does not fit
+            raise _Wrong(f"{error}{instead(type_, value)}") from None
         _check_count(type_, array.size)
         return array
     _check_count(type_, len(value))
-    element = type_._replace(array="", size=0)
+    return _items(element, value, nested)
+
+
+def _items(element: FieldType, value: Any, nested: Nested) -> list[Any]:
     items = []
     for i, item in enumerate(value):
         try:
@@ -95,7 +103,7 @@ def _scalar(type_: FieldType, value: Any) -> Any:
     name = type_.base
     if name in schema.STRINGS:
         if not isinstance(value, str):
-            raise _Wrong(f"expected {name}, got {value!r}")
+            raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
         try:
             length = schema.string_length(name, value)
         except UnicodeEncodeError:
@@ -109,17 +117,17 @@ def _scalar(type_: FieldType, value: Any) -> Any:
     kind = _kind(value)
     if name == "bool":
         if kind != "bool":
-            raise _Wrong(f"expected bool, got {value!r}")
+            raise _Wrong(f"expected bool, got {value!r}{instead(type_, value)}")
         return bool(value)
     if name in INTEGER_RANGES:
         if kind != "int":
-            raise _Wrong(f"expected {name}, got {value!r}")
+            raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
         low, high = INTEGER_RANGES[name]
         if not low <= value <= high:
             raise _Wrong(f"{value} does not fit {name}: {low} to {high}")
         return int(value)
     if kind not in ("int", "float"):
-        raise _Wrong(f"expected {name}, got {value!r}")
+        raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
     try:
         number = float(value)
     except OverflowError:
@@ -174,14 +182,15 @@ def checked(message: base.Message) -> base.Message:
 
 
 def _checked(message: base.Message) -> base.Message:
-    result: base.Message = object.__new__(type(message))
+    values = []
     for field in message.SCHEMA.fields:
         if not hasattr(message, field.name):
             raise _Wrong("was deleted", f".{field.name}")
         try:
-            setattr(result, field.name, _checked_value(field.type, getattr(message, field.name), message.NESTED))
+            values.append(_checked_value(field.type, getattr(message, field.name), message.NESTED))
         except _Wrong as wrong:
             raise _Wrong(wrong.reason, f".{field.name}{wrong.path}") from None
+    result: base.Message = unchecked(type(message), *values)
     return result
 
 

@@ -27,7 +27,12 @@ class MessagePackages:
     ) -> importlib.machinery.ModuleSpec | None:
         package, _, rest = fullname.partition(".")
         if not rest:
-            return self._spec(fullname) if is_package(package) and not _is_elsewhere(fullname, path) else None
+            if not (is_package(package) or fullname == "rclpy"):
+                return None
+            if _is_elsewhere(fullname, path):
+                _tell_hidden(fullname)
+                return None
+            return self._spec(fullname) if fullname != "rclpy" else None
         kind, _, inner = rest.partition(".")
         is_beside = package in KNOWN and not _is_elsewhere(fullname, path)  # of a package that has code as well
         if kind not in KINDS or not (_is_ours(package) or is_beside):
@@ -121,7 +126,7 @@ class WorkspacePackages:
             self._is_looking = True
             try:
                 self._roots = _of_workspace()
-            except ImportError:  # what this needs is itself being imported right now
+            except (ImportError, AttributeError):  # what this needs is itself being imported right now
                 return None
             except OSError:  # such as a folder that has been removed
                 self._roots = []
@@ -161,6 +166,17 @@ def _is_elsewhere(fullname: str, path: Sequence[str] | None) -> bool:
     """Whether Python finds a package of that name with code in it."""
     found = importlib.machinery.PathFinder.find_spec(fullname, path)
     return found is not None and found.origin is not None
+
+
+def _tell_hidden(package: str) -> None:
+    """Say that a module is imported in the place of a package: what it lacks is an error, or nothing at all."""
+    found = importlib.machinery.PathFinder.find_spec(package)
+    if found is not None and found.origin is not None and found.submodule_search_locations is None:
+        from pathlib import Path
+
+        from graphflow.runtime import hiding
+
+        hiding.tell(Path(found.origin))
 
 
 def _is_ours(package: str) -> bool:

@@ -106,9 +106,10 @@ def message_class(name: str) -> type[StrictMessage]:
         check = check if CHECKS else lenient(check)
         names[f"K{i}"], names[f"M{i}"] = check, default(field)
         lines.append(f"    SELF._{field.name} = M{i}() if {field.name} is ABSENT else K{i}({field.name})")
-        body[field.name] = _property(field.name, check)
+        body[field.name] = _property(name, field.name, check)
     exec(compile("\n".join(lines), f"<{name}>", "exec"), names)  # noqa: S102 - written above from a checked schema
     body["__init__"] = names["__init__"]
+    names["__init__"].__qualname__ = f"{base}.__init__"
     made: Any = _Generated(base, (StrictMessage,), body)
     cls: type[StrictMessage] = made
     return cls
@@ -135,11 +136,11 @@ def _class_of(type_: FieldType) -> type | None:
     return None if type_.is_primitive else message_class(type_.base)
 
 
-def _property(name: str, check: Check) -> property:
+def _property(type_: str, name: str, check: Check) -> property:
     slot = f"_{name}"
     space: dict[str, Any] = {"CHECK": check}
     source = f"def get(SELF): return SELF.{slot}\ndef put(SELF, VALUE): SELF.{slot} = CHECK(VALUE)"
-    exec(compile(source, f"<field {name}>", "exec"), space)  # noqa: S102 - a field's name is an identifier
+    exec(compile(source, f"<{type_}.{name}>", "exec"), space)  # noqa: S102 - a field's name is an identifier
     return property(space["get"], space["put"])
 
 

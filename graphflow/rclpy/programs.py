@@ -9,19 +9,22 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
+from inspect import isclass, isfunction
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType, TracebackType
 from typing import NamedTuple
 
 from graphflow.errors import UsageFault
-from graphflow.graph.executables import SLIP
+from graphflow.graph.executables import SLIP, of_ros
 from graphflow.graph.installed import package_of
-from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_ros
+from graphflow.graph.setup_file import EntryPoint
+from graphflow.graph.unfound import launching
+from graphflow.graph.workspace import KINDS, Package, Workspace, bundled, find_workspace, is_graphflows, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder, tracebacks
-from graphflow.reading import found_text
+from graphflow.runtime import hiding, unrun
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
 
@@ -73,11 +76,22 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     if found is None:
         if words[0].startswith("-") or not package.executables:
             return None
-        near = did_you_mean(words[0], package.executables)
-        raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}")
+        near = (
+            launching(words[0], [package]) or _unnamed(package, words[0]) or did_you_mean(words[0], package.executables)
+        )
+        raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}{package.why_no_executable}")
     file, entry = found
-    is_ours = entry is not None and not uses_ros(file) and "graphflow" in found_text(file, "replace")
+    is_ours = entry is not None and is_graphflows(file)
     return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))
+
+
+def _unnamed(package: Package, name: str) -> str:
+    """Say that a module of that name is there and only its line in setup.py is missing; empty where it is not so."""
+    module = package.folder / package.name / f"{name.removesuffix('.py')}.py"
+    if not module.is_file() or not (package.folder / "setup.py").is_file():
+        return ""
+    line = f"{module.stem} = {package.name}.{module.stem}:main"
+    return f"; {module.name} is there: add '{line}' to the console_scripts of {package.folder / 'setup.py'}"
 
 
 def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] | None:
@@ -136,13 +150,22 @@ def _begin(program: Program) -> None:
                 raise UsageFault(f"{program.file} is no executable file; to make it one: chmod +x {program.file}")
             os.execv(program.file, sys.argv)
         sys.path.insert(0, str(program.file.parent))
+        if hiding.hides_what_it_imports(program.file):
+            hiding.tell(program.file)
         runpy.run_path(str(program.file), run_name="__main__")
+        unrun.tell(program.file)
         return
     called: object = import_module(program.entry.module)
+    owner = called
     for part in program.entry.function.split("."):
-        called = getattr(called, part, None)
+        called, owner = getattr(called, part, None), called
     if not callable(called):
-        raise UsageFault(f"{program.file} has no function {program.entry.function!r}, which its setup.py names")
+        known = [name for name, value in vars(owner).items() if isfunction(value)]
+        near = did_you_mean(program.entry.function.rpartition(".")[2], known)
+        raise UsageFault(f"{program.file} has no function {program.entry.function!r}, which its setup.py names{near}")
+    if isclass(called):
+        name = f"{program.entry.module}:{program.entry.function}"
+        raise UsageFault(f"{name} is a class: name a function in setup.py that makes one and spins it, such as main")
     sys.exit(called())
 
 
@@ -150,7 +173,7 @@ def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException,
     """Show an error that ends a program: in the program's own code, and with what may help."""
     tracebacks.shorten(error)
     sys.__excepthook__(kind, error, error.__traceback__)
-    if isinstance(error, ModuleNotFoundError) and error.name is not None:
+    if isinstance(error, ModuleNotFoundError) and error.name is not None and not hiding.hidden(error):
         sys.stderr.write(f"note: {_where_to_have(error.name, workspace)}\n")
     if isinstance(error, AssertionError) and " field must be " in str(error):
         later = "ROS 2 Jazzy looks at this only when the message is sent, and then ends the process"
@@ -161,6 +184,8 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
     """Where a module may be had that is not there."""
     name, _, kind = module.partition(".")
     package = workspace.packages.get(name)
+    if package is not None and name in of_ros():
+        return f"your package {package.folder} hides ROS 2's {name}; call yours otherwise, there and in its files"
     if package is not None and kind in KINDS:
         return f"{name} has no .{kind} file: {package.folder / kind}, where they would be, is not there or empty"
     if package is not None:
@@ -171,6 +196,8 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
     owner = next((p for p in workspace.packages.values() if _has_module(p, name)), None)
     if owner is not None:
         return f"{name}.py is in the package {owner.name}; write: from {owner.name}.{module} import ..."
+    if name in ("rospy", "roscpp", "roslib"):
+        return f"{name} is ROS 1's: in ROS 2 a program imports rclpy, and has a class that derives from rclpy.node.Node"
     if name in _ON_PYPI:
         return f"there is no {name} here: pip install {_ON_PYPI[name]}"
     near = nearest(name, [*workspace.packages, *registry.packages()], cutoff=SLIP)
@@ -185,12 +212,17 @@ def _no_module_in(package: ModuleType, module: str) -> str:
     """The next step where a package is there, and lacks the module that is imported from it."""
     file = getattr(package, "__file__", None)
     folders = getattr(package, "__path__", None)
-    if folders is None:
-        return f"{file or package.__name__} hides the package {package.__name__}; call your file by another name"
+    owner, _, word = module.rpartition(".")
+    if folders is None and word != "py":
+        return f"{file or package.__name__} is a module, and no package that has others"
+    if word == "py":
+        return f"modules are imported without .py: write import {owner}"
+    above, _, kind = owner.rpartition(".")
+    if kind in KINDS and above in registry.packages() and word in registry.names_in(above, kind):
+        return f"{word} is a class, and no module: write from {owner} import {word}"
     known = {found.name for found in iter_modules(folders)}
     if package.__name__ in registry.packages():
         known |= {kind for kind in KINDS if registry.names_in(package.__name__, kind)}
-    word = module.rpartition(".")[2]
     near = nearest(word.lower(), known)
     meant = f"; did you mean '{module.rpartition('.')[0]}.{near}'?" if near is not None else ""
     return f"there is no module {module}{meant}"
@@ -217,6 +249,15 @@ _ON_PYPI = {
 """What to install for modules that robots' programs often import."""
 
 
+def _tell_build_faults(program: Program) -> None:
+    """Say why ROS 2 would not run it, though it runs here."""
+    if program.entry is not None:
+        for package in program.workspace.packages.values():
+            if program.file.is_relative_to(package.folder):
+                for fault in package.build_faults:
+                    sys.stderr.write(f"note: {fault}\n")
+
+
 def _is_python(file: Path) -> bool:
     """Whether a file without an ending is a Python script."""
     with file.open("rb") as opened:
@@ -235,6 +276,7 @@ def main(words: Sequence[str]) -> None:
         program = find_program(words[0], words[1:], Path.cwd())
         if program is None:
             raise UsageFault(f"{' '.join(words[:2])} is no program that uses rclpy")
+        _tell_build_faults(program)
         run(program)
     except UsageFault as error:
         sys.stderr.write(f"error: {error}\n")

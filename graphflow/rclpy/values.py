@@ -181,9 +181,10 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
             return value
         if isinstance(value, (str, *(() if code in "bB" else (bytes, bytearray)))):
             plain(value)  # of which `array` would take each character, or the memory
-        try:
+        made: array[Any] | None = None
+        with suppress(TypeError, ValueError, OverflowError):
             made = array(code, value)
-        except (TypeError, ValueError, OverflowError):
+        if made is None:
             made = array(code, plain(value))  # which says what does not fit
         if not fits(len(made)) or (code == "f" and any(map(math.isinf, made))):
             plain(value)

@@ -7,13 +7,14 @@ import os
 from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import AsyncIterator, Coroutine
-from contextlib import AbstractAsyncContextManager, suppress
-from typing import TYPE_CHECKING, Any, Generic, NoReturn
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import (
     CallError,
     CallTimeout,
     ClosedError,
+    DecodeError,
     EncodeError,
     GoalAborted,
     GoalCanceled,
@@ -29,16 +30,24 @@ from graphflow.interface import CALL_TIMEOUT
 from graphflow.machines.goal import CancelCode, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
-from graphflow.names import did_you_mean
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
 from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
 from graphflow.runtime.host import Host, Part
+from graphflow.runtime.other_domains import alone_here
+from graphflow.runtime.serialized import RawSubscription
 from graphflow.runtime.service_client import DISCOVERY_GRACE, ServiceClient
 from graphflow.runtime.subscriptions import TopicSubscription
+from graphflow.runtime.unentered import Unentered
+from graphflow.runtime.unserved import Unserved, nobody_acts
 from graphflow.times import to_ns
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.goal_status import states_in
+from graphflow.wire.liveliness import Kind
 
 CANCEL_TIMEOUT = 2.0
 """Seconds that leaving a goal's block waits for the goal's end."""
+_STATES = frozenset(state for state in GoalStatus if state >= 0)
+"""The states of ROS 2."""
 LOST_GRACE = 1.0
 """Seconds in which a lost server may prove to be alive, and feedback may come after the result."""
 RESULT_PATIENCE, RESULT_LONGEST = 10.0, 600.0
@@ -151,16 +160,18 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
                     news.set_result(None)
 
 
-class Sending(AbstractAsyncContextManager["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goal, Result, Feedback]):
+class Sending(Unentered["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goal, Result, Feedback]):
     """A goal for the length of a block; see `GoalClient.send`."""
 
     def __init__(
         self, client: GoalClient[Goal, Result, Feedback], goal: Goal, timeout: float | None, *, detach: bool
     ) -> None:
+        super().__init__("`async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`")
         self._client, self._goal, self._timeout, self._detach = client, goal, timeout, detach
         self._sent: ClientGoalHandle[Goal, Result, Feedback] | None = None
 
     async def __aenter__(self) -> ClientGoalHandle[Goal, Result, Feedback]:
+        self._is_known = True
         self._sent = await self._client.send_goal(self._goal, timeout=self._timeout)
         return self._sent
 
@@ -171,16 +182,9 @@ class Sending(AbstractAsyncContextManager["ClientGoalHandle[Goal, Result, Feedba
 
     if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
 
-        def _refuse(self) -> NoReturn:
-            raise TypeError("write `async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`")
-
-        __await__ = __enter__ = _refuse
-
-        def __exit__(self, *_: object) -> None:
-            """There is nothing to leave: `__enter__` has refused."""
-
         def __getattr__(self, name: str) -> object:
             """Raise AttributeError: the goal is not sent yet."""
+            self._is_known = True
             text = f"the goal is not sent yet, and has no {name!r}: write `async with client.send(goal) as sent:`"
             raise AttributeError(text, name=name, obj=self)
 
@@ -194,16 +198,19 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self.host, self.type, self.name = host, type_, name
         self._goal_class: type[Any] = registry.interface_class(f"{type_.NAME}_Goal")
         self._goals: dict[bytes, ClientGoalHandle[Goal, Result, Feedback]] = {}
+        self._running = set[bytes]()
+        """The ids of goals that have not ended, and of some that have since the last status message."""
         self._followers: set[asyncio.Task[None]] = set()
+        self._unserved = Unserved(host, self._nobody)
         self._send: ServiceClient[Any, Any] = self._service("send_goal", f"{type_.NAME}_SendGoal")
         self._cancel: ServiceClient[Any, Any] = self._service("cancel_goal", "action_msgs/srv/CancelGoal")
         self._get: ServiceClient[Any, Any] = self._service("get_result", f"{type_.NAME}_GetResult")
         feedback: Any = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
-        status: Any = registry.interface_class("action_msgs/msg/GoalStatusArray")
         at = f"{name}/_action"
         self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._heard)
         self._feedback.in_order = True
-        self._status = TopicSubscription[Any](host, status, f"{at}/status", ACTION_STATUS, self._told)
+        status = "action_msgs/msg/GoalStatusArray"
+        self._status = RawSubscription(host, status, f"{at}/status", ACTION_STATUS, self._told)
 
     def __repr__(self) -> str:
         return f"<GoalClient {self.name} [{self.type.NAME}]>"
@@ -213,7 +220,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return ServiceClient(self.host, type_, f"{self.name}/_action/{part}", SERVICES)
 
     @property
-    def endpoints(self) -> tuple[TopicSubscription[Any] | ServiceClient[Any, Any], ...]:
+    def endpoints(self) -> tuple[RawSubscription | TopicSubscription[Any] | ServiceClient[Any, Any], ...]:
         return (self._feedback, self._status, self._get, self._cancel, self._send)
 
     def open(self) -> None:
@@ -241,30 +248,36 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         Args:
             timeout: Seconds; None to wait as long as it takes.
         """
+        return await self._wait_ready(timeout)
+
+    async def _wait_ready(self, timeout: float | None, *, raises: bool = False) -> bool:
         if self.server_is_ready():
             return True
         try:
             async with self.host.clock.timeout(timeout if timeout is not None else 1e9):
-                for service in (self._send, self._cancel, self._get):
-                    await service.wait_ready()
-                for topic in (self._feedback, self._status):
-                    await topic.wait_matched()
+                with self._unserved.waiting(raises=raises):
+                    await self._all_ready()
         except TimeoutError:
             return False
         return True
 
+    async def _all_ready(self) -> None:
+        for service in (self._send, self._cancel, self._get):
+            await service.wait_ready()
+        for topic in (self._feedback, self._status):
+            await topic.wait_matched()
+
     async def expect_ready(self, timeout: float | None) -> None:
         """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
-        if not await self.wait_ready(timeout):
-            raise ServiceUnavailable(self._nobody())
+        if not await self._wait_ready(timeout, raises=True):
+            alone = await alone_here(self.host.context, self.host.full_name)
+            raise ServiceUnavailable(f"{await self._nobody()}{alone}")
 
-    def _nobody(self) -> str:
-        actions = self.host.context.cache.actions()
-        offered = [type_ for type_ in actions.get(self.name, ()) if type_ != self.type.NAME]
-        if offered:
-            return f"action {self.name} is of type {offered[0]}, not {self.type.NAME}"
-        near = did_you_mean(self.name, [name for name in actions if name != self.name])
-        return f"no node offers the action {self.name} [{self.type.NAME}]{near}"
+    async def _nobody(self) -> str:
+        cache = self.host.context.cache
+        if any(server.type == self._send.type_name for server in cache.endpoints(Kind.SERVICE, self._send.name)):
+            return await self._send.nobody()
+        return nobody_acts(cache, self.name, self.type.NAME)
 
     def send(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
@@ -292,11 +305,13 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     ) -> ClientGoalHandle[Goal, Result, Feedback]:
         """Send a goal that goes on whatever becomes of the caller. Arguments and errors as for `send`."""
         if goal.__class__ is not self._goal_class:
-            raise EncodeError(f"{self.name} takes {self._goal_class.__qualname__}, not {goal!r}")
+            wanted = self._goal_class.__qualname__
+            raise EncodeError(f"{self.name} takes {wanted}, not {goal!r}; write {wanted.replace('_', '.')}(...)")
         self.host.context.refuse_other_threads(
             f"send of {self.name}", "node.spawn(fn, ...) runs a coroutine function there"
         )
         sent = ClientGoalHandle(self, goal)
+        self._running.add(sent.goal_id)
         self._goals[sent.goal_id] = sent  # before it is sent: news about it may come before the response
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
         may_be_there = False
@@ -306,17 +321,17 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             may_be_there = True
             answer = await self._send.call(request, timeout=timeout)
         except (CancelledError, CallTimeout) as error:
-            del self._goals[sent.goal_id]
+            self._forget(sent)
             if may_be_there and self._cancel.is_open:
                 withdrawing = self._in_background(self._withdraw(sent))
                 if isinstance(error, CancelledError):  # a cancelled caller may end the node next
                     await _seen_through(withdrawing)
             raise
-        except BaseException:
-            del self._goals[sent.goal_id]
+        except BaseException:  # whatever it is, there is no goal to follow
+            self._forget(sent)
             raise
         if not answer.accepted:
-            del self._goals[sent.goal_id]
+            self._forget(sent)
             reason = await self._why(sent)
             raise GoalRejected(f"{self.name} rejected the goal{reason and f': {reason}'}")
         if sent.status is GoalStatus.UNKNOWN:
@@ -406,6 +421,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     def _forget(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         self._goals.pop(goal.goal_id, None)
+        self._running.discard(goal.goal_id)
 
     def _end(
         self, goal: ClientGoalHandle[Goal, Result, Feedback], status: GoalStatus, result: Any, reason: str
@@ -426,13 +442,20 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         if goal is not None:
             goal.heard(message.feedback)
 
-    def _told(self, message: Any) -> None:
-        for entry in message.status_list:
-            goal = self._goals.get(bytes(entry.goal_info.goal_id.uuid))
-            if goal is None or goal.done:
+    def _told(self, payload: bytes, _: MessageInfo) -> None:
+        try:
+            self._running = {goal_id for goal_id in self._running if not self._goals[goal_id].done}
+            states = states_in(payload, self._running)
+        except DecodeError as error:
+            self._status.count_malformed(error)
+            return
+        for goal_id, number in states.items():
+            goal = self._goals[goal_id]
+            if number not in _STATES:
                 continue
-            if not GoalStatus(entry.status).is_terminal:
-                goal.status = max(goal.status, GoalStatus(entry.status))  # an earlier report may come later
+            state = GoalStatus(number)
+            if not state.is_terminal:
+                goal.status = max(goal.status, state)  # an earlier report may come later
             elif not goal.is_asked_again and self.host.is_running:
                 # The end arrives with the result, which may have been lost.
                 goal.is_asked_again = True

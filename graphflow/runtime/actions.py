@@ -26,14 +26,18 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
 from graphflow.msgs import registry
-from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle
+from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, name_of
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.publishers import TopicPublisher
+from graphflow.runtime.serialized import RawPublisher
 from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.swallowed import where_caught
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire import attachment
+from graphflow.wire.goal_status import GoalStates
 from graphflow.wire.liveliness import Entity
 
 RESULT_KEPT = 900.0
@@ -42,8 +46,8 @@ STATUS_KEPT = 10.0
 """Seconds that an ended goal stays in the status list, as in ROS 2."""
 RESULTS_KEPT = 1_000
 _RETURNED_ALL_THE_SAME = (
-    "its handler returned a result all the same: the goal succeeds. To end it as cancelled, set goal.partial and let "
-    "CancelledError pass"
+    "%s: %r was cancelled, and its handler returned a result all the same: the goal succeeds. To end it as cancelled, "
+    "set goal.partial and let CancelledError pass%s"
 )
 _WHY = {GoalEvent.NEWER: "a newer goal has come"}
 
@@ -65,15 +69,13 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
         """What waits for the goal's end."""
         self.decided = asyncio.Event()
         """Set when it is decided whether the goal is accepted."""
-        self.entry: Any = None
-        """The goal's entry in the status list."""
         self._server, self._id = server, goal_id
 
     def __repr__(self) -> str:
         return f"<goal {self._id.hex()[:8]} of {self._server.name}: {self.status.name}>"
 
     def _hint(self, name: str) -> str:
-        return f"the client's wish is goal.request.{name}" if name in type(self.request).__slots__ else ""
+        return f"the client's wish is goal.request.{name}" if name in type(self.request).__struct_fields__ else ""
 
     @property
     def goal_id(self) -> bytes:
@@ -142,7 +144,6 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         """Goals whose acceptance is being decided, by id."""
         self._clock: Clock
         """Used even when the node has stopped and a body has not."""
-        self._entry_class: type[Any] = registry.interface_class("action_msgs/msg/GoalStatus")
         self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
         send: Any = registry.interface_class(f"{type_.NAME}_SendGoal")
@@ -150,7 +151,8 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         cancel: Any = registry.interface_class("action_msgs/srv/CancelGoal")
         self._send_response, self._get_response = send.Response, get.Response
         self._cancel_response = cancel.Response
-        self._status: TopicPublisher[Any] = self._topic("status", "action_msgs/msg/GoalStatusArray", ACTION_STATUS)
+        self._states = GoalStates()
+        self._status = RawPublisher(host, "action_msgs/msg/GoalStatusArray", f"{name}/_action/status", ACTION_STATUS)
         self._feedback: TopicPublisher[Any] = self._topic("feedback", f"{type_.NAME}_FeedbackMessage", Qos())
         # The last to be seen is the first to be used: a client that can send a goal can do everything else.
         self._send_service = _GoalService(self, send, "send_goal", self._send_goal)
@@ -176,7 +178,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return f"action {self.name}"
 
     @property
-    def endpoints(self) -> tuple[TopicPublisher[Any] | ServiceServer[Any, Any], ...]:
+    def endpoints(self) -> tuple[RawPublisher | TopicPublisher[Any] | ServiceServer[Any, Any], ...]:
         return (self._status, self._feedback, *self._services)
 
     def statistics(self) -> dict[str, Any]:
@@ -193,7 +195,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self.runner = self.host.runner(spec, self._waiting, self._group)
         for endpoint in self.endpoints:
             endpoint.open()
-        self._tell_status()
+        self._tell_states()
 
     def begin_to_stop(self) -> Runner | None:
         """Goals that wait for their turn will not get it."""
@@ -301,7 +303,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             code = CancelCode.REJECTED
         for goal in granted:
             self._step(goal, GoalEvent.CANCEL)
-        return self._cancel_response(return_code=int(code), goals_canceling=[g.entry.goal_info for g in granted])
+        return self._cancel_response(return_code=int(code), goals_canceling=[_info(goal) for goal in granted])
 
     def _grants_cancel(self, goal: ServedGoal[Goal, Result, Feedback]) -> bool:
         if not callable(self._cancellable):
@@ -341,13 +343,13 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         now_ns = self._clock.time_ns() if event is GoalEvent.ACCEPTED else self._clock.monotonic_ns()
         outcome = self.book.step(goal.goal_id, event, now_ns)
         if event is GoalEvent.ACCEPTED:
-            info = {"goal_id": {"uuid": list(goal.goal_id)}, "stamp": _stamp(goal.record.accepted_ns)}
-            goal.entry = self._entry_class(goal_info=info)
+            self._states.add(goal.goal_id, goal.record.accepted_ns)
             self.goals[goal.goal_id] = goal
         if goal.is_over and goal.goal_id in self.goals:
             goal.result = self._fit_result(goal, event, goal.partial if result is None else result)
         for status in outcome.told:
-            self._tell_status(goal, status)
+            self._states.put(goal.goal_id, int(status))
+            self._tell_states()
         for do in outcome.do:
             self._carry_out(do, goal, event)
         if goal.is_over:
@@ -377,9 +379,8 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             case Do.DEGRADE:
                 self.is_degraded = True
                 self.host.log.error(
-                    "%s is still running %g s after it was cancelled; its goal is aborted, and it keeps its slot",
-                    self._label,
-                    self.rules.cleanup_timeout,
+                    "%s is still running %g s after it was cancelled; its goal is aborted, and it keeps its slot%s",
+                    *(self._label, self.rules.cleanup_timeout, where_caught(self._callback)),
                 )
 
     def _later(self, seconds: float, callback: Callable[[], None]) -> None:
@@ -409,11 +410,12 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             error = self._why_no_result(result)
         if error is None:
             if goal.record.phase is Phase.CANCELING:
-                self.host.log.warning("%s: %r was cancelled, and %s", self._label, goal, _RETURNED_ALL_THE_SAME)
+                self.host.log.warning(_RETURNED_ALL_THE_SAME, self._label, goal, where_caught(self._callback))
             self._step(goal, GoalEvent.RETURNED, result)
         elif isinstance(error, CancelledError):
             self._step(goal, GoalEvent.UNWOUND)
         else:
+            explain(error)
             given = error.result if isinstance(error, Abort) else None
             goal.reason = str(error) if isinstance(error, Abort) else f"{type(error).__name__}: {error}"
             if goal.reason:
@@ -427,7 +429,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def _why_no_result(self, returned: Any) -> Exception | None:
         """Why what the handler has returned cannot be sent as its result."""
         if returned.__class__ is not self.result_class:
-            return TypeError(f"the handler of {self.name} returned {returned!r}, not {self.result_class.__qualname__}")
+            return TypeError(f"it returned {returned!r}, not {name_of(self.result_class)}(...)")
         return self._why_unfit(returned)
 
     def _why_unfit(self, result: Any) -> Exception | None:
@@ -460,18 +462,12 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             raise TypeError(f"{self.name} sends {self._feedback_class.__qualname__}, not {feedback!r}")
         self._feedback.publish(self._feedback_message(goal_id={"uuid": list(goal_id)}, feedback=feedback))
 
-    def _tell_status(
-        self, about: ServedGoal[Goal, Result, Feedback] | None = None, status: GoalStatus | None = None
-    ) -> None:
-        """Publish the goals' states, with the state that `about` has or passes through."""
-        if not self._status.is_open:
-            return
-        message = self._status.type()
-        for goal_id, record in self.book.shown(self._clock.monotonic_ns()):
-            goal = self.goals[goal_id]
-            goal.entry.status = int(status if goal is about and status is not None else record.status)
-            message.status_list.append(goal.entry)
-        self._status.publish(message)
+    def _tell_states(self) -> None:
+        """Publish the goals' states."""
+        for goal_id in self.book.hide(self._clock.monotonic_ns()):
+            self._states.remove(goal_id)
+        if self._status.is_open:
+            self._status.publish(self._states.to_bytes())
 
 
 class _GoalService(ServiceServer[Any, Any]):
@@ -492,6 +488,11 @@ class _GoalService(ServiceServer[Any, Any]):
         super()._matched(other, alive)
         if not alive:
             self._server.client_gone(other.gid)
+
+
+def _info(goal: ServedGoal[Any, Any, Any]) -> dict[str, Any]:
+    """The fields of an `action_msgs/msg/GoalInfo`."""
+    return {"goal_id": {"uuid": list(goal.goal_id)}, "stamp": _stamp(goal.record.accepted_ns)}
 
 
 def _stamp(ns: int) -> dict[str, int]:

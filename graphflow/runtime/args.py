@@ -6,6 +6,7 @@ Source: rcl arguments; `ros2 run ... --help` and the "Passing ROS arguments" gui
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +19,11 @@ from graphflow.names import Remap, Resolver, did_you_mean, nearest
 logger = logging.getLogger("graphflow")
 
 _VALUED = ("-r", "--remap", "-p", "--param", "--params-file", "--log-level")
+_EXAMPLES = {
+    **dict.fromkeys(("-r", "--remap"), "pose:=/turtle1/pose"),
+    **dict.fromkeys(("-p", "--param"), "rate:=2.0"),
+    "--params-file": "params.yaml",
+}
 _LEFT_OUT = ("--log-config-file", "--log-file-name", "-e", "--enclave")
 """Options with a value that mean nothing here: logs are the supervisor's, and there are no enclaves."""
 _FLAGS = {
@@ -96,15 +102,15 @@ def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> Ros
             elif "stdout" in word:
                 result.has_stdout = _FLAGS[word]
         elif word in _VALUED or (in_ros and word in _LEFT_OUT):
-            if not todo:
-                raise GraphflowError(f"{word} needs a value after it, such as pose:=/turtle1/pose")
+            if not todo or todo[0] in _OPTIONS:
+                raise GraphflowError(f"{word} needs a value after it, such as {_EXAMPLES.get(word, 'info')}")
             _option(result, word, todo.pop(0))
         elif ":=" in word and not word.startswith("-") and refuses_unknown:
             _remap(result, word)
         elif in_ros and not refuses_unknown:
             result.unknown.append(word)
-        elif in_ros or _is_slip(word):
-            raise GraphflowError(f"{word!r} is not a ROS argument{meant(word)}")
+        elif in_ros or _slip(word):
+            raise GraphflowError(f"{word!r} is not a ROS argument{cut_off(word, words) or meant(word)}")
         else:
             result.rest.append(word)
     return result
@@ -117,9 +123,24 @@ def meant(word: str) -> str:
         key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
         option = "-p" if key is None and _is_value(replacement) else "-r"
         return f"; write --ros-args {option} {key or match}:={replacement}"
-    if _is_slip(word):
-        return f"; write --{_bare(word)}"
+    option, equals, value = word.partition("=")
+    if equals and option in _VALUED:
+        return f"; write {option} {value}, without ="
+    if option := _slip(word):
+        return f"; write {option}"
     return did_you_mean(word, _OPTIONS)
+
+
+def cut_off(word: str, words: Sequence[str]) -> str:
+    """The end of a sentence on a word that a space has cut off from the value before it; empty for any other.
+
+    Args:
+        words: The command line.
+    """
+    place = list(words).index(word)
+    option, before = words[place - 2 : place] if place > 1 else ("", "")
+    is_cut = option in _VALUED and ":=" in before
+    return f"; a value with a space in it goes into quotes: {option} '{before} {word}'" if is_cut else ""
 
 
 def _is_value(text: str) -> bool:
@@ -139,8 +160,8 @@ def missed(words: Sequence[str]) -> str:
             in_ros = True
         elif word == "--":
             in_ros = False
-        elif not in_ros and _is_slip(word):
-            rest, option = " ".join(words[place + 1 :]), f"--{_bare(word)}"
+        elif not in_ros and (option := _slip(word)):
+            rest = " ".join(words[place + 1 :])
             way = option if option == "--ros-args" else f"--ros-args {option}"
             return f"{word!r} means nothing to ROS, nor does what follows{f' ({rest})' if rest else ''}; write {way}"
         elif not in_ros and ":=" in word:
@@ -151,13 +172,12 @@ def missed(words: Sequence[str]) -> str:
     return ""
 
 
-def _is_slip(word: str) -> bool:
-    """Whether a word is an option of ROS's but for its dashes: `-ros-args`, `-params-file`, or with a long dash."""
-    return f"--{_bare(word)}" in ("--ros-args", "--params-file") and not word.startswith("--") and word != _bare(word)
-
-
-def _bare(word: str) -> str:
-    return word.lstrip("".join(_DASHES))
+def _slip(word: str) -> str:
+    """The option of ROS's that a word hardly misses, such as `-ros-args` or `--rosargs`; empty if there is none."""
+    bare = word.lstrip("".join(_DASHES))
+    if word in ("--ros-args", "--params-file", bare):
+        return ""
+    return "--params-file" if bare == "params-file" else nearest(f"--{bare}", ["--ros-args"], cutoff=0.85) or ""
 
 
 def _option(result: RosArgs, option: str, value: str) -> None:
@@ -177,6 +197,10 @@ def _option(result: RosArgs, option: str, value: str) -> None:
         target, arrow, text = value.partition(":=")
         if not arrow or not target:
             raise GraphflowError(f"-p {value!r}: write name:=value, for example rate:=2.0")
+        if not text:
+            raise GraphflowError(f"-p {value!r}: the value is missing; write it behind := without a space")
+        if re.search(r"\s[\w.]+:=", text):
+            raise GraphflowError(f"-p {value!r}: write one -p each: {' '.join(f'-p {one}' for one in value.split())}")
         from graphflow.graph.source import parse_value
 
         node, colon, name = target.rpartition(":")
@@ -187,5 +211,4 @@ def _remap(result: RosArgs, text: str) -> None:
     try:
         result.remaps.append(Remap.parse(text, "command line"))
     except InvalidName as error:
-        hint = "; use --ros-args -r __ns:=/turtle1" if text.startswith("__") else ""
-        raise GraphflowError(f"{error}{hint}") from None
+        raise GraphflowError(str(error)) from None

@@ -5,6 +5,9 @@ from __future__ import annotations
 import inspect
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextvars import ContextVar
+from dataclasses import dataclass
+from types import MethodType
 from typing import Any, Protocol
 
 from graphflow.errors import ParameterError
@@ -16,6 +19,10 @@ from graphflow.runtime.handlers import Handler, Rate
 from graphflow.runtime.host import Host
 from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.timer import Timer
+from graphflow.times import to_ns
+
+CHAIN = 100
+"""Changes in a second, each made by a method that follows the one before, after which no further one is followed."""
 
 
 class Creator(Protocol):
@@ -91,8 +98,13 @@ class Binding:
         raise TypeError(f"{item!r} cannot be made")
 
     def _method(self, fn: Any) -> Any:
-        """A function of the class body, as a method of the node; a child class may have overridden it."""
-        return getattr(self._node, fn.__name__) if inspect.isfunction(fn) else fn
+        """A function of the class body, as a method of the node; a child class may have overridden it.
+
+        One that the class does not have by its name, such as a lambda, is bound as it is.
+        """
+        if not inspect.isfunction(fn):
+            return fn
+        return getattr(self._node, fn.__name__) if hasattr(self._class, fn.__name__) else MethodType(fn, self._node)
 
     def _bind_handler(self, method: Callable[..., Any], handler: Handler) -> None:
         node = self._node
@@ -133,9 +145,12 @@ class Binding:
             name = hook.param.parameter.name
             if hook.kind == "check" and name in values:
                 try:
-                    getattr(self._node, attribute)(values[name])
+                    answer = getattr(self._node, attribute)(values[name])
                 except ValueError as error:
                     raise ParameterError(f"parameter {name!r} = {values[name]!r}: {error}") from None
+                if answer is not None and answer is not True:
+                    text = "a check refuses by raising ValueError(why), and accepts by returning nothing"
+                    raise ParameterError(f"parameter {name!r} is not set: {attribute} returned {answer!r}; {text}")
 
     def _changed(self, changes: Mapping[str, ParameterChange]) -> None:
         for rate, timer in self._timers:
@@ -145,7 +160,8 @@ class Binding:
             change = changes.get(hook.param.parameter.name)
             if hook.kind == "on_change" and change is not None and self._host.is_running:
                 if attribute not in self._followers:
-                    self._followers[attribute] = _Follower(self._host, getattr(self._node, attribute))
+                    name = hook.param.parameter.name
+                    self._followers[attribute] = _Follower(self._host, getattr(self._node, attribute), name)
                 self._followers[attribute].follow(change)
 
     def runners(self) -> list[Runner]:
@@ -153,26 +169,63 @@ class Binding:
         return [follower.runner for follower in self._followers.values()]
 
 
+@dataclass(slots=True)
+class _Turn:
+    """A call of a method that follows a parameter.
+
+    Attributes:
+        length: How many calls led to it, each by setting a parameter itself.
+        began_ns: When the first of them was due.
+    """
+
+    change: ParameterChange
+    length: int
+    began_ns: int
+    is_over: bool = False
+
+
+_turn: ContextVar[_Turn | None] = ContextVar("turn", default=None)
+"""The call of a method that follows a parameter in which this code runs."""
+
+
 class _Follower:
     """Calls a method with the changes of a parameter, one at a time."""
 
-    def __init__(self, host: Host, method: Callable[[Any, Any], Any]) -> None:
-        self._host, self._method = host, method
-        self._changes: deque[ParameterChange] = deque()
+    def __init__(self, host: Host, method: Callable[[Any, Any], Any], parameter: str) -> None:
+        self._host, self._method, self._parameter = host, method, parameter
+        self._turns: deque[_Turn] = deque()
         spec = RunnerSpec(method.__name__, self._invoke, self._finished, host.full_name)
-        self.runner = host.runner(spec, self._changes)
+        self.runner = host.runner(spec, self._turns)
 
     def follow(self, change: ParameterChange) -> None:
-        self._changes.append(change)
+        turn, now = _turn.get(), self._host.clock.monotonic_ns()
+        length, began_ns = (0, now) if turn is None or turn.is_over else (turn.length + 1, turn.began_ns)
+        if length >= CHAIN and now - began_ns < to_ns(1.0):
+            text = "%s follows %r, and each change of it makes another, %d in a row: no further one is followed; "
+            text += "set a parameter there only where it differs, as in `if new > 2.0: self.%s = 2.0`"
+            self._host.log.error(text, self._method.__name__, self._parameter, CHAIN, self._parameter)
+            return
+        self._turns.append(_Turn(change, length, began_ns))
         if inspect.iscoroutinefunction(self._method):
             # Its first step must not run inside the code that set the parameter, which may itself be a handler.
             self._host.context.loop.call_soon(self.runner.wake)
         else:
             self.runner.wake()
 
-    def _invoke(self, change: ParameterChange) -> Any:
-        return self._method(change.old, change.new)
+    def _invoke(self, turn: _Turn) -> Any:
+        if inspect.iscoroutinefunction(self._method):
+            return self._invoke_async(turn)
+        token = _turn.set(turn)
+        try:
+            return self._method(turn.change.old, turn.change.new)
+        finally:
+            _turn.reset(token)
 
-    def _finished(self, change: ParameterChange, result: Any, error: BaseException | None) -> None:
+    async def _invoke_async(self, turn: _Turn) -> None:
+        _turn.set(turn)
+        await self._method(turn.change.old, turn.change.new)
+
+    def _finished(self, turn: _Turn, result: Any, error: BaseException | None) -> None:
+        turn.is_over = True  # what it has started goes on in a context that has the turn, too
         if error is not None:
             self._host.handler_failed(self._method.__name__, error)

@@ -6,6 +6,7 @@ Every check raises DeclarationError.
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Mapping
 from typing import Any, get_args
 
@@ -20,16 +21,48 @@ DEPTH = 10
 """The depth of a queue when none is given."""
 
 
+def check_node(node: object) -> None:
+    """Check that what is to be run is a node."""
+    if isinstance(node, type):
+        raise DeclarationError(f"{node.__name__} is a class; make a node of it: {node.__name__}()")
+    if isinstance(node, (list, tuple)):
+        raise DeclarationError("nodes are given one by one, as in running(talker, listener), or as running(*nodes)")
+    if not hasattr(type(node), "_core_class"):
+        raise DeclarationError(f"{node!r} is not a node: an object of a class that derives from graphflow.Node")
+
+
 def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
     """Check that `type_` is a message, service or action class."""
     if not (isinstance(type_, type) and issubclass(type_, kind)):
-        hint = ""
-        if kind is base.Service and isinstance(type_, type) and issubclass(type_, Message):
-            hint = "; give the service's class, as in AddTwoInts, not its Request"
-        elif isinstance(type_, str):
-            hint = "; the type comes first, then the name"
+        hint = _of_text(type_) if isinstance(type_, str) else _other_kind(type_, kind)
         wanted = f"{'an' if kind is base.Action else 'a'} {kind.__name__.lower()} class"
         raise DeclarationError(f"{place}: {what} needs {wanted}, not {type_!r}{hint}")
+
+
+def _of_text(text: str) -> str:
+    """Say how a type is written that was given as text, as `ros2` takes it; or that the text is the name."""
+    found = re.fullmatch(r"(\w+)[/.](msg|srv|action)[/.](\w+)", text)
+    if found is None:
+        return "; the type comes first, then the name"
+    package, kind, name = found.groups()
+    return f"; write from graphflow.msgs.{package}.{kind} import {name}, and then {name} without quotes"
+
+
+def _other_kind(type_: Any, kind: type) -> str:
+    """Say which kind of interface a class is that was given in place of another kind."""
+    if not isinstance(type_, type):
+        return ""
+    whole, _, part = type_.__name__.rpartition("_")
+    if part in ("Request", "Response", "Goal", "Result", "Feedback") and whole:
+        kind_of = "action" if part in ("Goal", "Result", "Feedback") else "service"
+        return f"; give the {kind_of}'s class, as in {whole}, not its {part}"
+    examples: dict[type, str] = {Message: "String", base.Service: "AddTwoInts", base.Action: "Fibonacci"}
+    other = next((other for other in examples if issubclass(type_, other)), None)
+    if other is None:
+        return ""
+    return (
+        f"; that is a {other.__name__.lower()} class, and {kind.__name__.lower()} classes are such as {examples[kind]}"
+    )
 
 
 def check_text(name: Any, what: str, place: Place) -> None:
@@ -53,7 +86,10 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
         raise DeclarationError(f"{place}: give a Qos or a depth, not both: Qos(depth={depth!r}, ...) is both in one")
     asked = qos if depth is None else depth
     if not isinstance(asked, (Qos, int)):
-        raise DeclarationError(f"{place}: give a Qos or a queue depth such as 10, not {asked!r}")
+        hint = "; a callback goes under @subscription" if callable(asked) else ""
+        if isinstance(asked, str):
+            hint = ", as in Qos(reliability=Reliability.BEST_EFFORT)" if not asked.isdecimal() else ", without quotes"
+        raise DeclarationError(f"{place}: give a Qos or a queue depth such as 10, not {asked!r}{hint}")
     try:
         return Qos.of(asked)
     except ValueError as error:
@@ -76,6 +112,30 @@ def written_at(fn: Any) -> str:
     """Where a function is written, as `file:line`; empty for one that is not written in Python."""
     code = getattr(inspect.unwrap(fn), "__code__", None)
     return "" if code is None else str(Place(code.co_filename, code.co_firstlineno))
+
+
+def check_function(fn: Any, what: str, example: str) -> None:
+    """Check that what is to be called can be: it may have been called already, as in `spawn(self.work())`.
+
+    Args:
+        example: How the call is written.
+    """
+    if callable(fn):
+        return
+    shown = repr(fn)
+    if inspect.iscoroutine(fn):
+        fn.close()  # or Python complains of it as well
+        shown = f"what {fn.__qualname__}(...) returns"
+    raise DeclarationError(f"{what} takes the function itself and then its arguments: {example}, not {shown}")
+
+
+def check_plain(fn: Any, what: str) -> None:
+    """Check that a function for a thread is a `def`."""
+    if inspect.iscoroutinefunction(fn):
+        name = fn.__name__
+        raise DeclarationError(
+            f"{what} runs a `def` in a thread, and {name} is an `async def`: await {name}(...) itself"
+        )
 
 
 def check_callback(callback: Any, arguments: range, what: str, place: Place, hint: str = "") -> int:
@@ -117,6 +177,24 @@ def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: P
             )
 
 
+def check_returned(fn: Any, called: str, wanted: type, what: str, place: Place) -> None:
+    """Check that a handler is not annotated to return something else than it must.
+
+    Args:
+        called: What the wanted class is called.
+    """
+    annotation = inspect.signature(fn).return_annotation
+    found = _annotated(fn, annotation)
+    is_message = isinstance(found, type) and issubclass(found, Message) and not issubclass(wanted, found)
+    plain = next((kind for kind in _PLAIN if annotation in (kind, kind.__name__)), None)
+    if is_message or plain is not None:
+        name = (plain or found).__name__.replace("_", ".")
+        raise DeclarationError(f"{place}: {what}: {fn.__name__} returns {called}, and is annotated to return {name}")
+
+
+_PLAIN = (str, int, float, bool, bytes, list, dict, tuple)
+
+
 def _annotated(fn: Any, annotation: Any) -> Any:
     """The class that an annotation names; None for text that is no name known to the function's module."""
     if not isinstance(annotation, str):
@@ -135,6 +213,15 @@ def check_on_event(on_event: Any, what: str, place: Place) -> None:
             f"{place}: {what}: on_event= takes a method defined above it, `def noticed(self, event): ...`, "
             f"not {on_event!r}"
         )
+    check_hook(on_event, "on_event", "event", what, place)
+
+
+def check_hook(hook: Any, word: str, argument: str, what: str, place: Place) -> None:
+    """Check that a method that is called outside of any handler takes what it is given."""
+    takes = positional(hook) if inspect.isfunction(hook) else None
+    if takes is not None and not len(takes[0]) <= 2 <= takes[1]:
+        has = ", ".join(takes[0])
+        raise DeclarationError(f"{place}: {what}: {word}= calls {hook.__name__}(self, {argument}), which takes ({has})")
 
 
 def check_group(group: Any, kind: type | tuple[type, ...], what: str, place: Place) -> None:

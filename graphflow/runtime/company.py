@@ -8,6 +8,8 @@ from typing import Any
 
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.ending import StopRequest
+from graphflow.runtime.lost_errors import tell_lost_errors
 from graphflow.runtime.node import Node
 
 
@@ -19,7 +21,7 @@ class Company:
         ready: Called with each of the first nodes once it has started.
     """
 
-    def __init__(self, context: Context, stop: asyncio.Event, ready: Callable[[Node], None] | None = None) -> None:
+    def __init__(self, context: Context, stop: StopRequest, ready: Callable[[Node], None] | None = None) -> None:
         self._context, self._stop, self._ready = context, stop, ready
         self.nodes: list[Node] = []
         """The nodes, in the order in which they came; those that have ended themselves go with the others."""
@@ -27,6 +29,7 @@ class Company:
         """The nodes that run, and the task in which each end is waited for."""
         self._changed = asyncio.Event()
         """Set when a node has joined or left."""
+        stop.when_set = self._begin_to_stop
 
     async def run(self, nodes: Sequence[Node]) -> None:
         """Run nodes, and those that join, to their end. The caller then closes the context.
@@ -35,6 +38,7 @@ class Company:
             Exception: What ended a node.
         """
         self.nodes += nodes
+        tell_lost_errors(self._context.loop)
         asked = asyncio.create_task(self._stop.wait())
         try:
             try:
@@ -48,6 +52,14 @@ class Company:
             self._context.session.leave()
             for node in reversed(self.nodes):
                 await core_of(node).stop()
+
+    def _begin_to_stop(self) -> None:
+        """Let the node that is stopped first begin nothing more; the others go on until it has ended."""
+        running = [node for node in self.nodes if node in self._ends] or self.nodes
+        for node in running[-1:]:
+            for runner in core_of(node).begin_to_stop():
+                if runner is not None:
+                    runner.cancel()
 
     async def _see_through(self, asked: asyncio.Task[bool]) -> None:
         while self._ends and not asked.done():

@@ -24,6 +24,8 @@ from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.runtime.direct import Switchboard
 from graphflow.runtime.handover import Handover
 from graphflow.runtime.reasons import Reasons
+from graphflow.runtime.twins import Twins
+from graphflow.runtime.unmatched import Unmatched
 from graphflow.transport.base import Closable, Session
 from graphflow.transport.loop import in_thread
 from graphflow.transport.threads import THREADS
@@ -33,6 +35,7 @@ from graphflow.wire.profile import advice, wire_profile
 
 if TYPE_CHECKING:
     from graphflow.transport.link import Link
+    from graphflow.transport.rendezvous import Router
     from graphflow.transport.takeover import Takeover
 
 T = TypeVar("T")
@@ -92,6 +95,10 @@ class Context:
         self._listeners: list[Callable[[GraphChange], None]] = []
         self._by_name: dict[str, list[Callable[[GraphChange], None]]] = {}
         self._advised = False
+        self.twins = Twins(self)
+        self.on_name("", self.twins.changed)  # tokens of nodes have none of an endpoint
+        self.unmatched = Unmatched(self)
+        self.on_change(self.unmatched.changed)
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
 
     @classmethod
@@ -102,6 +109,7 @@ class Context:
         mode: str = "peer",
         checked: bool = False,
         link: bool = True,
+        router: Router | None = None,
         deadlock: DeadlockPolicy = "raise",
         call_timeout: float | None = CALL_TIMEOUT,
     ) -> Context:
@@ -112,6 +120,7 @@ class Context:
             mode: The Zenoh session's mode: `peer` or `client`.
             checked: The rendezvous was checked a moment ago by a process this one trusts.
             link: Link this machine to others too, if the environment says so.
+            router: The rendezvous, if it was checked and this process is it.
             deadlock, call_timeout: As for `Context`.
 
         Raises:
@@ -123,7 +132,7 @@ class Context:
 
         domain = domain_id(domain)
         loop = asyncio.get_running_loop()
-        takeover = Takeover(None if checked else establish())
+        takeover = Takeover(router if checked else establish())
         try:
             session = ZenohSession(loop, mode)
         except BaseException:  # cancellation included: nothing stays open
@@ -294,6 +303,8 @@ class Context:
     async def close(self) -> None:
         """Leave the network. Nodes must have been stopped before."""
         self.search.close()
+        self.twins.close()
+        self.unmatched.close()
         self._inspection.close()
         self.reasons.close()
         if self._link is not None:

@@ -25,17 +25,20 @@ from graphflow.names import Resolver
 from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declared
 from graphflow.runtime.binding import Binding, Creator
+from graphflow.runtime.checks import check_node
 from graphflow.runtime.context import Context
 from graphflow.runtime.declare import Group
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.failures import ErrorBudget, Failures, report
 from graphflow.runtime.host import Part
 from graphflow.runtime.logger import node_logger
+from graphflow.runtime.misplaced import check_made
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.other_threads import call_soon
 from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
 from graphflow.runtime.params import ParameterChange, Parameters
+from graphflow.runtime.repeats import Repeats
 from graphflow.runtime.rosout import Rosout
 from graphflow.runtime.services import ServiceServer
 from graphflow.runtime.slips import slips
@@ -103,6 +106,7 @@ class NodeCore:
         """What is opened once `on_start` has returned; None from then on."""
         self._binding = Binding(instance, self, self.parameters)
         self._failures = Failures(self, instance.error_budget, self._fail)
+        self._repeats = Repeats(self)
         self._token: Any = None
         self._own_services: set[str] = set()
         self._rosout: Rosout | None = None
@@ -156,7 +160,7 @@ class NodeCore:
 
     @property
     def hooks(self) -> frozenset[str]:
-        return _hooks(type(self.instance))
+        return declared.hooks(type(self.instance))
 
     @property
     def endpoints(self) -> list[Endpoint]:
@@ -216,11 +220,14 @@ class NodeCore:
             self._late.append(part)
         elif self._context is not None:
             part.open()
+        if self.has_started:
+            self._repeats.made(part)
         return part
 
     def forget(self, part: Part) -> None:
         if part in self.parts:
             self.parts.remove(part)
+        self._repeats.closed(part)
         if self._late and part in self._late:
             self._late.remove(part)
 
@@ -268,7 +275,8 @@ class NodeCore:
             if vars(self.instance).get(attribute) is not value:
                 cls = type(self.instance).__name__
                 raise DeclarationError(f"{cls}: every node has self.{attribute}; choose another name")
-        unused = self.parameters.unused_overrides()
+        check_made(self.instance)
+        unused = self.parameters.unused_overrides(type(self.instance))
         if unused:
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
 
@@ -309,8 +317,7 @@ class NodeCore:
                 self.spawn(getattr(self.instance, attribute))
 
     async def _open(self, context: Context) -> None:
-        zid = context.session.zid
-        node = Entity(context.domain, zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
+        node = Entity(context.domain, context.session.zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
         self._token = context.session.announce(node.token)
         assert self._late is not None
         for part in [part for part in self.parts if part not in self._late]:
@@ -373,7 +380,7 @@ class NodeCore:
         if context is None:
             return
         try:
-            await self.end([*(part.begin_to_stop() for part in self.parts), *self._binding.runners()], self.tasks)
+            await self.end(self.begin_to_stop(), self.tasks)
             await self._finish()
         finally:
             self.log.say_gathered()
@@ -389,6 +396,10 @@ class NodeCore:
             if self in context.nodes:  # two callers may stop a node
                 context.nodes.remove(self)
             self._context = None
+
+    def begin_to_stop(self) -> list[Runner | None]:
+        """Have timers and the like begin no more work; returns the runners, whose `cancel` does the same for runs."""
+        return [*(part.begin_to_stop() for part in self.parts), *self._binding.runners()]
 
     async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[Any]]) -> None:
         """Cancel what runs and give it time to clean up."""
@@ -480,17 +491,9 @@ def _handlers(cls: Any) -> frozenset[str]:
     return frozenset(handler.name for handler in cls.interface().handlers)
 
 
-@cache
-def _hooks(cls: type) -> frozenset[str]:
-    return declared.hooks(cls)
-
-
 def core_of(node: object) -> NodeCore:
-    """The workings of a `Node`, for what runs it.
-
-    Raises:
-        DeclarationError: Its `__init__` did not call `super().__init__`.
-    """
+    """The workings of a `Node`, for what runs it. Raises DeclarationError for what is none, or was not fully made."""
+    check_node(node)
     core = vars(node).get("_core")
     if not isinstance(core, NodeCore):
         raise DeclarationError(f"{type(node).__name__}.__init__ must call super().__init__(...)")

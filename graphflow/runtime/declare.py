@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, Self, TypeVar, get_args, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, NoReturn, Protocol, Self, TypeVar, get_args, overload
 
 from graphflow.errors import DeclarationError, GraphflowError, ParameterError, Place
 from graphflow.executor.groups import Groups, HandlerGroup
@@ -66,6 +66,7 @@ class Group:
         name: Its name, if not that of the attribute.
     """
 
+    @in_our_words
     def __init__(
         self, limit: int | None = 1, when_full: WhenFull = "wait", *, thread: bool = False, name: str = ""
     ) -> None:
@@ -119,6 +120,7 @@ class Publisher(Held, Generic[M]):
 
     MAKER = 'create_publisher(Type, "topic", 10), or declare Publisher(Type, "topic") in the class'
 
+    @in_our_words
     def __init__(
         self,
         type: type[M],  # noqa: A002
@@ -152,6 +154,7 @@ class Subscription(Held, Generic[M]):
 
     MAKER = 'create_subscription(Type, "topic", self.heard, 10), or declare @subscription(Type, "topic") on the method'
 
+    @in_our_words
     def __init__(
         self,
         type: type[M],  # noqa: A002
@@ -168,6 +171,10 @@ class Subscription(Held, Generic[M]):
         check_on_event(on_event, "Subscription", self.place)
         self.type, self.name, self.qos = type, name, check_qos(qos, depth, self.place)
         self.ignore_local, self.on_event = ignore_local, on_event
+
+    def __call__(self, method: object) -> NoReturn:
+        """Raise DeclarationError: the declaration was written as a decorator."""
+        raise DeclarationError(f"{here()}: on a method write @subscription(...), lower-case")
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -188,6 +195,7 @@ class Client(Held, Generic[Request, Response]):
 
     MAKER = 'create_client(Type, "name"), or declare Client(Type, "name") in the class'
 
+    @in_our_words
     def __init__(
         self,
         type: type[Service[Request, Response]],  # noqa: A002
@@ -215,6 +223,7 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
 
     MAKER = 'create_action_client(Type, "name"), or declare ActionClient(Type, "name") in the class'
 
+    @in_our_words
     def __init__(self, type: type[Action[Goal, Result, Feedback]], name: str) -> None:  # noqa: A002
         self.place = here()
         check_type(type, Action, "ActionClient", self.place)
@@ -263,11 +272,15 @@ class Param(Held, Generic[V]):
         self._name = name
         limits: dict[str, Any] = {"ge": ge, "le": le, "gt": gt, "lt": lt, "step": step}
         try:
+            if isinstance(default, (list, tuple)) and not default:
+                raise ParameterError("an empty list has no type: give it an element, as in [0.0]")
             self.parameter = Parameter(
                 name or "unnamed", type_of(default), default, self.place, unit, doc, read_only=read_only, **limits
             )
             if choices:
                 self.parameter = replace(self.parameter, choices=self._choices(choices))
+            if ge is not None and le is not None and ge > le:
+                raise ParameterError(f"ge={ge!r} is more than le={le!r}, so that no value fits")
             self.parameter.fit(default)
             if (self.parameter.range_text() or step) and self.parameter.type not in _NUMBERS:
                 raise ParameterError(f"limits are for numbers, and {default!r} is not a number")

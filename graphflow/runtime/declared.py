@@ -6,8 +6,10 @@ import inspect
 import re
 import sys
 from collections.abc import Iterator, Sequence
+from functools import cache
 from typing import Any, ClassVar, Protocol
 
+from graphflow.deadlock.user_code import is_users_module
 from graphflow.errors import DeclarationError, Place
 from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, GroupInfo, HandlerInfo, Interface, Parameter
 from graphflow.runtime.declare import (
@@ -81,6 +83,7 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
     return found
 
 
+@cache
 def hooks(cls: type) -> frozenset[str]:
     """The methods that are called outside any handler: by parameters, events, and to decide about goals."""
     found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
@@ -107,28 +110,37 @@ def reserved(node: type) -> set[str]:
 
 
 def check_attributes(cls: type, node: type) -> None:
-    """See that no declaration hides something that users call on a node, nor a method that does not call on it.
+    """See that nothing in a class hides something that users call on a node, but for methods that call on it.
 
     Args:
         node: The class `Node` itself.
 
     Raises:
-        DeclarationError: One does.
+        DeclarationError: Something does.
     """
     taken = reserved(node)
     found: dict[str, Any] = {**held(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
-        if inspect.isfunction(value) and not attribute.startswith("__") and "super" not in value.__code__.co_names:
+        function = getattr(value, "__func__", value)  # of a classmethod or staticmethod
+        is_override = inspect.isfunction(function) and "super" in function.__code__.co_names
+        is_meant = is_override or isinstance(value, property) or not is_users_module(cls.__module__)
+        if not attribute.startswith("_") and not is_meant:
             found.setdefault(attribute, value)
-    for attribute, declared in found.items():
-        if attribute in taken:
-            hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
-            text = f"every node has {attribute!r}; choose another name{hint}"
-            if inspect.isfunction(declared):
-                place = f"{Place(declared.__code__.co_filename, declared.__code__.co_firstlineno)}: "
-            else:
-                place = f"{declared.place}: " if hasattr(declared, "place") else f"{cls.__name__}: "
-            raise DeclarationError(f"{place}{text}")
+    for attribute, declared in ((name, value) for name, value in found.items() if name in taken):
+        hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
+        if attribute == "name" and isinstance(declared, str):
+            hint = f"; to name the nodes of the class write node_name = {declared!r}"
+        code = getattr(getattr(declared, "__func__", declared), "__code__", None)
+        place = getattr(declared, "place", None) or (
+            Place(code.co_filename, code.co_firstlineno) if code is not None else place_of(cls)
+        )
+        raise DeclarationError(f"{place}: every node has {attribute!r}; choose another name{hint}")
+
+
+def place_of(cls: type) -> Place:
+    """Where a class is written."""
+    module = sys.modules.get(cls.__module__)
+    return Place(getattr(module, "__file__", None) or cls.__module__, vars(cls).get("__firstlineno__", 0))
 
 
 def groups(cls: type) -> dict[str, Group]:
@@ -196,6 +208,12 @@ def interface_of(cls: type[NodeClass]) -> Interface:
         if handler.kind in ("subscription", "service", "action"):
             type_name = handler.type.SCHEMA.name if handler.kind == "subscription" else handler.type.NAME
             kind = handler.kind
+            same = [e for e in endpoints if (e.kind, e.name) == (kind, handler.name) and kind != "subscription"]
+            if same:
+                raise DeclarationError(
+                    f"{handler.place}: {attribute} offers the {kind} {handler.name!r}, which {same[0].attribute} "
+                    f"({same[0].place}) offers already; a client reaches one of them only"
+                )
             endpoints.append(EndpointInfo(kind, handler.name, type_name, attribute, handler.place))
     dynamic = cls.dynamic_names
     for pattern in () if isinstance(dynamic, bool) else dynamic:

@@ -9,9 +9,10 @@ import inspect
 import sys
 from collections.abc import Callable
 from functools import cache, wraps
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, ParamSpec, Self, TypeVar
+from typing import Any, ClassVar, Literal, NamedTuple, ParamSpec, Self, TypeVar
 
 from graphflow.errors import DeclarationError
+from graphflow.names import nearest
 from graphflow.runtime.place import here
 
 P = ParamSpec("P")
@@ -54,6 +55,7 @@ WORDS = (
     Word(
         '`create_subscription(String, "chatter", self.heard, 10)`',
         'the same, or `@subscription(String, "chatter", 10)`',
+        names="subscriber Subscriber",
     ),
     Word("`create_timer(1.0, self.tick)`", "the same, or `@timer(1.0)`, `@timer(hz=rate)`"),
     Word(
@@ -125,7 +127,7 @@ WORDS = (
     Word("`now().to_msg()`", "the `Time` itself, which can be put into a message", "to_msg"),
     Word("`now().nanoseconds`", "the same; `.seconds` as a float"),
     Word("`Duration(seconds=1.0)`", "`Duration.of(1.0)`"),
-    Word("`create_rate(10).sleep()`", "`async for n in self.clock.every(hz=10.0):`", "create_rate"),
+    Word("`create_rate(10).sleep()`", "`async for n in self.clock.every(hz=10.0):`", "create_rate", names="Rate"),
     Word("`create_guard_condition`", "an `asyncio.Event` that a `@task` awaits", "create_guard_condition"),
     Word(
         "`get_name()`, `get_namespace()`, `get_fully_qualified_name()`",
@@ -152,7 +154,7 @@ WORDS = (
         "default_callback_group",
         names="MutuallyExclusiveCallbackGroup",
     ),
-    Word("`ReentrantCallbackGroup()`", "`Group(None)`", names="ReentrantCallbackGroup"),
+    Word("`ReentrantCallbackGroup()`", "`Group(None)`", names="ReentrantCallbackGroup CallbackGroup"),
     Word("`callback_group=`", "`group=`, with a `Group` of the class", keywords="callback_group"),
     Word(
         "`SingleThreadedExecutor`, `MultiThreadedExecutor`",
@@ -232,6 +234,48 @@ WORDS = (
 )
 
 
+EXAMPLES = {
+    example.lstrip("@").partition("(")[0].partition(",")[0]: example
+    for example in (
+        'Publisher(String, "chatter", depth=10)',
+        'Subscription(String, "chatter", depth=10)',
+        'Client(AddTwoInts, "add")',
+        'ActionClient(Fibonacci, "fibonacci")',
+        "Param(1.0, ge=0.0, le=5.0)",
+        "Group(1)",
+        '@subscription(String, "chatter", depth=10)',
+        '@service(AddTwoInts, "add")',
+        '@action(Fibonacci, "fibonacci")',
+        "@timer(0.5)",
+        "@task, without parentheses",
+        'create_publisher(String, "chatter", 10)',
+        'create_subscription(String, "chatter", self.heard, 10)',
+        'create_service(AddTwoInts, "add", self.add)',
+        'create_client(AddTwoInts, "add")',
+        'create_action_server(Fibonacci, "fibonacci", self.count)',
+        'create_action_client(Fibonacci, "fibonacci")',
+        "create_timer(0.5, self.tick)",
+        'declare_parameter("rate", 1.0)',
+        "call(AddTwoInts.Request(a=1, b=2), timeout=2.0)",
+        "send(Fibonacci.Goal(order=10))",
+        "send_goal(Fibonacci.Goal(order=10))",
+        'publish(String(data="hello"))',
+    )
+} | {"Timer": "@timer(0.5), lower-case, above a method"}
+"""How a call is written whose arguments are wrong, by the name of the function."""
+
+OF_PARTS = {
+    "publish": 'a publisher has it: words = Publisher(String, "words") in the class, self.words.publish(message)',
+    "call": 'a client has it: adder = Client(AddTwoInts, "add") in the class, await self.adder.call(request)',
+    "send_goal": "an ActionClient of the class has it",
+    "sleep": "the clock has it: await self.clock.sleep(0.5)",
+    "now": "the clock has it: self.clock.now()",
+    **{level: f"the logger has it: self.log.{level}(...)" for level in ("debug", "info", "warning", "error")},
+    "warn": "the logger has it: self.log.warning(...)",
+    "logger": "here it is self.log",
+}
+"""Attributes that are looked for on a node, and belong to what it holds."""
+
 Kind = Literal["attributes", "keywords", "names"]
 
 
@@ -264,9 +308,37 @@ def in_our_words(function: Callable[P, T]) -> Callable[P, T]:
             taken = ", ".join(name for name in first if name != "self")
             more = f"; what follows goes by name: {', '.join(rest)}" if rest else ""
             raise DeclarationError(f"{here()}: {called} takes {taken}{more}")
-        return function(*args, **kwargs)
+        try:
+            return function(*args, **kwargs)
+        except TypeError:
+            fault = _fault(function, args, kwargs)
+            if not fault:
+                raise
+        raise DeclarationError(f"{here()}: {called} {fault}; write {EXAMPLES[called]}")
 
     return checked
+
+
+def _fault(function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
+    """How arguments do not fit a function, after its name; empty if they do, and the error is another."""
+    signature = inspect.signature(function)
+    try:
+        signature.bind(*args, **kwargs)
+    except TypeError:
+        pass
+    else:
+        return ""
+    taken = [name for name in signature.parameters if name != "self"]
+    strange = [word for word in kwargs if word not in taken]
+    if strange:
+        near = nearest(strange[0], taken)
+        return f"has no {strange[0]}={f' (but {near}=)' if near else ''}"
+    try:
+        given = signature.bind_partial(*args, **kwargs).arguments
+    except TypeError as error:
+        return f"was given {error}"
+    needed = [p.name for p in signature.parameters.values() if p.default is p.empty and p.name not in given]
+    return f"needs {' and '.join(needed)}"
 
 
 class MadeByNodes:
@@ -282,19 +354,17 @@ class MadeByNodes:
 
 
 class SpeaksRos:
-    """A class whose AttributeErrors say what rclpy's attributes are called here."""
+    """A class of whose missing attributes reports say what rclpy's are called here; see `attribute_errors`."""
+
+    __slots__ = ()
 
     def _hint(self, name: str) -> str:
         """What else could be meant by an attribute that is not there."""
         return ""
 
-    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
-
-        def __getattr__(self, name: str) -> object:
-            """Raise AttributeError: this is called for what is not there."""
-            text = f"{type(self).__name__!r} object has no attribute {name!r}"
-            hint = translation(name) or self._hint(name)
-            raise AttributeError(f"{text}; {hint}" if hint else text, name=name, obj=self)
+    def _instead_of(self, name: str) -> str:
+        """The whole text about an attribute that is not there, where Python's own does not help; empty otherwise."""
+        return ""
 
 
 def page() -> str:

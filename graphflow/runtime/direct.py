@@ -19,12 +19,23 @@ import logging
 from asyncio import AbstractEventLoop
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from graphflow.errors import DecodeError
+from graphflow.errors import DecodeError, RemoteError, ServerBusy
 from graphflow.executor.runner import BURST, Runner
 from graphflow.qos import SERVICES
-from graphflow.transport.base import Answer, Closable, Inbox, Payload, Sender, Session
+from graphflow.transport.base import (
+    BYTES_BOUND,
+    REQUESTS_BOUND,
+    Answer,
+    Closable,
+    Inbox,
+    Payload,
+    RequestInbox,
+    Sender,
+    Session,
+    size_of,
+)
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
 
@@ -34,11 +45,23 @@ _HELLO = 0
 """The sequence number that opens a line."""
 EARLY_BOUND = 256
 """Hellos that are remembered until the client's token comes."""
+_NO_ROOM = RemoteError(ServerBusy.__name__, "too much waited for a process that did not attend to it").to_payload()
+"""The answer where there was no room."""
+_DEPTH = {"ask": REQUESTS_BOUND, "answer": 10 * REQUESTS_BOUND}
+"""Of answers there are no more than calls, which have been let begin."""
+_NAMES = {"ask": "requests of other processes", "answer": "answers of other processes"}
 _WHERE_BOUND = 80
 """Bytes of a hello: a session's id and an endpoint's."""
 
-Heard = Callable[[bytes, bytes, int, bytes], None]
-"""Called with what arrives: payload, attachment, and of that the sequence number and the GID."""
+Heard = Callable[[bytes | None, bytes, int, bytes], None]
+"""Called with what arrives: payload, attachment, and of that the sequence number and the GID. No payload: refused."""
+
+
+class _Refused(NamedTuple):
+    """The rest of an arrival for which there was no room, so that it can be answered."""
+
+    key: str
+    attachment: bytes | None
 
 
 class _Listener(NamedTuple):
@@ -64,6 +87,8 @@ class Switchboard:
         found: list[tuple[Runner, bytes, int]] = []
         session = self._session
         for arrival in list(self._inboxes["ask"].items) if "ask" in self._inboxes else ():
+            if arrival.__class__ is _Refused:
+                continue
             listener = self._listeners.get(("ask", session.key_of(arrival).rpartition("/")[2]))
             try:
                 sequence, _, gid = attachment.fields((session.read(arrival)[1] or b"")[: attachment.SIZE])
@@ -82,20 +107,32 @@ class Switchboard:
         if what not in self._receivers:
             # One for the process: Zenoh starts a thread for each.
             session = self._session
-            inbox = self._inboxes[what] = Inbox(session.bell, None, lambda: self._deliver(what, inbox))
-            self._receivers[what] = session.open_receiver(self.key(what, session.zid, "*"), SERVICES, inbox)
+            inbox: RequestInbox
+
+            def deliver() -> None:
+                self._deliver(what, inbox)
+
+            def refuse(arrival: Any) -> _Refused:
+                return _Refused(session.key_of(arrival), session.read(arrival)[1])
+
+            inbox = self._inboxes[what] = RequestInbox(session.bell, _DEPTH[what], deliver, size_of, refuse)
+            inbox.tell_losses(lambda: warn_of_refused(inbox, _NAMES[what]), 1)
+            options = {"in_order": True}  # a thread in between would cost a tenth of a call
+            self._receivers[what] = session.open_receiver(self.key(what, session.zid, "*"), SERVICES, inbox, **options)
 
     def _deliver(self, what: str, inbox: Inbox) -> None:
         session, listeners = self._session, self._listeners
         for _ in range(min(BURST, len(inbox.items))):
             arrival = inbox.items.popleft()
-            listener = listeners.get((what, session.key_of(arrival).rpartition("/")[2]))
+            refused = arrival if arrival.__class__ is _Refused else None
+            key = session.key_of(arrival) if refused is None else refused.key
+            listener = listeners.get((what, key.rpartition("/")[2]))
             if listener is not None:
-                payload, beside = session.read(arrival)
+                payload, beside = session.read(arrival) if refused is None else (None, refused.attachment)
                 try:
                     sequence, _, gid = attachment.fields((beside or b"")[: attachment.SIZE])
                 except DecodeError as error:
-                    logger.debug("%s: %s", session.key_of(arrival), error)
+                    logger.debug("%s: %s", key, error)
                     continue
                 listener.heard(payload, beside or b"", sequence, gid)
         if inbox.items:  # callers that are faster than the handlers must not hold the loop
@@ -108,13 +145,30 @@ class Switchboard:
         return self._session.open_sender(self.key(what, zid, eid), SERVICES, changed)
 
 
+def warn_of_refused(inbox: RequestInbox, what: str) -> None:
+    """Tell of requests for which there was no room."""
+    logger.warning(
+        "%s: %d were refused so far, since %d of them, or %d MB, waited: the event loop is blocked, or they come "
+        "faster than it takes them; graphflow waits says where it is",
+        what,
+        inbox.dropped,
+        inbox.depth,
+        BYTES_BOUND >> 20,
+    )
+
+
+def unanswered(request: Any) -> None:
+    """Let go of a request that came as a query: the network tells its client at once that no answer comes."""
+
+
 class DirectRequest:
     """A request that came over a line; see `transport.base.Request`. Its attachment may end with a chain."""
 
-    __slots__ = ("_answer", "attachment", "payload")
+    __slots__ = ("_answer", "attachment", "payload", "size")
 
     def __init__(self, payload: bytes, beside: bytes, answer: Callable[[Payload, bytes], None]) -> None:
         self.payload, self.attachment, self._answer = payload, beside, answer
+        self.size = len(payload)
 
     def reply(self, payload: Payload, attachment: bytes) -> None:
         self._answer(payload, attachment)
@@ -161,12 +215,13 @@ class ServerLines:
         if sender is not None:
             sender.close()
 
-    def _heard(self, payload: bytes, beside: bytes, sequence: int, gid: bytes) -> None:
+    def _heard(self, payload: bytes | None, beside: bytes, sequence: int, gid: bytes) -> None:
         if sequence == _HELLO:
-            self._greet(payload, gid)
+            self._greet(payload or b"", gid)
         elif sequence > 0 and gid in self._senders:
             self._unanswered += 1
-            self._asked(DirectRequest(payload, beside, self._answer))
+            request = DirectRequest(payload or b"", beside, self._answer)
+            self._asked(request) if payload is not None else request.reply_error(_NO_ROOM)
 
     def _answer(self, payload: Payload, beside: bytes) -> None:
         sender = self._senders.get(beside[attachment.SIZE - 16 : attachment.SIZE])
@@ -248,13 +303,13 @@ class ClientLine:
     def _give_up(self, sequence: int) -> None:
         self._pending.pop(sequence, None)
 
-    def _heard(self, payload: bytes, beside: bytes, sequence: int, gid: bytes) -> None:
+    def _heard(self, payload: bytes | None, beside: bytes, sequence: int, gid: bytes) -> None:
         if sequence == _HELLO:
             self.is_open = self.is_open or (gid == self.server.gid and self._sender.is_wanted)
             return
         answered = self._pending.pop(abs(sequence), None)
         if answered is not None:
-            answered(Answer(payload, beside, sequence < 0))
+            answered(Answer(_NO_ROOM, beside, True) if payload is None else Answer(payload, beside, sequence < 0))
 
     def close(self) -> None:
         """Hang up. Calls that still wait learn that the server has gone."""

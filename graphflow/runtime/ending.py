@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import multiprocessing
 import os
 import signal
 import threading
@@ -22,10 +21,29 @@ SAME_SIGNAL = 0.1
 """Seconds within which a second signal counts as the first."""
 REMIND_AFTER = 1.0
 """Seconds after a signal at which a program that is still stopping says so, and what it waits for."""
-LOOK_EVERY = 1.0
-"""Seconds between two looks at whether the handlers are still in place."""
+LOOK_AFTER, LOOK_EVERY = 1.0, 60.0
+"""Seconds until it is first looked whether the handlers are still in place, and between two looks at most: libraries
+take signals when they are begun to be used, and each look comes after twice as long as the one before."""
 _MANAGER = "_ExecutorManagerThread"
 """The class of the thread that keeps the interpreter until the work of a `ProcessPoolExecutor` is done."""
+
+
+class StopRequest(asyncio.Event):
+    """Set when a program is to stop.
+
+    Code that waits for it goes on only some turns of the loop later, and a timer that is due runs in each of them.
+    `when_set` is called at once.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.when_set: Callable[[], object] | None = None
+
+    def set(self) -> None:
+        is_first = not self.is_set()
+        super().set()
+        if is_first and self.when_set is not None:
+            self.when_set()
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
@@ -61,9 +79,9 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 
     # Not the loop's own handlers, which would wait for a handler that does not return.
     former = {number: signal.signal(number, caught) for number in _stop_signals()}
-    watch = loop.call_later(LOOK_EVERY, lambda: look())
+    watch = loop.call_later(LOOK_AFTER, lambda: look(LOOK_AFTER))
 
-    def look() -> None:
+    def look(waited: float) -> None:
         nonlocal watch
         others = {number: found for number in former if (found := signal.getsignal(number)) is not caught}
         for number, found in others.items():
@@ -74,7 +92,8 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
                 number.name,
             )
         if not others:
-            watch = loop.call_later(LOOK_EVERY, look)
+            wait = min(2 * waited, LOOK_EVERY)
+            watch = loop.call_later(wait, look, wait)
 
     def restore() -> None:
         watch.cancel()
@@ -116,6 +135,8 @@ def hindrances() -> Iterator[str]:
         if thread.daemon or thread.ident is None:
             continue
         if type(thread).__name__ == _MANAGER:
+            import multiprocessing  # which that thread's pool has imported
+
             workers = ", ".join(str(child.pid) for child in multiprocessing.active_children())
             yield f"the work of a process pool, processes {workers}"
         elif (frame := innermost(called_by_loop(stack_of(thread.ident)))) is not None:

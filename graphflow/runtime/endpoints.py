@@ -8,7 +8,7 @@ from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
 
-from graphflow.errors import ClosedError
+from graphflow.errors import ClosedError, DecodeError
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.machines.cache import GraphChange
 from graphflow.machines.matching import verdict
@@ -63,6 +63,8 @@ class Endpoint(Part):
         self._events: deque[QosEvent] = deque()
         self._event_totals: Counter[QosEventKind] = Counter()
         self._stop_listening: Callable[[], None] = _nothing
+        self.malformed = 0
+        """Payloads that were not a message of the type and were dropped."""
         self._complained: dict[str, int] = {}
         """Until when a complaint is not told again, in nanoseconds."""
 
@@ -78,6 +80,12 @@ class Endpoint(Part):
             "matched": len(self.matched),
             **{kind: n for kind, n in self._event_totals.items() if kind != "matched"},
         }
+
+    def count_malformed(self, error: DecodeError) -> None:
+        """A payload was not a message of the type."""
+        self.malformed += 1
+        if self.malformed == 1 or self.malformed % 1000 == 0:
+            self.host.log.warning("%s: dropped a malformed message (%d so far): %s", self.name, self.malformed, error)
 
     @property
     def endpoints(self) -> tuple[Endpoint, ...]:
@@ -114,6 +122,8 @@ class Endpoint(Part):
         self._stop_listening = context.on_name(self.name, self._counterpart)
         for entity in there:
             self._counterpart(GraphChange(entity, True))
+        if not self.matched:
+            context.unmatched.opened(self.entity, host.log)
 
     @abstractmethod
     def _open(self, key: str) -> None:
@@ -157,7 +167,8 @@ class Endpoint(Part):
         if not self.host.is_running:  # it has stopped and leaves the network with its context
             return
         other = change.entity
-        judged = verdict(self._announced(), other, self.host.context.profile)
+        own = self._announced()
+        judged = verdict(own, other, self.host.context.profile)
         if judged is None:
             return
         if judged.reaches and change.alive != (other.token in self.matched):
@@ -172,7 +183,9 @@ class Endpoint(Part):
             self._tell("matched", int(change.alive), step, len(self.matched), other.node_name)
             self._matched(other, change.alive)
         if change.alive and judged.complaint:
-            self._complain(judged.complaint)
+            is_own = (other.zid, other.nid) == (own.zid, own.nid)
+            if not is_own or own.kind in (Kind.SUBSCRIPTION, Kind.CLIENT):  # of two ends of a node one tells
+                self._complain(judged.complaint)
             if judged.reaches:
                 self._tell("incompatible_qos", detail=", ".join(judged.policies))
             else:

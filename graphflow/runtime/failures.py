@@ -11,7 +11,9 @@ from typing import NamedTuple
 from graphflow.deadlock.user_code import place_in, users_part
 from graphflow.errors import DeadlockError, GraphflowError, TooManyErrors
 from graphflow.interface import OnError
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.host import Host
+from graphflow.runtime.python_errors import remark_on
 from graphflow.times import NANOSECONDS, to_ns
 
 
@@ -24,7 +26,11 @@ class ErrorBudget(NamedTuple):
 
 def report(log: logging.Logger, label: str, error: BaseException) -> None:
     """Log an error: graphflow's own as a sentence, any other with its traceback."""
-    if isinstance(error, DeadlockError):
+    explain(error)
+    if isinstance(error, (SystemExit, KeyboardInterrupt)):
+        text = "%s: ends the process by %s (%s); self.shutdown() ends the node, and the process with its last node"
+        log.warning(text, label, type(error).__name__, place_in(error))
+    elif isinstance(error, DeadlockError):
         log.error("%s", _with_line(label, error))
     elif isinstance(error, GraphflowError):
         place = place_in(error)
@@ -32,8 +38,15 @@ def report(log: logging.Logger, label: str, error: BaseException) -> None:
     elif not place_in(error):  # it was raised about the user's code, not in it
         log.error("%s: %s: %s", label, type(error).__name__, error)
     else:
-        trace = (type(error), error, users_part(error))
-        log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
+        log_with_traceback(log, f"{label}: ", error)
+
+
+def log_with_traceback(log: logging.Logger, prefix: str, error: BaseException) -> None:
+    """Log an error with what to write instead, as far as that is known, and with the user's part of its traceback."""
+    explain(error)
+    remark, trace = remark_on(error), (type(error), error, users_part(error))
+    text = "; ".join(filter(None, [str(error), remark]))
+    log.error("%s%s: %s", prefix, type(error).__name__, text, exc_info=trace)
 
 
 def _with_line(label: str, error: DeadlockError) -> str:

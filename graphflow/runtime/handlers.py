@@ -18,13 +18,15 @@ from graphflow.qos import Qos
 from graphflow.runtime.checks import (
     check_annotations,
     check_group,
+    check_hook,
     check_name,
     check_on_error,
     check_on_event,
     check_qos,
+    check_returned,
     check_type,
 )
-from graphflow.runtime.declare import Group, Param
+from graphflow.runtime.declare import HOOK_MARK, Group, Param, ParamHook
 from graphflow.runtime.dictionary import in_our_words
 from graphflow.runtime.place import here
 from graphflow.runtime.service_events import Introspection
@@ -86,6 +88,12 @@ class Rate:
         def plain(source: float | Param[Any] | None) -> float | None:
             if not isinstance(source, Param):
                 if source is not None and not isinstance(source, (int, float)):
+                    hook = getattr(source, HOOK_MARK, None)
+                    if isinstance(hook, ParamHook):
+                        raise TypeError(
+                            f"{source.__name__!r} is now the method of {hook.place}, which has taken the name of "
+                            f"the Param of {hook.param.place}; give the method another name"
+                        )
                     raise TypeError(f"a period or frequency is a number or a Param, not {source!r}")
                 return None if source is None else float(source)
             return float(source.parameter.default if values is None else values[source.parameter.name])
@@ -116,11 +124,18 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
         has = f"({', '.join(p.name for p in positional)})"
         raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}")
     check_annotations(fn, _given(handler), f"@{handler.kind}", handler.place)
+    if (part := _RETURNED.get(handler.kind)) is not None:
+        called = f"{handler.type.__name__}.{part}"
+        check_returned(fn, called, getattr(handler.type, part), f"@{handler.kind}", handler.place)
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
     takes_info = (handler.kind, len(positional)) in (("timer", 2), ("subscription", 3))
     # A separate record: `every = timer(1.0)` may decorate several methods.
     setattr(fn, MARK, replace(handler, place=place, takes_info=takes_info))
     return fn
+
+
+_RETURNED = {"service": "Response", "action": "Result"}
+"""The part of an interface that a handler returns."""
 
 
 def _given(handler: Handler) -> dict[str, type]:
@@ -255,6 +270,7 @@ def action(
     for word, hook in (("accept", accept), ("cancellable", cancellable)):
         if not (hook is None or isinstance(hook, bool) or inspect.isfunction(hook)):
             raise DeclarationError(f"{place}: @action: {word}= takes a method defined above it, not {hook!r}")
+        check_hook(hook, word, "goal", "@action", place)
     if not cleanup_timeout > 0:
         raise DeclarationError(f"{place}: cleanup_timeout must be more than 0 seconds, not {cleanup_timeout!r}")
     options = ActionOptions(policy, accept, cancellable, on_client_loss, cleanup_timeout)
@@ -262,6 +278,7 @@ def action(
     return lambda fn: _mark(fn, handler, range(2, 3))
 
 
+@in_our_words
 def task(fn: F) -> F:
     """Run the method once the node is up, alongside everything else it does. An error in it ends the node."""
     place = here()

@@ -11,6 +11,8 @@ from pathlib import Path
 from types import CodeType
 from typing import TYPE_CHECKING, Any
 
+from graphflow.runtime.lately import Lately
+
 ROOT = "graphflow.node"
 FREE = 10
 """Warnings and errors that one line of code may log in a second before they are gathered."""
@@ -90,6 +92,7 @@ class NodeLogger(OwnLogger):
         self._lock = threading.Lock()
         self.gathered = 0
         """Lines that were only counted."""
+        self.gathered_lately = Lately()
 
     if TYPE_CHECKING:  # what Python's own methods hand on to `_log`
 
@@ -170,6 +173,7 @@ class NodeLogger(OwnLogger):
             if flow.count > FREE or flow.is_flood:
                 flow.unsaid += 1
                 self.gathered += 1
+                self.gathered_lately.note()
                 return None
             return ""
 

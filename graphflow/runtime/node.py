@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from graphflow.errors import DeclarationError
 from graphflow.executor.clock import Clock, period_ns
@@ -21,8 +21,10 @@ from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.checks import (
     check_callback,
+    check_function,
     check_group,
     check_on_error,
+    check_plain,
     check_qos,
     check_text,
     check_type,
@@ -31,17 +33,18 @@ from graphflow.runtime.checks import (
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import NodeCore
 from graphflow.runtime.declare import Group, Param
-from graphflow.runtime.dictionary import SpeaksRos, in_our_words
+from graphflow.runtime.dictionary import OF_PARTS, SpeaksRos, in_our_words
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.made import with_made
+from graphflow.runtime.misplaced import check_hooks, check_misplaced, check_module
 from graphflow.runtime.other_threads import call_soon
 from graphflow.runtime.place import here
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.service_events import Introspection
-from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.services import OFFERED_TWICE, ServiceServer
 from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.runtime.timer import Timer
 from graphflow.runtime.twice import check_names
@@ -118,6 +121,7 @@ class Node(SpeaksRos):
     @classmethod
     def interface(cls) -> Interface:
         """Everything the class declares, and what its methods are seen to make, as data; known without a node."""
+        check_module(cls)
         check_names(cls)  # type: ignore[arg-type]
         return with_made(cls, declared.interface_of(cls))
 
@@ -125,6 +129,8 @@ class Node(SpeaksRos):
         super().__init_subclass__(**kwargs)
         if "__firstlineno__" not in vars(cls):
             cls.__firstlineno__ = declared.class_line()
+        check_misplaced(cls)
+        check_hooks(cls)
         declared.check_attributes(cls, Node)
         unrun.defined(cls)
         declared.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
@@ -135,16 +141,12 @@ class Node(SpeaksRos):
     def _hint(self, name: str) -> str:
         core = vars(self).get("_core")
         if core is None or name not in core.parameters:
-            return ""
+            return OF_PARTS.get(name, "")
         return f'a parameter is read by self.parameters.get("{name}"), or declared in the class: {name} = Param(...)'
 
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            """Raise AttributeError, which says what rclpy's attributes are called here."""
-            if name in ("_core", "log", "parameters"):
-                raise AttributeError(f"{type(self).__name__}.__init__ must call super().__init__(...) first", name=name)
-            return super().__getattr__(name)
+    def _instead_of(self, name: str) -> str:
+        is_unmade = name in ("_core", "log", "parameters")
+        return f"{type(self).__name__}.__init__ must call super().__init__(...) first" if is_unmade else ""
 
     @property
     def name(self) -> str:
@@ -290,6 +292,10 @@ class Node(SpeaksRos):
         label, call, slots = core.place(callback, f"service {name}", group, thread)
         takes: dict[str, Any] = {"takes_response": arguments == 2, "place": written_at(callback)}
         made = ServiceServer(core, type_, resolved, Qos.of(qos), call, label, slots, **takes)
+        for other in core.parts:
+            if isinstance(other, ServiceServer) and other.name == resolved:
+                servers = [part for one in (other, made) for part in (one.handler_title, one.place)]
+                core.log.warning(OFFERED_TWICE, resolved, *servers)
         made.configure_introspection(introspection)
         return core.add(made, late=True)
 
@@ -408,6 +414,8 @@ class Node(SpeaksRos):
 
         At most 32 run at a time, those of all nodes of the process together; others wait their turn.
         """
+        check_function(fn, "offload", "await self.offload(time.sleep, 0.5)")
+        check_plain(fn, "offload")
         return await self.context.offload(fn, *args)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
@@ -415,6 +423,7 @@ class Node(SpeaksRos):
 
         An error in it ends the node.
         """
+        check_function(fn, "spawn", "self.spawn(self.work)")
         if self.context.is_here:
             self._core.spawn(fn, *args)
         else:
@@ -428,6 +437,7 @@ class Node(SpeaksRos):
         Raises:
             ClosedError: The node does not run.
         """
+        check_function(fn, "call_soon", "self.call_soon(self.work)")
         call_soon(self._core, fn, args)
 
     async def on_start(self) -> None:

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from graphflow.executor.clock import Clock
+from graphflow.executor.clock import Alarm, Clock
 from graphflow.executor.sim_time import SimClock
 from graphflow.qos import CLOCK
 from graphflow.runtime.host import Host
 from graphflow.runtime.subscriptions import TopicSubscription
-from graphflow.times import NANOSECONDS
+from graphflow.times import NANOSECONDS, to_ns
 
 TIMELESS = (
     "it goes by simulated time (use_sim_time), and nothing has come on /clock: its timers stand still. Start the "
     "simulator, or play a bag with --clock, or set use_sim_time to false"
 )
+TELL_AFTER = 3.0
+"""Seconds that simulated time has to begin until the node's log tells that it has not."""
 
 
 class NodeClock:
@@ -34,6 +36,7 @@ class NodeClock:
     ) -> None:
         self._host, self._resolve, self._add = host, resolve, add
         self._simulated: tuple[SimClock, TopicSubscription[Any]] | None = None
+        self._alarm: Alarm | None = None
 
     @property
     def current(self) -> Clock:
@@ -59,7 +62,15 @@ class NodeClock:
             heard = TopicSubscription(self._host, ClockMessage, self._resolve("/clock"), CLOCK, told)
             heard.is_inner = True
             self._simulated = (clock, self._add(heard))
+            real = self._host.context.clock
+            self._alarm = real.call_at(real.monotonic_ns() + to_ns(TELL_AFTER), self._tell)
         elif not is_simulated and former is not None:
             self._simulated = None
+            if self._alarm is not None:
+                self._alarm.cancel()
             former[1].close()
             former[0].retire(self.current)
+
+    def _tell(self) -> None:
+        for text in self.complaints() if self._host.is_running else ():
+            self._host.log.warning("%s", text)

@@ -5,8 +5,8 @@ Source: rclpy's rules for declared parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple, NoReturn
 
 from graphflow.errors import ParameterError
 from graphflow.interface import Parameter
@@ -72,13 +72,30 @@ class Parameters:
         del self._declared[name], self._sources[name]
         self._tell({name: ParameterChange(value, None)})
 
-    def unused_overrides(self) -> list[str]:
-        """Overrides for which no parameter has been declared, as helpful sentences."""
+    def unused_overrides(self, owner: type = object) -> list[str]:
+        """Overrides for which no parameter has been declared, as helpful sentences.
+
+        Args:
+            owner: The class of the node, whose plain attributes may be meant as parameters.
+        """
+
+        def hint(name: str) -> str:
+            value = getattr(owner, name, None)
+            is_plain = isinstance(value, (bool, int, float, str))
+            return f"; write {name} = Param({value!r})" if is_plain else did_you_mean(name, self._declared)
+
         return [
-            f"there is no parameter {name!r} (from {source}){did_you_mean(name, self._declared)}"
+            f"there is no parameter {name!r} (from {source}){hint(name)}"
             for name, (_, source) in self._overrides.items()
             if name not in self._declared
         ]
+
+    def __getitem__(self, name: str) -> NoReturn:
+        """Raise TypeError, which says how a value is read."""
+        raise TypeError(f'a value is read by parameters.get("{name}"), or self.{name} where the class declares it')
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names())
 
     def __contains__(self, name: object) -> bool:
         return name in self._declared
@@ -112,6 +129,8 @@ class Parameters:
             ParameterError: One is unknown, read-only, of another type, out of range, or refused by a check; nothing
                 was changed.
         """
+        if not isinstance(values, Mapping):
+            raise ParameterError(f'several are set at once, by name: parameters.set({{"rate": 2.0}}), not {values!r}')
         fitted = {}
         for name, value in values.items():
             declared = self.describe(name)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from threading import get_ident
+from time import sleep
 from typing import Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, EncodeError
@@ -16,10 +18,42 @@ from graphflow.runtime.events import OnEvent, SilenceTimer
 from graphflow.runtime.handover import Handed, Receiver
 from graphflow.runtime.host import Host
 from graphflow.transport.base import Payload, Sender
-from graphflow.wire.attachment import pack
+from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
+_pack = attachment.LAYOUT.pack
+
+
+class _Order:
+    """Lets messages leave in the order of their numbers, whichever thread publishes them.
+
+    A lock costs as much as encoding a small message, so the first thread that publishes takes it only once another
+    does, too.
+    """
+
+    __slots__ = ("is_sending", "is_shared", "lock", "thread")
+
+    def __init__(self) -> None:
+        self.lock = threading.RLock()
+        self.thread = 0
+        """The first thread that has published."""
+        self.is_shared = False
+        """Whether others have."""
+        self.is_sending = False
+        """Whether the first is sending a message without the lock."""
+
+    def look_who_publishes(self) -> None:
+        """Called in a thread that is not known to be the first, before it publishes."""
+        if self.is_shared:
+            return
+        with self.lock:
+            if not self.thread:
+                self.thread = get_ident()
+                return
+            self.is_shared = True
+            while self.is_sending:  # the first thread sees with its next message that it must take the lock
+                sleep(0)
 
 
 class TopicPublisher(Endpoint, Generic[M]):
@@ -32,8 +66,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         self.type = type_
         self.published = 0
         """Messages sent since the start; also the last sequence number."""
-        self._order = threading.RLock()
-        """Messages leave in the order of their numbers, whichever thread publishes them."""
+        self._order = _Order()
         self._codec = registry.codec(self.type_name)
         self._sender: Sender = _NOT_OPEN
         self._gid = bytes(16)
@@ -78,18 +111,29 @@ class TopicPublisher(Endpoint, Generic[M]):
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
-            raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
+            hint = f"; write {self.type.__name__}(...)" if isinstance(message, type) else ""
+            raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}{hint}")
         sender = self._sender
         if self._here:
             self._hand_over(message, sender)
         elif sender.is_wanted:
             payload = self._codec.encode(message)
-            with self._order:
-                self.published += 1
-                try:
-                    sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
-                except Exception as error:
-                    raise self._not_sent(error) from None
+            order = self._order
+            if get_ident() != order.thread:
+                order.look_who_publishes()
+            order.is_sending = True
+            try:
+                if order.is_shared:
+                    order.is_sending = False
+                    with order.lock:
+                        self._send(sender, payload)
+                else:
+                    self.published += 1
+                    sender.put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
+            except Exception as error:
+                raise self._not_sent(error) from None
+            finally:
+                order.is_sending = False
         elif self._paused is not None:
             self._complain(f"what is published on {self.name} is not sent: {self.idle_because}")
             return
@@ -101,12 +145,18 @@ class TopicPublisher(Endpoint, Generic[M]):
         if self._lease is not None:
             self._lease.touch()
 
+    def _send(self, sender: Sender, payload: Payload) -> None:
+        self.published += 1
+        sender.put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
+
     def _hand_over(self, message: M, sender: Sender) -> None:
         """Give a copy to the subscriptions of this process, and send it if others want it."""
         clone, receivers = self._codec.clone, tuple(self._here)  # which may change: this may be another thread
         copy = clone(message)
         payload = self._codec.encode(copy) if sender.is_wanted else None
-        with self._order:
+        if get_ident() != self._order.thread:
+            self._order.look_who_publishes()
+        with self._order.lock:
             self.published += 1
             fields = (self.published, self._now_ns(), self._gid)
             handed = Handed(copy, fields, len(receivers), clone)
@@ -114,7 +164,7 @@ class TopicPublisher(Endpoint, Generic[M]):
                 receiver.hand(handed)
             if payload is not None:
                 try:
-                    sender.put(payload, attachment=pack(*fields))
+                    sender.put(payload, attachment=attachment.pack(*fields))
                 except Exception as error:
                     raise self._not_sent(error) from None
 

@@ -15,6 +15,7 @@ from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
 from graphflow.runtime import unawaited
 from graphflow.runtime.host import Host, Part
+from graphflow.runtime.lately import Lately
 from graphflow.runtime.logger import ROOT, keep_loggers
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.times import Time
@@ -132,15 +133,18 @@ class Rosout(Part):
         self._host, self._handler = host, _RosoutHandler(self)
         self._thread = 0
         self._publisher = TopicPublisher(host, Log, "/rosout", ROSOUT)
-        self._lines = 0
+        self._lines, self._lately = 0, Lately()
 
     @property
     def title(self) -> str:
         return "log"
 
     def statistics(self) -> dict[str, Any]:
-        """Lines that the node has logged, and those that were gathered into others."""
-        return {"lines": self._lines, "gathered": getattr(self._host.log, "gathered", 0)}
+        """Lines that the node has logged, those that were gathered into others, and both a second, lately."""
+        log = self._host.log
+        gathered, lately = getattr(log, "gathered", 0), getattr(log, "gathered_lately", None)
+        rate = self._lately.rate + (0.0 if lately is None else lately.rate)
+        return {"lines": self._lines, "gathered": gathered, "rate": rate}
 
     def open(self) -> None:
         self._thread = threading.get_ident()
@@ -162,6 +166,7 @@ class Rosout(Part):
         if not self._host.is_running or not self._is_ours(record):
             return
         self._lines += 1
+        self._lately.note()
         loop = self._host.context.loop
         if threading.get_ident() == self._thread:
             self._publish(record)

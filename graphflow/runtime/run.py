@@ -6,26 +6,31 @@ import asyncio
 import logging
 import sys
 from collections.abc import AsyncGenerator, Sequence
-from contextlib import AsyncExitStack, asynccontextmanager
+from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
+from types import TracebackType
 
-from graphflow.deadlock.user_code import place_in, users_part
-from graphflow.errors import GraphflowError, UsageFault
+from graphflow.deadlock.user_code import place_in
+from graphflow.errors import GraphflowError, TooManyErrors, UsageFault
 from graphflow.runtime.args import RosArgs, parse_ros_args
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
-from graphflow.runtime.ending import catch_signals
+from graphflow.runtime.ending import StopRequest, catch_signals
+from graphflow.runtime.failures import log_with_traceback
 from graphflow.runtime.logger import node_logger
+from graphflow.runtime.lost_errors import tell_lost_errors
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.surroundings import Surroundings, make_within
+from graphflow.runtime.unentered import Unentered
+from graphflow.runtime.unread import unread
 from graphflow.transport import loop
 
 logger = logging.getLogger("graphflow")
 
 
-@asynccontextmanager
-async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerator[Context, None]:
+def running(*nodes: Node, context: Context | None = None) -> AbstractAsyncContextManager[Context]:
     """Run nodes for the length of the block; a node that fails cancels the block and its error is raised from it.
 
     Errors are raised as they are, and only if several happen at once as an ExceptionGroup.
@@ -33,11 +38,36 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
     Args:
         context: Where to run them; without one, a new one over Zenoh, closed at the end.
     """
+    return _Running(nodes, context)
+
+
+class _Running(Unentered[Context]):
+    """The block of `running`."""
+
+    def __init__(self, nodes: tuple[Node, ...], context: Context | None) -> None:
+        for node in nodes:
+            core_of(node)
+        super().__init__(f"async with graphflow.running({_names(nodes)}): ...")
+        self._block: AbstractAsyncContextManager[Context] = _block(nodes, context)
+
+    async def __aenter__(self) -> Context:
+        self._is_known = True
+        return await self._block.__aenter__()
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool | None:
+        return await self._block.__aexit__(kind, error, trace)
+
+
+@asynccontextmanager
+async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerator[Context, None]:
     failure: BaseException | None = None
     async with AsyncExitStack() as stack:
         if own := context is None:
             context = await Context.open()
             stack.push_async_callback(context.close)
+        tell_lost_errors(context.loop)
         for node in nodes:
             core = core_of(node)
             await core.start(context)
@@ -54,11 +84,12 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
                         watcher.cancel()
         except BaseExceptionGroup as errors:
             failure = errors.exceptions[0] if len(errors.exceptions) == 1 else errors
+            explain(failure)
         if failure is not None:  # raised here, where the group does not become its context
             raise failure
 
 
-async def serve(nodes: Sequence[Node], context: Context, stop: asyncio.Event) -> None:
+async def serve(nodes: Sequence[Node], context: Context, stop: StopRequest) -> None:
     """Run nodes until `stop` is set, one fails, or all have ended themselves. The caller then closes the context.
 
     Raises:
@@ -84,6 +115,8 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     try:
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
         _refuse_unused(ros, nodes)
+        if args is None:
+            _refuse_unread(ros, nodes)
         setup_console(log_level(ros.log_level), is_quiet=not ros.has_stdout)
         for name, word in ros.log_levels.items():
             node_logger(f"/{name.replace('.', '/')}").setLevel(log_level(word))
@@ -92,6 +125,9 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
         raise SystemExit(2) from None
     made: list[Node] = []
     try:
+        for node in nodes:
+            if not isinstance(node, type):
+                core_of(node)
         made += [n if isinstance(n, Node) else make(n, ros) for n in nodes]
         for node in made:
             core_of(node).refuses_unused = len(made) == 1  # of several, each may be meant by some
@@ -99,16 +135,18 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
         print_error(error)
         raise SystemExit(2) from None
     except Exception as error:
-        logger.error("%s: %s", type(error).__name__, error, exc_info=(type(error), error, users_part(error)))
+        log_with_traceback(logger, "", error)
         raise SystemExit(1) from None
     try:
         loop.run(_run(made))
     except KeyboardInterrupt:
         return
     except Exception as error:
-        if any(core_of(node).failure is error for node in made):  # the node has logged it
+        is_logged = any(core_of(node).failure is error for node in made)
+        if is_logged and not isinstance(error, TooManyErrors):  # of these the node has logged each, and not the sum
             raise SystemExit(1) from None
         if not isinstance(error, GraphflowError):
+            explain(error)
             raise
         print_error(error)
         raise SystemExit(2 if isinstance(error, UsageFault) else 1) from None
@@ -124,11 +162,15 @@ def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
         asyncio.get_running_loop()
     except RuntimeError:
         return
-    names = ", ".join(f"{node.__name__}()" if isinstance(node, type) else node.name for node in nodes)
     raise RuntimeError(
         "graphflow.run starts an event loop, and one is running here, as in a notebook; write "
-        f"async with graphflow.running({names}): ..."
+        f"async with graphflow.running({_names(nodes)}): ..."
     )
+
+
+def _names(nodes: Sequence[Node | type[Node]]) -> str:
+    """Nodes as a call has them."""
+    return ", ".join(f"{node.__name__}()" if isinstance(node, type) else node.name for node in nodes)
 
 
 def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
@@ -143,6 +185,17 @@ def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
         raise GraphflowError(
             f"-r and -p cannot change {name}(), which has been made already; give the class: graphflow.run({name})"
         )
+
+
+def _refuse_unread(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
+    """See that the program may read the words that are not for ROS.
+
+    Raises:
+        GraphflowError: Nothing reads them.
+    """
+    classes = [node if isinstance(node, type) else type(node) for node in nodes]
+    if text := unread(ros.rest, classes, is_own_program=True):
+        raise GraphflowError(text)
 
 
 def print_error(error: GraphflowError) -> None:
@@ -166,7 +219,7 @@ def make(cls: type[Node], ros: RosArgs) -> Node:
 
 async def _run(nodes: Sequence[Node]) -> None:
     context = await Context.open()
-    stop = asyncio.Event()
+    stop = StopRequest()
     restore = catch_signals(stop)
     try:
         await serve(nodes, context, stop)

@@ -25,18 +25,23 @@ from graphflow.errors import (
     ServerLost,
     ServiceUnavailable,
 )
+from graphflow.executor.deadlines import Deadlines
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.machines.cache import GraphCache
 from graphflow.machines.wait_graph import call_id
 from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, is_hidden
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.direct import ClientLine
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.host import Host
+from graphflow.runtime.other_domains import alone_here
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.services import STOPPING
+from graphflow.runtime.unreachable import why_unreachable
+from graphflow.runtime.unserved import Unserved
 from graphflow.times import to_ns
 from graphflow.transport.base import Answer, Caller
 from graphflow.wire import attachment
@@ -44,6 +49,20 @@ from graphflow.wire.liveliness import Entity, Kind
 
 DISCOVERY_GRACE = 1.0
 """Seconds a call waits for a server that has not been announced yet."""
+
+
+def nobody_serves(cache: GraphCache, name: str, type_name: str, *, is_own: bool = False) -> str:
+    """Say that no node offers a service of a name and type, and what there is instead.
+
+    Args:
+        is_own: Whether the node that asks declares it, and is not ready yet.
+    """
+    offered = [e.type for e in cache.endpoints(Kind.SERVICE, name)]
+    if offered and type_name not in offered:
+        return f"service {name} is of type {offered[0]}, not {type_name}"
+    if is_own:
+        return f"service {name} is this node's own, and opens when on_start has returned; call it in a @task"
+    return f"no node offers the service {name} [{type_name}]{did_you_mean(name, *cache.offered())}"
 
 
 class _Reply(NamedTuple):
@@ -85,7 +104,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._line: ClientLine | None = None
         """The line to the server, while there is only one."""
         self._pending: set[Future[Answer]] = set()
+        self._deadlines: Deadlines | None = None
         self._waiting: set[Future[None]] = set()
+        self._unserved = Unserved(host, self._nobody_else)
 
     def _open(self, key: str) -> None:
         self._caller = self.host.context.session.open_caller(key, self._look_ready)
@@ -115,6 +136,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         Raises:
             ClosedError: The node is not running, or stopped meanwhile.
         """
+        return await self._wait_ready(timeout)
+
+    async def _wait_ready(self, timeout: float | None, *, raises: bool = False) -> bool:
         if self.service_is_ready():
             return True
         future: Future[None] = self.host.context.loop.create_future()
@@ -122,7 +146,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         ledger, clock = self.host.context.ledger, self.host.clock
         try:
             async with clock.timeout(timeout) if timeout is not None else nullcontext():
-                with ledger.opening(future, self.name, clock.monotonic_ns()):
+                with ledger.opening(future, self.name, clock.monotonic_ns()), self._unserved.waiting(raises=raises):
                     await future
         except TimeoutError:
             return False
@@ -132,8 +156,10 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
 
     async def expect_ready(self, timeout: float | None) -> None:
         """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
-        if not await self.wait_ready(timeout):
-            raise ServiceUnavailable(self._nobody())
+        if not await self._wait_ready(timeout, raises=True):
+            is_own = self.host.serves(self.name)
+            alone = "" if is_own else await alone_here(self.host.context, self.host.full_name)
+            raise ServiceUnavailable(f"{await self.nobody()}{alone}")
 
     def _look_ready(self) -> None:
         if self._waiting and self.entity is not None and self.service_is_ready():
@@ -150,16 +176,17 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             self._line = ClientLine(self.host.context.switchboard, self._announced(), server)
         self._look_ready()
 
-    def _nobody(self) -> str:
-        services = self.host.context.cache.services()
-        if self.name in services:
-            offered = [e.type for e in self.host.context.cache.endpoints(Kind.SERVICE, self.name)]
-            if offered and self.type_name not in offered:
-                return f"service {self.name} is of type {offered[0]}, not {self.type_name}"
-        if self.host.serves(self.name):
-            return f"service {self.name} is this node's own, and opens when on_start has returned; call it in a @task"
-        near = did_you_mean(self.name, *self.host.context.cache.offered())
-        return f"no node offers the service {self.name} [{self.type_name}]{near}"
+    async def nobody(self) -> str:
+        """Why there is no server to be reached."""
+        cache = self.host.context.cache
+        same = [e for e in cache.endpoints(Kind.SERVICE, self.name) if e.type == self.type_name]
+        if same:
+            return await why_unreachable(self.host, self.name, same, registry.hash_of(self.type_name))
+        return nobody_serves(cache, self.name, self.type_name, is_own=self.host.serves(self.name))
+
+    async def _nobody_else(self) -> str:
+        """As `nobody`; empty for services of an action, and for those whose waits the search for deadlocks tells."""
+        return "" if is_hidden(self.name) or self.host.serves(self.name) else await self.nobody()
 
     async def call(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
         """Send a request and wait for the response.
@@ -178,13 +205,16 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             WrongThread: This is not the event loop's thread.
         """
         if request.__class__ is not self._request:
-            raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
+            wanted = self._request.__qualname__
+            raise EncodeError(f"{self.name} takes {wanted}, not {request!r}; write {wanted.replace('_', '.')}(...)")
         self.host.context.refuse_other_threads(
             f"call of {self.name}", "in a thread, call_sync(request) waits for the response"
         )
         payload = self._requests.encode(request)
         if timeout is ...:
             timeout = self.host.context.call_timeout
+        if timeout is not None and timeout < 0:
+            raise ValueError(f"timeout= of a call is in seconds, and cannot be {timeout!r}; None waits for ever")
         started = self.host.clock.monotonic_ns()
         if not self._reaches_server():
             await self.expect_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
@@ -224,12 +254,15 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             elif sequence_of(answer) == sequence:
                 future.set_result(answer)
 
-        def expired() -> None:
-            if not future.done():
-                future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
+        def expired() -> CallTimeout:
+            return CallTimeout(f"{self.name} did not answer within {timeout:g} s")
 
         context, gid = self.host.context, self._announced().gid
-        alarm = None if deadline_ns is None else self.host.clock.call_at(deadline_ns, expired)
+        deadlines = self._deadlines
+        if deadlines is None or deadlines.clock is not self.host.clock:
+            deadlines = self._deadlines = Deadlines(self.host.clock)
+        if deadline_ns is not None:
+            deadlines.add(future, deadline_ns, expired)
         self._pending.add(future)
         give_up = _nothing
         try:
@@ -242,8 +275,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             raise
         finally:
             self._pending.discard(future)
-            if alarm is not None:
-                alarm.cancel()
+            deadlines.discard(future)
 
     def _send(
         self, sequence: int, payload: bytes, beside: bytes, chain: bytes, arrived: Callable[[Answer | None], None]

@@ -16,20 +16,23 @@ from graphflow.errors import (
 )
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
+from graphflow.machines.cache import GraphChange
 from graphflow.msgs import registry
-from graphflow.msgs.base import Request, Response, Service
+from graphflow.msgs.base import Request, Response, Service, name_of
 from graphflow.qos import DEFAULT, Qos
-from graphflow.runtime.direct import DirectRequest, ServerLines
+from graphflow.runtime.attribute_errors import explain
+from graphflow.runtime.direct import DirectRequest, ServerLines, unanswered, warn_of_refused
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.host import Host
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
-from graphflow.transport.base import Inbox
+from graphflow.transport.base import BYTES_BOUND, REQUESTS_BOUND, RequestInbox, request_size
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
 REQUEST_QUEUE = 64
 """Requests that may wait for a service; any more are refused with ServerBusy."""
 
+OFFERED_TWICE = "%s is offered twice by this node, by %s (%s) and %s (%s): each call reaches both; keep one"
 STOPPING = RemoteError("Cancelled", "the server is stopping")
 """What a stopping server answers; no exception class has that name."""
 
@@ -64,7 +67,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self.type = type_
         self.is_inner = is_inner
         self._callback = callback
-        self._takes_response, self._place = takes_response, place
+        self._takes_response, self.place = takes_response, place
         self._label = label or f"service {name}"
         self._group = group
         service = registry.service_schema(type_.NAME)
@@ -73,7 +76,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self.runner: Runner | None = None
         self.refused = 0
         """Requests answered with ServerBusy because too many were waiting."""
-        self._inbox: Inbox | None = None
+        self._inbox: RequestInbox | None = None
         self._lines: ServerLines | None = None
         self._service_events = ServiceEvents(host, type_, name)
 
@@ -87,13 +90,20 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
 
     def _open(self, key: str) -> None:
         session = self.host.context.session
-        self._inbox = Inbox(session.bell, None, self._arrived)
+        self._inbox = RequestInbox(session.bell, REQUESTS_BOUND, self._arrived, request_size, unanswered)
+        self._inbox.tell_losses(self._warn_of_refused, 1)
         tell = (self._invoke, self._finished, self.host.full_name)
         spec = RunnerSpec(self._label, *tell, "service", self._refuse, is_inner=self.is_inner)
         self.runner = self.host.runner(spec, self._inbox.items, self._group)
         self._declared.append(session.open_server(key, self._inbox))
         self._lines = ServerLines(self.host.context.switchboard, self._announced(), self.runner, self._asked)
         self._service_events.open()
+
+    def _counterpart(self, change: GraphChange) -> None:
+        super()._counterpart(change)
+        other = change.entity
+        if change.alive and other.kind is Kind.SERVICE and other.node_name != self.host.full_name:
+            self.host.context.twins.share(self.name)
 
     def _matched(self, other: Entity, alive: bool) -> None:
         assert self._lines is not None
@@ -113,8 +123,18 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self.runner.wake()
         if self._inbox.items:
             self._fail_hopeless()
-        while len(self._inbox.items) > REQUEST_QUEUE:
-            self._refuse(self._inbox.items.pop(), f"has {REQUEST_QUEUE} requests waiting")
+        items = self._inbox.items
+        while len(items) > REQUEST_QUEUE:
+            self._refuse(items.pop(), f"has {REQUEST_QUEUE} requests waiting")
+        # As few as may wait exceed the bound only where one of them is larger than its share.
+        while len(items) > 1 and request_size(items[-1]) > BYTES_BOUND // REQUEST_QUEUE:
+            if sum(map(request_size, tuple(items))) <= BYTES_BOUND:
+                break
+            self._refuse(items.pop(), f"has {BYTES_BOUND >> 20} MB of requests waiting")
+
+    def _warn_of_refused(self) -> None:
+        assert self._inbox is not None
+        warn_of_refused(self._inbox, f"{self.name} of {self.host.full_name}: requests")
 
     def _fail_hopeless(self) -> None:
         """End calls that wait, directly or through others, for runs that wait for them."""
@@ -146,10 +166,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 if result is None and not self._response.SCHEMA.fields:
                     result = self._response()
                 if result.__class__ is not self._response:
-                    raise TypeError(
-                        f"the handler of {self.name} returned {result!r}, not {self._response.__qualname__}"
-                        f"{self._place and f' ({self._place})'}"
-                    )
+                    where = self.place and f" ({self.place})"
+                    raise TypeError(f"it returned {result!r}, not {name_of(self._response)}(...){where}")
                 payload = self._responses.encode(result)
             except (TypeError, EncodeError) as wrong:
                 error = wrong
@@ -168,6 +186,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
 
     def _told(self, error: BaseException) -> str:
         """What a client is told of an error in the handler; a deadlock was explained here, and once is enough."""
+        explain(error)
         head, _, rest = str(error).partition("\n")
         if not rest or not isinstance(error, DeadlockError):
             return str(error)
@@ -177,7 +196,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         """Requests answered or under way, failed, waiting and refused."""
         runner, waiting = self.runner, 0 if self._inbox is None else len(self._inbox.items)
         runs, errors = (0, 0) if runner is None else (runner.runs, runner.errors)
-        counts = {"runs": runs, "errors": errors, "waiting": waiting, "refused": self.refused}
+        refused = self.refused + (0 if self._inbox is None else self._inbox.dropped)
+        counts = {"runs": runs, "errors": errors, "waiting": waiting, "refused": refused}
         return {**counts, **super().statistics()}
 
     def begin_to_stop(self) -> Runner | None:

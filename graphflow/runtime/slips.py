@@ -1,7 +1,8 @@
 """Slips in the source of a node class that Python runs without an error: what was written has no effect, or fails late.
 
-A handler without its decorator, `self.rat = 2.0` beside a parameter `rate`, and `message.dat = ...`, or a text for a
-number, in a message that a method has made or been given.
+A handler without its decorator, `self.rat = 2.0` beside a parameter `rate`, `Talker.rate = 2.0` in its place, and
+`message.dat = ...`, or a text for a number, in a message that a method has made or been given; `self.close` without
+parentheses.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ from graphflow.errors import EncodeError, Place
 from graphflow.msgs.base import Message, no_field
 from graphflow.names import nearest
 from graphflow.runtime import declared
+from graphflow.runtime.declare import Param
 from graphflow.runtime.twice import definition_of
+from graphflow.runtime.uncalled import uncalled_methods
 
 logger = logging.getLogger("graphflow")
 
@@ -51,9 +54,12 @@ def _slips(cls: type) -> Iterator[str]:
             space = vars(sys.modules[parent.__module__])
             yield from _idle_methods(parent, definition, file, mentioned, space)
             yield from _stray_attributes(cls, definition, file, mentioned)
+            yield from _replaced(cls, definition, file, space)
+            yield from _changed_in_place(cls, definition, file)
             for method in definition.body:
                 if isinstance(method, FunctionNode):
                     yield from _wrong_fields(method, file, space)
+            yield from (f"{Place(file, line)}: {text}" for line, text in uncalled_methods(definition))
 
 
 def _other_modules(file: str) -> Iterator[ast.Module]:
@@ -95,6 +101,9 @@ def _idle_methods(
         kind = _received(arguments[0], space) if len(arguments) == 1 else ""
         is_like_one = kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1)
         if is_like_one and not any(method.name in _mentioned(module) for module in _other_modules(file)):
+            if not arguments and (hook := _hook_meant(cls, method.name)):
+                yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}; {hook}"
+                continue
             decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
             yield (
                 f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}, which looks like a "
@@ -102,6 +111,22 @@ def _idle_methods(
             )
 
 
+def _hook_meant(cls: type, name: str) -> str:
+    """The method of every node, or of those with a life cycle, that is meant by a name; empty for another kind."""
+    hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
+    near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)
+    meant = near or next((hook for hook, others in _HOOKS.items() if name.removeprefix("on_") in others), None)
+    if name not in _OF_LIFECYCLES:
+        return f"did you mean {meant}?" if meant else ""
+    return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
+
+
+_HOOKS = {
+    "on_start": ("init", "begin", "startup", "ready", "open", "run"),
+    "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
+}
+"""The methods of every node, and other words for them."""
+_OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_error")
 _DECORATORS = {"message": '@subscription(Type, "topic")', "request": '@service(Type, "name")'}
 
 
@@ -141,6 +166,38 @@ def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned:
             near = nearest(node.attr, names, cutoff=0.75)
             if near is not None:
                 yield f"{Place(file, node.lineno)}: self.{node.attr} is set and never read; did you mean self.{near}?"
+
+
+def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, Any]) -> Iterator[str]:
+    """Declarations that a method replaces by setting an attribute of the class, where it means the node's."""
+    names = declared.held(cls)
+    for method in definition.body:
+        for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
+            match node:
+                case ast.Attribute(value=owner, attr=name, ctx=ast.Store()) if name in names:
+                    if _resolved(owner, space) in cls.__mro__ or ast.unparse(owner) in _OWN_CLASS:
+                        text = f"{ast.unparse(node)} replaces what the class declares, for all of its nodes"
+                        yield f"{Place(file, node.lineno)}: {text}; write self.{name}"
+
+
+def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterator[str]:
+    """Lists of parameters that are changed as if they were the node's own: no check sees it, and no tool."""
+    lists = {
+        name for name, p in declared.held(cls).items() if isinstance(p, Param) and p.parameter.type.startswith("list[")
+    }
+    for method in definition.body:
+        for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
+            match node:
+                case (
+                    ast.Call(func=ast.Attribute(value=ast.Attribute(attr=name) as changed, attr=way))
+                    | ast.Subscript(value=ast.Attribute(attr=name) as changed, ctx=ast.Store() | ast.Del(), slice=way)
+                ) if name in lists and is_own(changed) and (way in _CHANGING or isinstance(way, ast.expr)):
+                    text = f"{ast.unparse(node)} changes the list of a parameter unseen by its checks and by every tool"
+                    yield f"{Place(file, node.lineno)}: {text}; set a new one, as in self.{name} = [*self.{name}, ...]"
+
+
+_CHANGING = ("append", "extend", "insert", "remove", "pop", "clear", "sort", "reverse")
+_OWN_CLASS = ("type(self)", "self.__class__")
 
 
 def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Iterator[str]:

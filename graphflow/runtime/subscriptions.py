@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import struct
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable
 from typing import Any, Generic, TypeVar
@@ -14,6 +15,7 @@ from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
 from graphflow.qos import DEFAULT, INFINITE_NS, Durability, Liveliness, Qos
+from graphflow.runtime.echoes import Echo
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, SilenceTimer
 from graphflow.runtime.handover import Handed
@@ -39,13 +41,20 @@ _NO_INFO = (0, 0, bytes(16))
 class _Source:
     """One publisher as a subscription knows it."""
 
-    __slots__ = ("alive", "lease", "lifespan_ns", "sequence")
+    __slots__ = ("alive", "lease", "lifespan_ns", "needs_care", "sequence")
 
     def __init__(self, lifespan_ns: int) -> None:
         self.sequence = 0
-        self.lifespan_ns = lifespan_ns
         self.lease: SilenceTimer | None = None
         self.alive: Closable | None = None
+        self.expects(lifespan_ns)
+
+    def expects(self, lifespan_ns: int, lease: SilenceTimer | None = None) -> None:
+        """Set for how long its messages count, and the timer of its signs of life."""
+        self.lifespan_ns = lifespan_ns
+        self.lease = lease or self.lease
+        self.needs_care = lifespan_ns != INFINITE_NS or self.lease is not None
+        """Whether the time of each message matters."""
 
 
 class TopicSubscription(Endpoint, Generic[M]):
@@ -77,8 +86,6 @@ class TopicSubscription(Endpoint, Generic[M]):
     ) -> None:
         super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
-        self.malformed = 0
-        """Payloads that were not a message of the type and were dropped."""
         self.expired = 0
         """Messages dropped because they were older than the publisher's lifespan, or the subscription's."""
         self._callback = callback
@@ -97,12 +104,18 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._gaps = 0
         self._has_told_loss = self._has_told_full = False
         self._deadline: SilenceTimer | None = None
+        self._echo: Echo | None = None
         self._wake: Callable[[], None] = _nothing
         """What a message has called when the subscription is not paused."""
 
     @property
     def handler_title(self) -> str:
         return title_of("subscription", self._label)
+
+    def _hint(self, name: str) -> str:
+        if name not in {field.name for field in self.type.SCHEMA.fields}:
+            return ""
+        return "a message has it: async for message in the subscription, or @subscription on a method that takes one"
 
     def _open(self, key: str) -> None:
         context = self.host.context
@@ -111,10 +124,13 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._inbox = self._new_inbox()
         else:
             self._inbox = open_inbox(self.qos, context.session.bell, _nothing)
-            tell = (self._invoke, self._finished, self.host.full_name)
-            spec = RunnerSpec(self._label, *tell, "subscription", self._refused, lambda: self.dropped)
+            tell = (self._invoker(), self._finished, self.host.full_name)
+            spec = RunnerSpec(
+                self._label, *tell, "subscription", self._refused, lambda: self.dropped, wants_results=False
+            )
             self.runner = self.host.runner(spec, self._inbox.items, self._group)
             self._inbox.ready = self.runner.wake
+        self._inbox.tell_losses(self._warn_of_losses, 1 if isinstance(self._inbox, DeepInbox) else LOSS_TOLD)
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)
         # What nodes of this process publish comes by hand, unless it is wanted not at all.
@@ -192,13 +208,31 @@ class TopicSubscription(Endpoint, Generic[M]):
         else:
             was_alive = False
             source = self._sources.setdefault(other.gid, _Source(INFINITE_NS))
-            source.lifespan_ns = min(other.qos.lifespan_ns, self.qos.lifespan_ns)
+            source.expects(min(other.qos.lifespan_ns, self.qos.lifespan_ns))
             if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.lease_ns != INFINITE_NS:
                 self._watch_lease(other, source)
         if self._deadline is not None:
             self._deadline.start() if self.matched else self._deadline.stop()
         if alive or was_alive:
             self._liveliness_changed(1 if alive else -1, other.node_name)
+        self._follow_echo()
+
+    def _follow_echo(self) -> None:
+        """Watch for a loop where the node's own publishers are the only ones."""
+        own = self._announced()
+        is_alone = bool(self.matched) and all((e.zid, e.nid) == (own.zid, own.nid) for e in self.matched.values())
+        if self._echo is None and is_alone and not self._ignore_local:
+            self._echo = Echo(self.host.context.clock, lambda: self.received, self._warn_of_echo)
+        if self._echo is not None:
+            self._echo.follow(is_alone=is_alone)
+
+    def _warn_of_echo(self, rate: int) -> None:
+        self.host.log.warning(
+            "this node hears what it publishes itself on %s, %d messages a second: if the handler publishes there, "
+            "that never ends; publish to another topic, or remap one of the two",
+            self.name,
+            rate,
+        )
 
     def _watch_lease(self, other: Entity, source: _Source) -> None:
         def silent() -> None:
@@ -212,8 +246,9 @@ class TopicSubscription(Endpoint, Generic[M]):
         assert self._inbox is not None
         session, waiting = self.host.context.session, self._inbox
         read = session.read
-        source.lease = SilenceTimer(self.host.clock, other.qos.lease_ns, silent)
-        source.lease.start()
+        lease = SilenceTimer(self.host.clock, other.qos.lease_ns, silent)
+        source.expects(source.lifespan_ns, lease)
+        lease.start()
         inbox = Inbox(session.bell, 1, lambda: self._revive(other.gid))
         source.alive = session.open_receiver(alive_key(other), DEFAULT, inbox)
 
@@ -282,28 +317,75 @@ class TopicSubscription(Endpoint, Generic[M]):
         """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
         self._gaps += missing
         dropped = self.dropped
+        self._warn_of_losses()
+        lost = self._gaps - dropped - self.lost
+        if lost > 0:
+            self._tell("message_lost", lost)
+
+    def _warn_of_losses(self) -> None:
+        """Tell once that a deep queue was full, and that most messages are lost."""
+        dropped = self.dropped
+        if self._callback is None and not (self._taken or self._waiters):
+            if not self._has_told_loss and (dropped >= LOSS_TOLD or isinstance(self._inbox, DeepInbox)):
+                self._has_told_loss = True
+                text = "nothing has read %s yet, and its messages are lost, %d so far: write "
+                text += "`async for message in ...` in a @task, or put @subscription on a method"
+                self.host.log.warning(text, self.name, dropped)
+            return
+        is_busy = self.runner is not None and self.runner.active
+        where = "; graphflow waits says where it is now" if is_busy else ""
         if dropped and not self._has_told_full and isinstance(self._inbox, DeepInbox):
             self._has_told_full = True
             self.host.log.warning(
                 "%s: its queue was full, and dropped the oldest messages, %d so far: it holds %d messages and %d MB; "
-                "do less in the handler, give it a group of its own, or have less sent",
+                "do less in the handler, give it a group of its own, or have less sent%s",
                 self._label,
                 dropped,
                 self._inbox.items.maxlen,
                 BYTES_BOUND >> 20,
+                where,
             )
         elif not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
             self._has_told_loss = True
             self.host.log.warning(
                 "%s: most messages are lost, %d of %d so far: they come faster than they are handled. Do less in the "
-                "handler, give it a group of its own, or have less sent; graphflow doctor goes on counting",
+                "handler, give it a group of its own, or have less sent%s; graphflow doctor goes on counting",
                 self._label,
                 dropped,
                 self.received,
+                where,
             )
-        lost = self._gaps - dropped - self.lost
-        if lost > 0:
-            self._tell("message_lost", lost)
+
+    def _invoker(self) -> Callable[[Any], Any]:
+        """`_invoke`, with the usual case written out in one function: the next message of a publisher that is known.
+
+        Whatever is unusual about an arrival goes the general way.
+        """
+        general, callback, takes_info = self._invoke, self._callback, self._takes_info
+        read, decode, sources = self._read, self._codec.decode, self._sources
+        unpack, new = attachment.LAYOUT.unpack, tuple.__new__
+        assert callback is not None
+
+        def invoke(arrival: Any) -> Any:
+            if arrival.__class__ is Handed:
+                return general(arrival)
+            payload, beside = read(arrival)
+            try:
+                sequence, source_ns, size, gid = unpack(beside or b"")
+                source = sources[gid]
+            except (struct.error, KeyError):
+                return general(arrival)
+            if size != 16 or sequence != source.sequence + 1 or source.needs_care:
+                return general(arrival)
+            source.sequence = sequence
+            try:
+                message = decode(payload)
+            except DecodeError as error:
+                self.count_malformed(error)
+                return None
+            return callback(message, new(MessageInfo, (sequence, source_ns, gid))) if takes_info else callback(message)
+
+        return invoke
 
     def _invoke(self, arrival: Any) -> Any:
         taken = self._take(arrival)
@@ -320,12 +402,6 @@ class TopicSubscription(Endpoint, Generic[M]):
     def _refused(self, arrival: Any) -> None:
         assert self._inbox is not None
         self._inbox.dropped += 1
-
-    def count_malformed(self, error: DecodeError) -> None:
-        """A payload was not a message of the type."""
-        self.malformed += 1
-        if self.malformed == 1 or self.malformed % 1000 == 0:
-            self.host.log.warning("%s: dropped a malformed message (%d so far): %s", self.name, self.malformed, error)
 
     # iteration
 
@@ -397,6 +473,8 @@ class TopicSubscription(Endpoint, Generic[M]):
             self.host.context.handover.leave(self.entity.data_key, self)
         if self._deadline is not None:
             self._deadline.stop()
+        if self._echo is not None:
+            self._echo.stop()
         for source in self._sources.values():
             self._end(source)
         self._sources.clear()

@@ -16,6 +16,7 @@ from graphflow.errors import DeclarationError
 from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
 from graphflow.names import Remap, Resolver, did_you_mean
+from graphflow.runtime.slow_hooks import telling_slow_init
 
 T = TypeVar("T")
 
@@ -64,7 +65,8 @@ def make_within(cls: type[T], surroundings: Surroundings, default_name: str) -> 
     arguments = (surroundings.name or default_name,) if _required(cls) else ()
     token = _given.set((cls, surroundings))
     try:
-        return cls(*arguments)
+        with telling_slow_init(cls):
+            return cls(*arguments)
     finally:
         _given.reset(token)
 

@@ -15,6 +15,7 @@ from graphflow.errors import CallError, ClosedError, DecodeError, ServerLost
 from graphflow.machines.wait_graph import call_id
 from graphflow.msgs import registry
 from graphflow.qos import DEFAULT, Qos
+from graphflow.runtime.direct import unanswered, warn_of_refused
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, QosEventKind
 from graphflow.runtime.handover import Handed
@@ -23,7 +24,17 @@ from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.service_client import error_of, sequence_of
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.subscriptions import TopicSubscription
-from graphflow.transport.base import Answer, Caller, Inbox, Request, Rings, open_inbox
+from graphflow.transport.base import (
+    REQUESTS_BOUND,
+    Answer,
+    Caller,
+    Inbox,
+    Request,
+    RequestInbox,
+    Rings,
+    open_inbox,
+    request_size,
+)
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Kind
@@ -32,6 +43,9 @@ from graphflow.wire.liveliness import Kind
 class ThreadedPublisher(TopicPublisher[Any]):
     """A publisher of serialized messages, for any thread."""
 
+    unheard = 0
+    """The messages published so far that no subscription was there to get."""
+
     def put(self, payload: bytes) -> None:
         """Send a message. Never waits.
 
@@ -39,10 +53,11 @@ class ThreadedPublisher(TopicPublisher[Any]):
             DecodeError: Subscriptions of this process are to get it, and it is no message of the type.
             ClosedError: The node is not running.
         """
-        with self._order:
+        with self._order.lock:
             sender, here = self._sender, tuple(self._here)
             if not (here or sender.is_wanted):
                 self._announced()
+                self.unheard += 1
             handed = self._codec.decode(payload) if here else None
             self.published += 1
             fields = (self.published, self._now_ns(), self._gid)
@@ -162,7 +177,8 @@ class ThreadedService(Endpoint):
 
     def __init__(self, host: Host, type_: Any, name: str, qos: Qos, bell: Rings, ready: Callable[[], None]) -> None:
         super().__init__(host, type_.NAME, name, qos)
-        self.inbox = Inbox(bell, None, ready)
+        self.inbox = RequestInbox(bell, REQUESTS_BOUND, ready, request_size, unanswered)
+        self.inbox.tell_losses(lambda: warn_of_refused(self.inbox, f"{name} of {host.full_name}: requests"), 1)
         self._service_events = ServiceEvents(host, type_, name)
 
     def configure_introspection(self, level: Introspection, qos: Qos = DEFAULT) -> None:
@@ -260,6 +276,8 @@ class ThreadedClient(Endpoint):
         self._service_events = ServiceEvents(host, type_, name)
         self._caller: Caller | None = None
         self._changed = changed
+        self.lost = 0
+        """Calls that no server answers any more: there was none, or it went away."""
         self._sequence = 0
         self._lock = threading.Lock()
 
@@ -309,6 +327,7 @@ class ThreadedClient(Endpoint):
     def _arrived(self, sequence: int, answer: Answer | None) -> bool:
         """Whether that is what the call has waited for."""
         if answer is None:
+            self.lost += 1
             self.inbox.put(Answered(sequence, error=ServerLost(f"the server of {self.name} did not answer")))
         elif answer.is_error:
             self.inbox.put(Answered(sequence, error=error_of(answer.payload, self.name)))

@@ -10,6 +10,7 @@ from graphflow.executor.clock import period_ns
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
+from graphflow.runtime.dictionary import in_our_words
 from graphflow.runtime.host import Host, Part
 
 
@@ -29,6 +30,7 @@ class Timer(Part):
 
     opens_last = True
 
+    @in_our_words
     def __init__(
         self,
         host: Host,
@@ -90,7 +92,9 @@ class Timer(Part):
     def open(self) -> None:
         """Start. Done by the node."""
         tell = (self._invoke, self._finished, self.host.full_name)
-        self.runner = self.host.runner(RunnerSpec(self._label, *tell, "timer", self._refused), self._due, self._group)
+        self.runner = self.host.runner(
+            RunnerSpec(self._label, *tell, "timer", self._refused, wants_results=False), self._due, self._group
+        )
         self.reset()
 
     def reset(self) -> None:

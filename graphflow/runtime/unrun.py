@@ -1,4 +1,4 @@
-"""Programs that define nodes and end without having made one: `python talk.py` where nothing in talk.py runs it."""
+"""Programs that end without having run a node: `python talk.py` where nothing in talk.py runs what it defines."""
 
 from __future__ import annotations
 
@@ -7,30 +7,50 @@ import re
 import sys
 from pathlib import Path
 
+from graphflow.deadlock.user_code import is_installed, is_ours
+from graphflow.runtime.uncalled import uncalled
+
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
 """Words of a program that runs nodes, or looks at them, in a way of its own."""
-_classes: dict[str, str] = {}
-"""Node classes of the main program and its file, until one of its nodes is made."""
+_classes: list[str] = []
+"""Node classes of the program's own file."""
+_file: str | None = None
+"""The program's file, once it is watched."""
+_has_run = False
 
 
 def defined(cls: type) -> None:
-    """A node class was made: if the program's own file has it, see at the end whether it was used."""
-    file = getattr(sys.modules.get(cls.__module__), "__file__", None)  # which is gone at the end
-    if cls.__module__ == "__main__" and file and not sys.flags.interactive:
-        if not _classes:
-            atexit.register(_tell)
-        _classes[cls.__name__] = file
+    """A node class was made: see at the end whether one was used."""
+    if cls.__module__ == "__main__":
+        _classes.append(cls.__name__)
+    watch()
+
+
+def watch() -> None:
+    """See at the end of the program whether it has run anything."""
+    global _file
+    file = getattr(sys.modules.get("__main__"), "__file__", None)  # which is gone at the end
+    if file and _file is None and not (_has_run or sys.flags.interactive or is_ours(file) or is_installed(file)):
+        _file = file
+        atexit.register(_tell)
 
 
 def made() -> None:
-    """A node was made."""
-    if _classes:
-        _classes.clear()
+    """A node was made, or rclpy begun."""
+    global _has_run
+    _has_run = True
 
 
 def _tell() -> None:
-    if _classes and not hasattr(sys, "last_value"):  # it has ended by itself, and not by an error
-        sys.stderr.write(advice(Path(next(iter(_classes.values()))), list(_classes)))
+    if _file is not None and not hasattr(sys, "last_value"):  # it has ended by itself, and not by an error
+        tell(Path(_file))
+
+
+def tell(file: Path) -> None:
+    """Say why a program that has ended has run nothing, unless it has; once."""
+    if not _has_run:
+        made()
+        sys.stderr.write(advice(file, _classes))
 
 
 def advice(file: Path, classes: list[str]) -> str:
@@ -39,10 +59,12 @@ def advice(file: Path, classes: list[str]) -> str:
         source = file.read_text(encoding="utf-8")
     except (OSError, ValueError):
         return ""
-    if _RUNS.search(source):
-        return ""
     if file.is_relative_to(Path.cwd()):
         file = file.relative_to(Path.cwd())
+    if text := uncalled(source, str(file)):
+        return f"{text}\n"
+    if _RUNS.search(source) or not classes:
+        return ""
     what = str(file) if len(classes) == 1 else f"MODULE:{classes[0]}"
     return (
         f"{file} defines {' and '.join(classes)}, and runs nothing: graphflow run {what}, "

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import islice
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
 from typing import Any
 
-from graphflow.errors import DeclarationError, GraphflowError, NoModule, Place, Problem
-from graphflow.graph.project import INSTALLED_DEMOS, PACKAGE, add_interfaces
-from graphflow.interface import Interface
+from graphflow.deadlock.user_code import place_in
+from graphflow.errors import DeclarationError, GraphflowError, NoModule
+from graphflow.graph.project import INSTALLED_DEMOS, add_interfaces
 from graphflow.msgs import registry
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
+from graphflow.runtime.attribute_errors import explain
+from graphflow.runtime.hiding import hidden
 from graphflow.runtime.node import Node
+from graphflow.runtime.python_errors import remark_on
 from graphflow.runtime.surroundings import why_not
 
+_FOLDERS_BOUND = 200
+"""Folders of a project in which a misspelt module is looked for."""
 _roots: list[str] = []
 
 
@@ -43,7 +50,7 @@ def import_class(class_path: str) -> type[Node]:
         GraphflowError: The module has no such class, or importing it failed; the text says where.
     """
     module_name, _, class_name = class_path.partition(":")
-    module = import_module_of(module_name)
+    module = import_module_of(module_name, class_name)
     found = getattr(module, class_name, None)
     if found is None:
         near = did_you_mean(class_name, node_classes(module, imported=True))
@@ -53,8 +60,11 @@ def import_class(class_path: str) -> type[Node]:
     return found
 
 
-def import_module_of(name: str) -> ModuleType:
+def import_module_of(name: str, class_name: str = "") -> ModuleType:
     """A module of a project.
+
+    Args:
+        class_name: The class that is wanted of it, for the text of an error.
 
     Raises:
         NoModule: There is no such module; the text names the nearest, or where modules are looked for.
@@ -66,8 +76,9 @@ def import_module_of(name: str) -> ModuleType:
     except (Exception, SystemExit) as error:
         if isinstance(error, ModuleNotFoundError) and error.name and name.startswith(error.name):
             if bundled and _is_there(bundled):  # a project has no such node of its own
-                return import_module_of(bundled)
-            raise NoModule(_no_module(error.name, name, _roots[-1] if _roots else "."), error.name) from None
+                return import_module_of(bundled, class_name)
+            text = _no_module(error.name, name, class_name, _roots[-1] if _roots else ".")
+            raise NoModule(text, error.name) from None
         raise GraphflowError(f"cannot import {name}: {_where(error)}") from error
 
 
@@ -89,33 +100,73 @@ def node_classes(module: ModuleType, *, imported: bool = False) -> dict[str, typ
     return {k: v for k, v in found.items() if imported or v.__module__ == module.__name__}
 
 
-def _no_module(module: str, wanted: str, root: str) -> str:
+def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
     """What is said when `wanted` cannot be imported for want of `module`: the nearest, or where it was looked for."""
-    parent, _, last = module.rpartition(".")
-    package = sys.modules.get(parent)
-    known = [m.name for m in iter_modules(getattr(package, "__path__", None) if parent else [root])]
-    hint = did_you_mean(last, known) or f"; modules are looked for in {root}"
+    near = nearest_module(wanted, root)
+    if near == wanted:  # it is there, and another package of that name comes before it
+        top = wanted.partition(".")[0]
+        taken = getattr(sys.modules.get(top), "__file__", None)
+        return f"cannot import {wanted}: {top!r} is {taken}; give the package in {root} another name"
+    meant = f"{near}:{class_name}" if class_name else near
+    hint = f"; did you mean {meant!r}?"
+    if near is None:
+        parent, _, last = module.rpartition(".")
+        beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
+        hint = did_you_mean(last, beside) or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
+
+
+def nearest_module(module: str, root: str) -> str | None:
+    """The module of a project, by its full name, whose name is most like that of one that is not there.
+
+    Modules beside it come first; then those of the project's folder and of the folders in it.
+    """
+    parent, _, last = module.rpartition(".")
+    beside = getattr(sys.modules.get(parent), "__path__", [root] if not parent else [])
+    folders = islice((f for f in sorted(Path(root).iterdir()) if f.name.isidentifier() and f.is_dir()), _FOLDERS_BOUND)
+    inner = [(folder.name, [str(folder)]) for folder in folders]
+    for places in ([(parent, beside)], [("", [root]), *inner]):
+        known = {m.name: f"{at}.{m.name}".lstrip(".") for at, paths in reversed(places) for m in iter_modules(paths)}
+        near = nearest(last, known)
+        if near is not None:
+            return known[near]
+    return None
 
 
 def _where(error: BaseException) -> str:
     """The error on one line, with the place in the user's code it came from."""
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
-    frame, place = error.__traceback__, ""
-    while frame is not None:
-        file = frame.tb_frame.f_code.co_filename
-        if not file.startswith(("<frozen", str(PACKAGE))) and not file.endswith("importlib/__init__.py"):
-            place = f"{file}:{frame.tb_lineno}: "
-        frame = frame.tb_next
+    place = place_in(error)
+    explain(error)
     text = str(error)
     missing = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
-    if missing in registry.packages():
+    if is_hidden := hidden(error):
+        text += f"; {is_hidden}"
+    elif missing in registry.packages():
         text += f"; write graphflow.msgs.{error.name}"  # type: ignore[attr-defined]
+    elif missing == "graphflow" and error.name and (meant := _instead_of(error.name.split(".")[1])):  # type: ignore[attr-defined]
+        text += f"; {meant}"
+    elif found := re.fullmatch(r"cannot import name '(\w+)' from 'graphflow' .*", text):
+        text = f"graphflow has no {found[1]}; {_instead_of(found[1])}".removesuffix("; ")
     elif missing == "rclpy":
         text += '; write `from graphflow import Node`: the page "coming from ROS 2" has each word of rclpy'
+    elif missing in ("rospy", "roscpp", "roslib"):
+        text += f"; {missing} is ROS 1's: write `from graphflow import Node`, or ROS 2's import rclpy"
+    elif remark := remark_on(error):
+        text += f"; {remark}"
     # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
-    return text if text.startswith("/") else f"{place}{type(error).__name__}: {text}"
+    return text if text.startswith("/") else f"{place}{place and ': '}{type(error).__name__}: {text}"
+
+
+def _instead_of(word: str) -> str:
+    """The import to write for one of something that graphflow does not have; empty if that is not known."""
+    if word in ("msg", "srv", "action", "message", "messages"):
+        return "messages are in graphflow.msgs, as in from graphflow.msgs.std_msgs.msg import String"
+    names: list[str] = vars(sys.modules["graphflow"])["__all__"]  # the facade above, which the user's file imports
+    meant = {name.lower(): name for name in names}
+    near = nearest(word.lower(), meant)
+    return f"write from graphflow import {meant[near]}" if near is not None else ""
 
 
 def interfaces(class_paths: list[str]) -> dict[str, Any]:
@@ -136,11 +187,3 @@ def interfaces(class_paths: list[str]) -> dict[str, Any]:
         except GraphflowError as error:
             found[path] = {"problem": str(error)}
     return found
-
-
-def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
-    """What `interfaces` returned, as Interfaces and Problems."""
-    return {
-        path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
-        for path, value in data.items()
-    }

@@ -19,6 +19,7 @@ from graphflow.graph.plan import PlannedNode
 from graphflow.names import Remap
 from graphflow.qos import SERVICES
 from graphflow.runtime.args import RosArgs
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
 from graphflow.runtime.values import from_message
@@ -65,6 +66,7 @@ class Container:
                 raise GraphflowError(f"there is a node {planned.name} already")
             number, node = await self._orders.load(described)
         except Exception as error:  # whatever goes wrong, the one who asked is told
+            explain(error)
             text = str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
             text = printable(text)
             self._node.log.warning("%s could not be loaded: %s", printable(request.plugin_name[:NAME_BOUND]), text)

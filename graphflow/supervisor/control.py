@@ -8,9 +8,9 @@ A door sends one request and reads lines until the supervisor closes the connect
     {"do": "ps"}                        -> {"event": "ps", "nodes": [...], "consoles": [...]}
     {"do": "hello"}                     -> {"event": "hello", ...}: the graph, its file, the windows kept with the run
     {"do": "plan"}                      -> {"event": "plan", "plan": ...}: what the graph file says, as `Plan.to_json`
-    {"do": "down", "now": false}        -> events until the end, the last of them {"event": "end", "exit_code": n}
+    {"do": "down", "now": false, "reason": text}    -> events until the end, the last {"event": "end", "exit_code": n}
     {"do": "restart", "node": name}     -> {"event": "done"}, or {"event": "error", "message": text}
-                                           likewise "start", "stop"
+                                           likewise "start", "stop"; with "threads": [handlers that then run in some]
     {"do": "load", "container": process, "node": {...}}    -> {"event": "loaded", "number": n, "node": name}
     {"do": "unload", "container": process, "number": n}    -> the same: a node that has left the process
     {"do": "follow"}                    -> {"event": "hello", ...}, what has happened so far, then events as they come
@@ -29,22 +29,23 @@ import os
 import secrets
 import socket
 import struct
-from collections.abc import AsyncIterator, Iterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, Self
 
 from graphflow.errors import GraphflowError, SupervisorError
 from graphflow.graph.plan import Plan, node_from_json
 from graphflow.supervisor.components import Components
+from graphflow.supervisor.control_client import TCP, connect
 from graphflow.supervisor.doors import Doors
 from graphflow.system import is_portable, user_id
 
-CONNECT_LIMIT = 5.0
 CLOSE_LIMIT = 1.0
 FOLLOW_LIMIT = 5.0
 UNREAD_LIMIT = 1 << 20
 """Bytes that may wait for a door that does not read."""
-_TCP = "tcp/"
+REASON_BOUND = 200
+"""Characters of why a graph is stopped."""
 
 
 class Commands(Protocol):
@@ -59,7 +60,7 @@ class Commands(Protocol):
 
     def begin_stop(self, *, now: bool, reason: str) -> None: ...
 
-    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None: ...
+    def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None: ...
 
     def stop(self, node: str, by: str) -> None: ...
 
@@ -89,7 +90,7 @@ class ControlServer:
         if is_portable():
             self._token = secrets.token_hex(16)
             self._server = await asyncio.start_server(self._accept, "127.0.0.1", 0)
-            return f"{_TCP}{self._server.sockets[0].getsockname()[1]}/{self._token}"
+            return f"{TCP}{self._server.sockets[0].getsockname()[1]}/{self._token}"
         if self._server is not None:
             self._server.close()
         path.unlink(missing_ok=True)
@@ -144,7 +145,7 @@ class ControlServer:
             _write(writer, {"event": "error", "message": "not a request"})
             return
         if what == "down":
-            await self._down(writer, now=bool(request.get("now")))
+            await self._down(writer, now=bool(request.get("now")), reason=_reason(request))
         elif what == "follow":
             await self._follow(reader, writer, request)
         elif what in ("load", "unload"):
@@ -181,9 +182,10 @@ class ControlServer:
             if what == "hello":
                 return self._commands.hello()
             if what == "down":
-                self._commands.begin_stop(now=bool(request.get("now")), reason=str(request.get("reason", "down")))
+                self._commands.begin_stop(now=bool(request.get("now")), reason=_reason(request))
             elif what in ("restart", "start"):
-                self._commands.restart(str(request.get("node")), by, only_ended=what == "start")
+                node, threads = str(request.get("node")), [str(name) for name in request.get("threads", ())]
+                self._commands.restart(node, by, only_ended=what == "start", threads=threads)
             elif what == "stop":
                 self._commands.stop(str(request.get("node")), by)
             elif what == "announce":
@@ -192,11 +194,11 @@ class ControlServer:
                 self._commands.doors.keep_layout(request.get("layout"))
             else:
                 return {"event": "error", "message": f"{what!r} is not a request"}
-        except (GraphflowError, ValueError, RecursionError) as error:
+        except (GraphflowError, ValueError, TypeError, RecursionError) as error:
             return {"event": "error", "message": str(error)}
         return {"event": "done", "do": what}
 
-    async def _down(self, writer: asyncio.StreamWriter, *, now: bool) -> None:
+    async def _down(self, writer: asyncio.StreamWriter, *, now: bool, reason: str) -> None:
         ended = asyncio.Event()
 
         def listener(event: dict[str, Any]) -> None:
@@ -204,9 +206,10 @@ class ControlServer:
             if event["event"] == "end":
                 ended.set()
 
-        stop = self._commands.doors.subscribe(listener, replay=False)
+        doors = self._commands.doors
+        stop = doors.subscribe(listener, replay=doors.has_ended)  # one that comes late hears what has happened
         try:
-            self._commands.begin_stop(now=now, reason="down")
+            self._commands.begin_stop(now=now, reason=reason)
             await ended.wait()
         finally:
             stop()
@@ -229,6 +232,10 @@ class ControlServer:
                 leave()
 
 
+def _reason(request: Mapping[str, Any]) -> str:
+    return str(request.get("reason", "down"))[:REASON_BOUND]
+
+
 def _write(writer: asyncio.StreamWriter, event: dict[str, Any]) -> None:
     if writer.transport.get_write_buffer_size() > UNREAD_LIMIT:
         writer.transport.abort()
@@ -243,98 +250,6 @@ def _peer_uid(connection: Any) -> int | None:
     layout = struct.Struct("3i")
     _, uid, _ = layout.unpack(connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, layout.size))
     return int(uid)
-
-
-def _connect(address: str) -> tuple[socket.socket, dict[str, str]]:
-    """A connection to a supervisor, and the token to show there."""
-    if address.startswith(_TCP):
-        port, _, token = address.removeprefix(_TCP).partition("/")
-        return socket.create_connection(("127.0.0.1", int(port)), CONNECT_LIMIT), {"token": token}
-    connection = socket.socket(socket.AF_UNIX)
-    connection.settimeout(CONNECT_LIMIT)
-    try:
-        connection.connect(address)
-    except OSError:
-        connection.close()
-        raise
-    return connection, {}
-
-
-class ControlClient:
-    """A door's side; blocking.
-
-    Raises:
-        SupervisorError: Nothing answers at the address.
-    """
-
-    def __init__(self, address: str) -> None:
-        try:
-            self._socket, self._token = _connect(address)
-        except OSError as error:
-            raise SupervisorError(f"the supervisor at {address} does not answer: {error.strerror}") from None
-        self._buffer = b""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._socket.close()
-
-    def fileno(self) -> int:
-        return self._socket.fileno()
-
-    def send(self, **request: Any) -> None:
-        """Send a request.
-
-        Raises:
-            SupervisorError: The supervisor has gone.
-        """
-        try:
-            self._socket.sendall(json.dumps({**request, **self._token}).encode() + b"\n")
-        except OSError as error:
-            raise SupervisorError(f"the supervisor has gone: {error.strerror}") from None
-
-    def receive(self, timeout: float | None = CONNECT_LIMIT) -> Iterator[dict[str, Any]]:
-        """Events as they come, until the supervisor closes the connection.
-
-        Args:
-            timeout: Seconds between two events; None for no limit.
-
-        Raises:
-            SupervisorError: Nothing came in time (exit 4).
-        """
-        self._socket.settimeout(timeout)
-        while True:
-            while b"\n" in self._buffer:
-                line, _, self._buffer = self._buffer.partition(b"\n")
-                yield json.loads(line)
-            try:
-                data = self._socket.recv(65536)
-            except TimeoutError:
-                raise SupervisorError("the supervisor does not answer", exit_code=4) from None
-            except ConnectionError:
-                return
-            if not data:
-                return
-            self._buffer += data
-
-    def pending(self) -> list[dict[str, Any]] | None:
-        """Events that have arrived, without waiting; None when the supervisor has closed the connection."""
-        self._socket.setblocking(False)
-        try:
-            while True:
-                data = self._socket.recv(65536)
-                if not data:
-                    return self._lines() or None
-                self._buffer += data
-        except BlockingIOError:
-            return self._lines()
-        except ConnectionError:  # what came before it counts
-            return self._lines() or None
-
-    def _lines(self) -> list[dict[str, Any]]:
-        *lines, self._buffer = self._buffer.split(b"\n")
-        return [json.loads(line) for line in lines]
 
 
 class ControlStream:
@@ -354,7 +269,7 @@ class ControlStream:
         Raises:
             OSError: Nothing answers at the address.
         """
-        connection, token = _connect(address)
+        connection, token = connect(address)
         # A stream that fails to write reads no more either, and what a supervisor says last would be lost.
         for_writing = connection.dup()
         reader, kept_open = await asyncio.open_connection(sock=connection, limit=line_limit)

@@ -37,6 +37,8 @@ class Doors:
         """The windows and panes that the last console has left, for the next one."""
         self._empty = empty
         self._history: deque[Event] = deque(maxlen=HISTORY)
+        self.has_ended = False
+        """Whether the end of the graph has been told."""
         self._listeners: list[Listener] = []
         self._consoles: dict[int, Event] = {}
         self._numbers = itertools.count(1)
@@ -45,6 +47,7 @@ class Doors:
         """Tell all who follow of an event, and those who come later if it is to be kept."""
         if keep:
             self._history.append(event)
+        self.has_ended |= event["event"] == "end"
         for listener in list(self._listeners):
             listener(event)
         logger.info("%s", json.dumps(event))

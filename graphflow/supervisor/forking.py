@@ -7,7 +7,7 @@ import json
 import os
 import signal
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from graphflow.machines.process import Exit
 from graphflow.supervisor import family, preload
 from graphflow.supervisor.channel import Lines
 from graphflow.supervisor.guardian import GRACE
-from graphflow.supervisor.starter import Heard
+from graphflow.supervisor.starter import Heard, Start
 
 REAP_LIMIT = 1.0
 """Seconds that the preload process has to say how a worker ended."""
@@ -35,7 +35,9 @@ class ForkingStarter:
         """Living workers by process id: the name of each, and the descriptor that tells its end."""
         self._programs: dict[str, signal.Signals] = {}
         """Processes that are foreign programs."""
-        self._heard: Heard
+        self._begun: dict[str, list[dict[str, Any]]] = {}
+        """What has become of workers that were started and not yet asked for."""
+        self._hear: Heard
         self._lost: Callable[[str], None]
         self._has_ended = False
         self._ending: asyncio.Task[None] | None = None
@@ -67,10 +69,24 @@ class ForkingStarter:
         how = Exit.of_status(os.waitstatus_to_exitcode(status))
         return f"process {self._pid}, which starts the nodes, was ended by {how}"
 
+    def begin(self, starts: Iterable[Start]) -> None:
+        for start in starts:
+            self._begun[start.process] = []
+            with suppress(ConnectionError):  # it has ended, as is told once this is open
+                self._channel.sendall(json.dumps({"do": "spawn", **start._asdict()}).encode() + b"\n")
+
     async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
-        self._heard, self._lost = heard, lost
-        self._lines = [Lines(self._channel, self._told, self._lose), Lines(self._status, heard, _nothing)]
+        self._hear, self._lost = heard, lost
+        self._lines = [Lines(self._channel, self._told, self._lose), Lines(self._status, self._heard, _nothing)]
         self._lines[0].send(do="log", path=str(log))
+
+    def _heard(self, event: dict[str, Any]) -> None:
+        """Report what has become of a worker; of one that was not asked for yet, later."""
+        early = self._begun.get(event.get("process", ""))
+        if early is None:
+            self._hear(event)
+        else:
+            early.append(event)
 
     def _told(self, event: dict[str, Any]) -> None:
         """What the preload process says."""
@@ -144,9 +160,16 @@ class ForkingStarter:
                 self._ended(pid, status)
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
+        if process in self._begun:
+            asyncio.get_running_loop().call_soon(self._tell_begun, process)
+            return
         if "command" in job:
             self._programs[process] = signal.Signals[job["signal"]]
         self._lines[0].send(do="spawn", process=process, job=job, log=log, env=env)
+
+    def _tell_begun(self, process: str) -> None:
+        for event in self._begun.pop(process):
+            self._hear(event)
 
     def tell(self, process: str, order: dict[str, Any]) -> None:
         self._lines[0].send(do="tell", process=process, order=order)

@@ -11,6 +11,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -52,7 +53,8 @@ def guard(supervise: Callable[[], int], note: int, descriptors: tuple[int, ...])
     code = os.waitstatus_to_exitcode(_wait_for(pid))
     try:
         if code < 0:
-            _clean_up(pid, code, os.read(note, 65536))
+            known = os.read(note, 65536)
+            clean_up(json.loads(known) if known else {}, pid, _words(code), partial(family.descendants, os.getpid()))
     finally:  # whatever goes wrong with files, nothing is left
         family.end_descendants(os.getpid(), family.reap_children)
         os._exit(code if code >= 0 else 128 - code)
@@ -71,20 +73,32 @@ def _wait_for(pid: int) -> int:
             return status
 
 
-def _clean_up(pid: int, code: int, note: bytes) -> None:
-    """Do what the supervisor did not live to do: hold the run directory until all has ended, and say how it ended."""
-    known: dict[str, Any] = json.loads(note) if note else {}
+def clean_up(known: dict[str, Any], pid: int, how: str, find: Callable[[], list[int]]) -> None:
+    """Do what the supervisor did not live to do: hold the run directory until all has ended, and say how it ended.
+
+    Args:
+        known: What `leave_note` has said; nothing if the supervisor had not come that far.
+        pid: The supervisor.
+        how: What ended it.
+        find: Finds what is left of the graph.
+    """
     directory = _claimed(known["domain"], known["graph"]) if known else None
     deadline = time.monotonic() + GRACE
-    while family.descendants(os.getpid()) and time.monotonic() < deadline:
+    while find() and time.monotonic() < deadline:
         family.reap_children()
         time.sleep(0.01)
-    left = len(family.descendants(os.getpid()))
-    family.end_descendants(os.getpid(), family.reap_children)
+    left = len(find())
+    family.end_all(find, family.reap_children)
     if directory is not None:
         directory.release()
     if known:
-        _tell(known["log"], pid, code, left)
+        _tell(known["log"], pid, how, left)
+
+
+def _words(code: int) -> str:
+    from graphflow.machines.process import Exit
+
+    return str(Exit.of_status(code))
 
 
 def _claimed(domain: int, graph: str) -> RunDirectory | None:
@@ -99,11 +113,9 @@ def _claimed(domain: int, graph: str) -> RunDirectory | None:
     return directory
 
 
-def _tell(log: str, pid: int, code: int, left: int) -> None:
-    from graphflow.machines.process import Exit
-
+def _tell(log: str, pid: int, how: str, left: int) -> None:
     were = "1 process that was left was" if left == 1 else f"{left} processes that were left were"
     killed = f"; {were} killed" if left else ""
-    text = f"the supervisor, process {pid}, was ended by {Exit.of_status(code)}; its nodes have ended{killed}\n"
+    text = f"the supervisor, process {pid}, was ended by {how}; its nodes have ended{killed}\n"
     with open(log, "a", encoding="utf-8") as file:
         file.write(text)

@@ -14,7 +14,6 @@ import json
 import os
 import signal
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
@@ -23,6 +22,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.supervisor import family
 from graphflow.supervisor.guardian import guard, leave_note
+from graphflow.supervisor.lifeline import LET_GO, Lifeline
 from graphflow.supervisor.starts import ANNOUNCEMENT
 from graphflow.system import detached, is_portable, offer_ros2
 
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 Report = dict[str, Any]
 
-LET_GO = b"-"
-"""What the command sends over the lifeline to let the graph go on without it."""
 GONE = "its terminal went away"
 
 
@@ -52,10 +50,9 @@ class Launched(NamedTuple):
     """Waits until it has ended, with all that belonged to it; says what ended it."""
 
     def let_go(self) -> None:
-        """Let the graph go on without this command."""
+        """Let the graph go on without this command. Its end still shows: the lifeline stays open until then."""
         with suppress(OSError):  # it may have ended
             os.write(self.lifeline, LET_GO)
-        os.close(self.lifeline)
 
 
 def launch(
@@ -152,32 +149,6 @@ def _kept(stream: IO[bytes]) -> int:
         return os.dup(stream.fileno())
 
 
-class _Lifeline:
-    """The supervisor's end of the lifeline. Until `on_cut` is called, the end of the command ends this process.
-
-    Args:
-        pipe: Where the command's end shows.
-    """
-
-    def __init__(self, pipe: int) -> None:
-        self._pipe = pipe
-        self._told: Callable[[], object] = _end_at_once
-
-    def watch(self) -> None:
-        """Begin to watch it, on a thread of its own; which must not be before the preload process is forked."""
-        threading.Thread(target=self._wait, name="graphflow-lifeline", daemon=True).start()
-
-    def _wait(self) -> None:
-        with suppress(OSError):
-            if os.read(self._pipe, 1) == LET_GO:
-                return
-        self._told()
-
-    def on_cut(self, told: Callable[[], object]) -> None:
-        """Call a function, on any thread, when the command ends from now on."""
-        self._told = told
-
-
 def _end_at_once(directory: RunDirectory | None = None) -> None:
     """End this process, whatever it is doing, before it has started anything."""
     if directory is None:
@@ -202,8 +173,9 @@ class _Launch:
     def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1, guardian: int = 0) -> None:
         self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
         self._is_watching, self._debug = bool(job["watch"]), job["debug"]
-        self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
+        self._report_pipe, self._lifeline, self._note = report, Lifeline(lifeline, _end_at_once), note
         self._guardian = guardian
+        self._was_cut = False
         self._starter: Starter
 
     def supervise(self) -> int:
@@ -257,10 +229,10 @@ class _Launch:
         from graphflow.graph.check import check, step_type
         from graphflow.graph.project import add_interfaces
         from graphflow.graph.resolve import load
-        from graphflow.supervisor.classes import read_interfaces
         from graphflow.supervisor.debugging import debugged
         from graphflow.supervisor.launch_python import described
         from graphflow.supervisor.printed import printed
+        from graphflow.supervisor.probed import read_interfaces
 
         plan = load(self._file, self._given, run=printed, describe=described)
         if self._only:
@@ -270,7 +242,7 @@ class _Launch:
         add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
         self._starter.begin_probe(plan.classes(), plan.root)
-        import graphflow.supervisor.supervisor  # noqa: F401 - overlaps with the probe
+        import graphflow.introspect.view  # noqa: F401 - overlaps with the probe
 
         interfaces = read_interfaces(self._starter.probed())
         problems = check(plan, interfaces)
@@ -283,8 +255,10 @@ class _Launch:
         self, plan: Plan, domain: int, interfaces: Interfaces, step_types: dict[str, str]
     ) -> int:
         from graphflow.introspect.view import refuse_taken_names
-        from graphflow.runtime.context import Context
         from graphflow.supervisor import rundir
+        from graphflow.supervisor.jobs import first_starts
+        from graphflow.transport.config import reaches_out
+        from graphflow.transport.rendezvous import establish
 
         directory = rundir.RunDirectory(domain, plan.name)
         self._lifeline.on_cut(partial(_end_at_once, directory))
@@ -298,7 +272,13 @@ class _Launch:
             self._log_to(logs / rundir.SUPERVISOR_LOG)
             if self._note >= 0:
                 leave_note(self._note, domain, plan.name, logs / rundir.SUPERVISOR_LOG)
-            context = await Context.open(domain, link=False)
+            router = establish()
+            if not reaches_out():  # a link that is refused keeps a graph from being started
+                self._lifeline.on_cut(self._cut_early)
+                self._starter.begin(first_starts(plan, domain, logs))
+            from graphflow.runtime.context import Context  # all that follows overlaps with the start of the nodes
+
+            context = await Context.open(domain, link=False, checked=True, router=router)
             try:
                 context.open_link()
                 run = _run_file(plan, run_id, logs, domain, self._guardian)
@@ -333,7 +313,13 @@ class _Launch:
             control.expect_nobody()
             supervisor.begin_stop(now=False, reason=GONE)
 
-        self._lifeline.on_cut(lambda: context.loop.call_soon_threadsafe(cut))
+        def on_loop(function: Callable[[], object]) -> None:
+            with suppress(RuntimeError):  # the loop is closed: the graph has ended
+                context.loop.call_soon_threadsafe(function)
+
+        self._lifeline.on_cut(partial(on_loop, cut), partial(on_loop, control.expect_nobody))
+        if self._was_cut:
+            cut()
         _tell_notes(supervisor.note)
         await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
         run = replace(run, socket=await control.open(directory.socket))
@@ -363,6 +349,10 @@ class _Launch:
                 watching.cancel()
             await control.close()
             await self._starter.close()
+
+    def _cut_early(self) -> None:
+        """The command has ended while workers were being started: they are stopped as soon as that can be done."""
+        self._was_cut = True
 
     def _log_to(self, path: Path) -> None:
         """From here on the supervisor writes only to its log; the terminal belongs to the command."""
@@ -430,6 +420,7 @@ def _run_file(plan: Plan, run_id: str, logs: Path, domain: int, guardian: int) -
         logs=str(logs),
         endpoint=rendezvous_endpoint(),
         guardian=guardian,
+        guardian_started=(rundir.start_time(guardian) or 0.0) if guardian else 0.0,
         plan_hash=hashlib.sha256(json.dumps(plan.to_json(), sort_keys=True).encode()).hexdigest(),
     )
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Any
 
 import yaml
 
+from graphflow.graph.ros_attributes import output_fault
 from graphflow.graph.source import scalar
-from graphflow.names import did_you_mean
-from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, plain, text
+from graphflow.supervisor.launch_calls import code_of, is_off
+from graphflow.supervisor.launch_names import NAMES
+from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, no_words, plain, text
 
 _described: dict[int, Said] = {}
 """Actions that have been written down, which are kept, so that no other has their number."""
@@ -19,6 +22,7 @@ _ending: set[int] = set()
 """Actions with whose end everything ends."""
 _lives: dict[int, str] = {}
 """The states that lifecycle nodes are brought to."""
+_SUBSTITUTIONS = frozenset(NAMES["launch.substitutions"].split())
 _STATES = {"configure": "inactive", "activate": "active"}
 """Where transitions of lifecycle nodes lead."""
 _TRANSITIONS = {1: "configure", 2: "cleanup", 3: "activate", 4: "deactivate", **dict.fromkeys((5, 6, 7), "shutdown")}
@@ -38,15 +42,18 @@ def actions(said: Any) -> list[dict[str, Any]]:
     if said is None:
         return []
     if not isinstance(said, Said):
-        RECORDING.problems.append({"line": 1, "message": f"{said!r} is no action"})
+        RECORDING.problems.append(
+            {"line": RECORDING.written_at, "message": f"{said!r} is no action, such as Node(...)"}
+        )
         return []
     _described[id(said)] = said
+    RECORDING.written_at = said.line
     name, attributes = _action(said)
     if name == "":
         return list(attributes)
     attributes |= {
         "line": said.line,
-        **(condition(given) if isinstance(given := said.kwargs.get("condition"), Said) else {}),
+        **_condition(said),
     }
     if id(said) in _numbers:
         attributes["number"] = _numbers[id(said)]
@@ -57,10 +64,27 @@ def actions(said: Any) -> list[dict[str, Any]]:
     return [{name: attributes}, *_after_exit(said)]
 
 
+def _condition(said: Said) -> dict[str, str]:
+    given = said.get("condition")
+    if given is None:
+        return {}
+    if not isinstance(given, Said) or given.kind in _SUBSTITUTIONS:
+        RECORDING.problem(said, f"condition: write IfCondition({_called_as(given)}) or UnlessCondition(...)")
+        return {}
+    return condition(given)
+
+
+def _called_as(given: Any) -> str:
+    """A value as a launch file has it."""
+    return f"{given.kind}(...)" if isinstance(given, Said) else repr(given)
+
+
 def _action(said: Said) -> tuple[str, Any]:
     get = said.get
     _keep(said)
-    match said.name:
+    if (code := code_of(said)) is not None:
+        return "", [] if is_off(said) else _called(said, code)
+    match said.kind:
         case "LaunchDescription":
             return "", actions(said.entities)
         case "ReplaceEnvironmentVariables":
@@ -92,12 +116,12 @@ def _action(said: Said) -> tuple[str, Any]:
             return "push_ros_namespace", {"namespace": text(get("namespace", 0))}
         case "GroupAction":
             is_scoped, outer = bool(get("scoped", default=True)), (dict(RECORDING.set), dict(RECORDING.env))
-            children = actions(get("actions", 0, []))
+            children = actions(_actions_of(said, 0))
             if is_scoped:
                 RECORDING.set, RECORDING.env = outer
             return "group", {"children": children, "scoped": is_scoped}
         case "TimerAction":
-            return "timer", {"period": plain(get("period")), "children": actions(get("actions", default=[]))}
+            return "timer", {"period": _period(said), "children": actions(_actions_of(said))}
         case "IncludeLaunchDescription":
             arguments = dict(get("launch_arguments", default=None) or {})
             pairs = [{"name": text(key), "value": text(value)} for key, value in arguments.items()]
@@ -106,14 +130,8 @@ def _action(said: Said) -> tuple[str, Any]:
             return "log", {"message": text(get("msg", default=""))}
         case "UnregisterEventHandler":
             return "", []
-        case "OpaqueFunction":
-            before = dict(RECORDING.set)
-            found_actions = _called(said)
-            changed = {name: value for name, value in RECORDING.set.items() if before.get(name) != value}
-            settings = [{"let": {"name": name, "value": value, "line": said.line}} for name, value in changed.items()]
-            return "", [*settings, *actions(found_actions)]
         case "RegisterEventHandler":
-            return "", _handled(said)
+            return "", [] if is_off(said) else _handled(said)
         case "EmitEvent" if (change := _change(said)) is not None:
             node, transition = change
             if transition in _STATES:  # the node has been told to be brought there
@@ -122,7 +140,7 @@ def _action(said: Said) -> tuple[str, Any]:
             name = "/".join(["", *filter(None, parts)])
             return "executable", {**_common(said), "cmd": ["ros2", "lifecycle", "set", name, transition]}
         case "Shutdown" | "EmitEvent" if _is_shutdown(said):
-            event = said if said.name == "Shutdown" else get("event", 0)
+            event = said if said.kind == "Shutdown" else get("event", 0)
             reason = text(event.get("reason", 0, default="")) or "a launch file asks for it"
             return "shutdown", {"reason": reason}
         case "Node" | "LifecycleNode":
@@ -135,15 +153,16 @@ def _action(said: Said) -> tuple[str, Any]:
             return "node_container", {"name": text(get("name")), "composable_node": _components(said)}
         case "LoadComposableNodes":
             target = get("target_container")
-            name = text(target.get("name") if isinstance(target, Said) else target)
+            is_action = isinstance(target, Said) and target.kind == "ComposableNodeContainer"
+            name = text(target.get("name") if is_action else target)
             return "load_composable_node", {"target": name, "composable_node": _components(said)}
         case "ExecuteProcess" | "ExecuteLocal":
             first, *rest = get("cmd", 0, [""])
-            if isinstance(first, Said) and first.name == "ExecutableInPackage":  # a node, by another way
+            if isinstance(first, Said) and first.kind == "ExecutableInPackage":  # a node, by another way
                 found = {"pkg": text(first.get("package", 1)), "exec": text(first.get("executable", 0))}
                 return "node", {**_common(said), **found, "args": [text(word) for word in rest]}
             return "executable", _process(said)
-    RECORDING.problem(said, f"{said.name} has no words in a graph file")
+    RECORDING.problem(said, no_words(said))
     return "", []
 
 
@@ -153,29 +172,52 @@ _SETTING = ("SetLaunchConfiguration", "SetEnvironmentVariable", "AppendEnvironme
 def _keep(said: Said) -> None:
     """Note what an action sets, for functions that come after it and ask."""
     given = said.kwargs.get("condition")
-    if said.name not in _SETTING or RECORDING.values is None or (given is not None and not given.evaluate()):
+    if said.kind not in _SETTING or RECORDING.values is None or (given is not None and not given.evaluate()):
         return
     name, value = (RECORDING.known(text(said.get(key, place))) for key, place in (("name", 0), ("value", 1)))
-    if said.name == "SetLaunchConfiguration":
+    if said.kind == "SetLaunchConfiguration":
         RECORDING.set[name] = value
         return
     former = Context().environment.get(name)
-    if said.name == "AppendEnvironmentVariable" and former is not None:
+    if said.kind == "AppendEnvironmentVariable" and former is not None:
         parts = [former, value]
         is_first = bool(said.get("prepend", 2, default=False))
         value = text(said.get("separator", 3, os.pathsep)).join(parts[::-1] if is_first else parts)
     RECORDING.env[name] = value
 
 
-def _called(said: Said) -> Any:
-    function = said.get("function", 0)
+_carried_out: list[dict[str, Any]] = []
+"""Actions that the code which is being called has carried out itself so far."""
+
+
+def _carry_out(said: Said) -> None:
+    """Write down an action where the code of a launch file calls its `execute` or `visit`."""
+    number_targets(said)
+    _carried_out.extend(actions(said))
+
+
+RECORDING.carry_out = _carry_out
+
+
+def _called(said: Said, code: Callable[[], list[Any]]) -> list[dict[str, Any]]:
+    """The actions that code makes: those it sets, carries out itself and returns."""
+    if RECORDING.values is None and said.kind in ("ForEach", "ForLoop"):  # over what is not known yet
+        RECORDING.problem(
+            said, f"{said.kind} has no words in a graph file; `graphflow launch` starts the file as it is"
+        )
+        return []
     if RECORDING.values is None:
-        text = "OpaqueFunction: it was called once, with $(var ...) in place of each value; look what it made"
+        text = f"{said.kind}: it was called once, with $(var ...) in place of each value; look what it made"
         RECORDING.problem(said, text)
-    found = function(Context(), *(said.get("args", default=None) or []), **(said.get("kwargs", default=None) or {}))
+    outer, before = _carried_out[:], dict(RECORDING.set)
+    _carried_out.clear()
+    found = code()
     number_targets(found)
     number_targets(RECORDING.descriptions)  # to which it may have added
-    return found
+    changed = {name: value for name, value in RECORDING.set.items() if before.get(name) != value}
+    settings = [{"let": {"name": name, "value": value, "line": said.line}} for name, value in changed.items()]
+    inner, _carried_out[:] = _carried_out[:], outer
+    return [*settings, *inner, *actions(found)]
 
 
 _HANDLERS = {
@@ -196,32 +238,32 @@ _LEFT_OUT = {
 
 def _change(said: Any) -> tuple[Said, str] | None:
     """The lifecycle node that an event is for, and the transition."""
-    event = said.get("event", 0) if isinstance(said, Said) and said.name == "EmitEvent" else None
-    if not isinstance(event, Said) or event.name != "ChangeState":
+    event = said.get("event", 0) if isinstance(said, Said) and said.kind == "EmitEvent" else None
+    if not isinstance(event, Said) or event.kind != "ChangeState":
         return None
     matcher, transition = event.get("lifecycle_node_matcher"), _TRANSITIONS.get(event.get("transition_id"))
-    node = matcher.get("action", 0) if isinstance(matcher, Said) and matcher.name == "matches_action" else None
+    node = matcher.get("action", 0) if isinstance(matcher, Said) and matcher.kind == "matches_action" else None
     return (node, transition) if isinstance(node, Said) and transition else None
 
 
 def _handled(said: Said) -> list[dict[str, Any]]:
     """Actions that begin when a process has started or ended, or a lifecycle node has come to a state."""
     handler = said.get("event_handler", 0)
-    if isinstance(handler, Said) and handler.name in _LEFT_OUT:
-        RECORDING.remark(said, _LEFT_OUT[handler.name])
+    if isinstance(handler, Said) and handler.kind in _LEFT_OUT:
+        RECORDING.remark(said, _LEFT_OUT[handler.kind])
         return []
-    if not isinstance(handler, Said) or handler.name not in _HANDLERS:
+    if not isinstance(handler, Said) or handler.kind not in _HANDLERS:
         RECORDING.problem(said, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
         return []
-    whose, key, what = _HANDLERS[handler.name]
+    whose, key, what = _HANDLERS[handler.kind]
     target, then = handler.get(whose), handler.get(key)
     if callable(target) and not isinstance(target, Said):
-        RECORDING.problem(said, f"{handler.name}: only for one process, and not for those that a function chooses")
+        RECORDING.problem(said, f"{handler.kind}: only for one process, and not for those that a function chooses")
         return []
     then, functions = _without_functions(then)
     if functions or not isinstance(target, Said):
         whose = "a function" if functions else "what it does for every process"
-        RECORDING.remark(said, f"{handler.name}: {whose} is left out: nothing is called while the graph runs")
+        RECORDING.remark(said, f"{handler.kind}: {whose} is left out: nothing is called while the graph runs")
     if not isinstance(target, Said):
         return []
     goal = handler.get("goal_state")
@@ -246,7 +288,7 @@ def _after(target: Said, then: list[Any], what: str) -> list[dict[str, Any]]:
 
 def _after_exit(said: Said) -> list[dict[str, Any]]:
     """What is to be done when a process has ended, as it says itself."""
-    then, functions = _without_functions(said.get("on_exit") if said.name in _PROCESSES else None)
+    then, functions = _without_functions(said.get("on_exit") if said.kind in _PROCESSES else None)
     if functions:
         RECORDING.remark(said, "on_exit: a function is left out: nothing is called while the graph runs")
     then = [one for one in then if not _is_shutdown(one)]
@@ -259,7 +301,7 @@ _PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess", "ExecuteLocal")
 def _without_functions(then: Any) -> tuple[list[Any], int]:
     """What follows an event, and how many functions in it would be called then."""
     whole = list(then) if isinstance(then, (list, tuple)) else [] if then is None else [then]
-    kept = [one for one in whole if isinstance(one, Said) and one.name != "OpaqueFunction"]
+    kept = [one for one in whole if isinstance(one, Said) and code_of(one) is None]
     return kept, len(whole) - len(kept)
 
 
@@ -268,6 +310,10 @@ def _common(said: Said) -> dict[str, Any]:
     for key in ("name", "namespace", "cwd", "respawn", "respawn_delay", "respawn_max_retries", "shell"):
         if said.get(key) is not None:
             found[key] = text(said.get(key))
+    output = said.get("output")
+    fault = output_fault(text(output) if isinstance(output, Said) else output)
+    if fault is not None:
+        RECORDING.problem(said, f"{said.kind}: {fault}")
     if said.get("prefix") is not None:
         found["launch-prefix"] = text(said.get("prefix"))
     variables = {**(said.get("env") or {}), **(said.get("additional_env") or {})}
@@ -279,16 +325,33 @@ def _common(said: Said) -> dict[str, Any]:
 
 
 def _process(said: Said) -> dict[str, Any]:
-    return {**_common(said), "cmd": [text(word) for word in said.get("cmd", 0, [])]}
+    cmd = said.get("cmd", 0, [])
+    if isinstance(cmd, str):
+        RECORDING.problem(said, f"cmd: expected a list of words, such as {cmd.split()!r}, got {cmd!r}")
+        cmd = cmd.split()
+    return {**_common(said), "cmd": [text(word) for word in cmd]}
 
 
-_OF_NODES = (
-    *("package", "executable", "name", "namespace", "exec_name", "parameters", "remappings", "arguments"),
-    *("ros_arguments", "output", "output_format", "emulate_tty", "respawn", "respawn_delay", "respawn_max_retries"),
-    *("cwd", "env", "additional_env", "prefix", "shell", "sigterm_timeout", "sigkill_timeout", "on_exit", "condition"),
-    *("cached_output", "log_cmd", "autostart", "composable_node_descriptions", "plugin", "extra_arguments"),
-)
-"""What a node, or a component, can be given."""
+def _actions_of(said: Said, place: int = -1) -> Any:
+    given = said.get("actions", place, [])
+    if not isinstance(given, Said):
+        return given
+    RECORDING.problem(said, f"{said.kind}: actions is a list: write [ ] around {_called_as(given)}")
+    return []
+
+
+def _period(said: Said) -> Any:
+    """The seconds of a timer, which may be a substitution; anything else is a problem."""
+    given = said.get("period")
+    value = plain(given)
+    if isinstance(value, str) and ("$(" in value or isinstance(scalar(value), (int, float))):
+        return value
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return value
+    if given is None and said.args:  # which is told already
+        return 1.0
+    RECORDING.problem(said, f"{said.kind}: period is a number of seconds, such as 2.0, and not {given!r}")
+    return 1.0
 
 
 def _list(said: Said, key: str, example: str) -> list[Any]:
@@ -302,11 +365,10 @@ def _list(said: Said, key: str, example: str) -> list[Any]:
 
 def _node(said: Said) -> dict[str, Any]:
     found = _common(said)
-    for key in sorted(set(said.kwargs) - {*_OF_NODES}):
-        RECORDING.problem(said, f"{said.name} has no argument {key!r}{did_you_mean(key, (), hidden=_OF_NODES)}")
-    for key, ours in (("package", "pkg"), ("executable", "exec")):
-        if said.get(key) is not None:
-            found[ours] = text(said.get(key))
+    for place, (key, ours) in enumerate((("package", "pkg"), ("executable", "exec"))):
+        given = said.get(key, place, said.get(f"node_{key}"))  # without a name, or by its former one, is told already
+        if given is not None:
+            found[ours] = text(given)
     for key, ours in (("arguments", "args"), ("ros_arguments", "ros_args")):
         words = _list(said, key, "['--fast']")
         if words:
@@ -320,13 +382,22 @@ def _node(said: Said) -> dict[str, Any]:
     for given in _list(said, "parameters", "[{'rate': 2.0}]"):
         if isinstance(given, dict):
             params += [_parameter(key, value) for key, value in given.items()]
-        elif isinstance(given, Said) and given.name == "Parameter":
+        elif isinstance(given, Said) and given.kind == "Parameter":
             params.append(_parameter(given.get("name", 0), given))
+        elif isinstance(given, (set, int, float)):
+            meant = "; write {'name': value}, with a colon" if isinstance(given, set) else ""
+            RECORDING.problem(said, f"parameters: {given!r} is neither a dictionary nor a file{meant}")
         else:
-            params.append({"from": text(given)})
+            params.append({"from": text(given), **_substituted(given)})
     if params:
         found["param"] = params
     return found
+
+
+def _substituted(given: Any) -> dict[str, str]:
+    """Whether substitutions are made in a file of parameters."""
+    is_asked = isinstance(given, Said) and given.kind == "ParameterFile" and given.get("allow_substs", default=False)
+    return {"allow_substs": RECORDING.known(text(is_asked))} if is_asked else {}
 
 
 _OF_PROCESSES = {
@@ -346,7 +417,8 @@ def _components(said: Said) -> list[dict[str, Any]]:
     described = said.get("composable_node_descriptions") or []
     nodes = [one for one in described if isinstance(one, Said)]
     return [
-        {**{k: v for k, v in _node(one).items() if k != "exec"}, "plugin": text(one.get("plugin"))} for one in nodes
+        {**{k: v for k, v in _node(one).items() if k != "exec"}, "plugin": text(one.get("plugin")), **_condition(one)}
+        for one in nodes
     ]
 
 
@@ -354,8 +426,8 @@ def _parameter(name: Any, value: Any) -> dict[str, Any]:
     if isinstance(value, dict):
         return {"name": text(name), "param": [_parameter(key, inner) for key, inner in value.items()]}
     found = {"name": text(name), "value": plain(value)}
-    if isinstance(value, Said) and value.name in _TYPED:
-        kind, inner = _type_name(value.get("value_type")), value.get("value", _TYPED[value.name])
+    if isinstance(value, Said) and value.kind in _TYPED:
+        kind, inner = _type_name(value.get("value_type")), value.get("value", _TYPED[value.kind])
         return _parameter(name, inner) | ({"type": kind} if kind else {})
     if isinstance(value, str) and "$(" not in value and _is_number_to_ros(value):
         found["value"] = scalar(value)
@@ -386,15 +458,15 @@ def _is_number_to_ros(value: str) -> bool:
 
 def _is_early(said: Any) -> bool:
     """Whether an event handler stands before what it waits for."""
-    handler = said.get("event_handler", 0) if isinstance(said, Said) and said.name == "RegisterEventHandler" else None
-    if not isinstance(handler, Said) or handler.name not in _HANDLERS:
+    handler = said.get("event_handler", 0) if isinstance(said, Said) and said.kind == "RegisterEventHandler" else None
+    if not isinstance(handler, Said) or handler.kind not in _HANDLERS:
         return False
-    return id(handler.get(_HANDLERS[handler.name][0])) not in _described
+    return id(handler.get(_HANDLERS[handler.kind][0])) not in _described
 
 
 def _is_shutdown(said: Any) -> bool:
-    event = said.get("event", 0) if isinstance(said, Said) and said.name == "EmitEvent" else said
-    return isinstance(event, Said) and event.name == "Shutdown"
+    event = said.get("event", 0) if isinstance(said, Said) and said.kind == "EmitEvent" else said
+    return isinstance(event, Said) and event.kind == "Shutdown"
 
 
 def number_targets(said: Any) -> None:
@@ -411,9 +483,9 @@ def number_targets(said: Any) -> None:
 
 
 def _number(said: Said) -> None:
-    if said.name in _PROCESSES and said.get("on_exit") is not None:
+    if said.kind in _PROCESSES and said.get("on_exit") is not None:
         _numbers.setdefault(id(said), len(_numbers) + 1)
-    whose, key, _ = _HANDLERS.get(said.name, ("", "", ""))
+    whose, key, _ = _HANDLERS.get(said.kind, ("", "", ""))
     if isinstance(target := said.get(whose), Said):
         _numbers.setdefault(id(target), len(_numbers) + 1)
         then = said.get(key) if key in ("on_exit", "on_completion") else None

@@ -1,4 +1,4 @@
-"""What `from launch.actions import *` brings, of the modules of ROS's launch packages. Source: their `__all__`."""
+"""The classes in modules of ROS's launch packages, and their bases. Source: `__all__` of the modules."""
 
 from __future__ import annotations
 
@@ -21,6 +21,43 @@ NAMES = {
     "TextSubstitution ThisLaunchFile ThisLaunchFileDir",
     "launch_ros.actions": "ComposableNodeContainer LifecycleNode LifecycleTransition LoadComposableNodes Node "
     "PushROSNamespace PushRosNamespace RosTimer SetParameter SetParametersFromFile SetROSLogDir SetRemap SetUseSimTime",
+    "launch_ros.descriptions": "ComposableNode Parameter ParameterFile ParameterValue",
     "launch_ros.substitutions": "ExecutableInPackage FindPackagePrefix FindPackageShare Parameter",
 }
-"""By module."""
+"""By module: what `from launch.actions import *` brings."""
+
+_BASES = {
+    "launch.actions": "Action",
+    "launch.conditions": "Condition",
+    "launch.event_handlers": "EventHandler",
+    "launch.substitutions": "Substitution",
+    "launch_ros.actions": "Action",
+    "launch_ros.substitutions": "Substitution",
+}
+BASES = {
+    **{name: base for module, base in _BASES.items() for name in NAMES[module].split()},
+    "ExecuteProcess": "ExecuteLocal",
+    "Node": "ExecuteProcess",
+    "LifecycleNode": "Node",
+    "ComposableNodeContainer": "Node",
+    "UnlessCondition": "IfCondition",
+    "LaunchConfigurationNotEquals": "LaunchConfigurationEquals",
+    "RosTimer": "TimerAction",
+    "ExecutableInPackage": "FindPackagePrefix",
+    "PathSubstitution": "Substitution",
+    "PythonLaunchDescriptionSource": "LaunchDescriptionSource",
+    "AnyLaunchDescriptionSource": "LaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource": "LaunchDescriptionSource",
+    **dict.fromkeys(("Action", "LaunchDescription"), "LaunchDescriptionEntity"),
+}
+"""The class that each is derived from, for those who ask."""
+
+
+def home(module: str, name: str) -> str | None:
+    """The module that has a class which is imported from another; None where that may be right.
+
+    Modules that are not listed here, such as those inside of others, may have any class.
+    """
+    if module not in {*NAMES, "launch_ros"} or name in NAMES.get(module, "").split():
+        return None
+    return next((other for other, names in NAMES.items() if name in names.split()), None)

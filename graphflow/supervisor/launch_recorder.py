@@ -15,15 +15,26 @@ import contextlib
 import json
 import logging
 import os
+import re
 import runpy
 import sys
 from collections.abc import Mapping
 from typing import Any
 
+from graphflow.names import nearest
 from graphflow.supervisor.launch_actions import actions, number_targets
+from graphflow.supervisor.launch_names import BASES, NAMES
 from graphflow.supervisor.launch_service import Described
 from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
 from graphflow.wire.profile import wire_profile
+
+_FUNCTION = "generate_launch_description"
+_ADDING = ("add_action", "add_entity")
+_HOMES = {name: f"from {module} import {name}" for module, names in NAMES.items() for name in names.split()} | {
+    name: f"from ament_index_python.packages import {name}"
+    for name in ("get_package_share_directory", "get_package_share_path", "get_package_prefix")
+}
+"""How names that launch files use are imported."""
 
 
 class _Environment(dict[str, str]):
@@ -55,16 +66,36 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         number_targets(whole)
         found = actions(whole)
         changed = {name: value for name, value in os.environ.items() if before.get(name) != value}
+        if not found and not RECORDING.problems:
+            RECORDING.remarks.append({"line": 1, "message": "the launch description has no actions"})
         found = [*({"set_env": {"name": n, "value": v, "line": 1}} for n, v in changed.items()), *found]
     except (Exception, SystemExit) as error:  # whatever a user's file does
-        trace, line = error.__traceback__, getattr(error, "lineno", None) or 1
+        trace, line = error.__traceback__, getattr(error, "lineno", None) or RECORDING.written_at
+        known: set[str] = set()
         while trace is not None:
             if trace.tb_frame.f_code.co_filename == path:
-                line = trace.tb_lineno
+                line, known = trace.tb_lineno, {*trace.tb_frame.f_locals, *trace.tb_frame.f_globals}
             trace = trace.tb_next
         hint = f"; if it is on PyPI: pip install {error.name}" if isinstance(error, ModuleNotFoundError) else ""
+        hint = _instead(error.name, known) if isinstance(error, NameError) and error.name else hint
+        no_path = re.search(r"os\.PathLike object, not '?(\w+)", str(error)) if isinstance(error, TypeError) else None
+        if no_path is not None and BASES.get(no_path[1]) == "Substitution":
+            hint = f"; write PathJoinSubstitution([..., {no_path[1]}(...)])"
         RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}{hint}"})
     return {"actions": found, "problems": RECORDING.problems, "remarks": RECORDING.remarks}
+
+
+def _instead(name: str, known: set[str]) -> str:
+    """The end of a sentence on a name that is not defined: the one that may be meant, and how it is imported.
+
+    Args:
+        known: The names that are defined where it stands.
+    """
+    near = name if name in _HOMES else nearest(name, [*known, *_HOMES], cutoff=0.8)
+    if near is None:
+        return ""
+    write = "" if near in known else f"; write {_HOMES[near]}"
+    return write if near == name else f"; did you mean {near!r}?{write.replace('; write', ' Write')}"
 
 
 def _described(path: str) -> list[Any]:
@@ -72,18 +103,30 @@ def _described(path: str) -> list[Any]:
     with open(path, encoding="utf-8") as file:
         tree = ast.parse(file.read(), path)
     code = compile(tree, path, "exec")
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Attribute) and node.value.attr in _ADDING:
+            text = f"{node.value.attr} is not called: what it adds goes into parentheses behind it"
+            RECORDING.problems.append({"line": node.lineno, "message": text})
     space: dict[str, Any] = {"__name__": "launch_file", "__file__": path}
     exec(code, space)  # noqa: S102 - the user's own file, in a process of its own
-    if "generate_launch_description" not in space:
+    if _FUNCTION not in space:
         if any(isinstance(n, ast.Name | ast.Attribute) and _last(n) == "LaunchService" for n in ast.walk(tree)):
             try:
                 runpy.run_path(path, run_name="__main__")
             except Described as told:
                 return told.description
-        raise NameError("it has no function generate_launch_description()")
-    described = space["generate_launch_description"]()
+        functions = {n.name: n.lineno for n in tree.body if isinstance(n, ast.FunctionDef)}
+        near = nearest(_FUNCTION, functions, cutoff=0.75)
+        where = f"; rename {near} in line {functions[near]}" if near else ""
+        raise NameError(f"it has no function {_FUNCTION}(){where}")
+    described = space[_FUNCTION]()
     if not isinstance(described, Said):
-        raise TypeError(f"generate_launch_description() returned {described!r}, and not a LaunchDescription")
+        what, hint = repr(described), ""
+        if isinstance(described, (list, tuple)):
+            what, hint = "a list", "; write LaunchDescription(...) around it"
+        elif described is None:
+            hint = "; a return is missing"
+        raise TypeError(f"{_FUNCTION}() returned {what}, and not a LaunchDescription{hint}")
     return [described]
 
 

@@ -10,6 +10,7 @@ import sys
 import threading
 from typing import Any
 
+import graphflow.supervisor.launch_functions  # noqa: F401 - which belong to the packages, too
 from graphflow.supervisor.launch_stand_ins import OWN, RECORDING, Said
 
 
@@ -32,7 +33,7 @@ class LaunchService(Said):
         argv: Arguments of the description, `name:=value`.
     """
 
-    name = "LaunchService"
+    kind = "LaunchService"
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -79,4 +80,4 @@ class LaunchService(Said):
             self._up.send_signal(signal.SIGINT)
 
 
-OWN[LaunchService.name] = LaunchService
+OWN[LaunchService.kind] = LaunchService

@@ -18,7 +18,7 @@ from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from pathlib import Path
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Any
 
 from graphflow.folders import newest_logs
@@ -26,7 +26,9 @@ from graphflow.graph.executables import package_prefix, package_share
 from graphflow.graph.project import project_root
 from graphflow.graph.substitution_words import QUOTES, as_word
 from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
-from graphflow.supervisor.launch_names import NAMES
+from graphflow.names import nearest
+from graphflow.supervisor.launch_names import BASES, NAMES, home
+from graphflow.supervisor.launch_parameters import PARAMETERS, Parameters, not_texts, wrong
 from graphflow.supervisor.printed import printed
 
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
@@ -62,6 +64,10 @@ class Recording:
         """What has no words in a graph file, each with its `line` and a `message`."""
         self.remarks: list[dict[str, Any]] = []
         """What is left out, likewise."""
+        self.written_at = 1
+        """The line of the action that was written down last."""
+        self.carry_out: Callable[[Said], None] = lambda _: None
+        """Writes down an action that code of the file carries out itself."""
 
     def problem(self, said: Said, message: str) -> None:
         """Add one."""
@@ -163,19 +169,28 @@ class Context:
 class Said:
     """A call of one of the stand-ins."""
 
-    name = ""
+    kind = ""
+    """The name of the class of ROS's; those of a launch file's own have their base's."""
+    args: tuple[Any, ...] = ()
+    kwargs: Mapping[str, Any] = MappingProxyType({})
+    line = 1
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         self.args, self.kwargs, self.line = args, kwargs, RECORDING.line()
+        for message in (*wrong(self.kind, args, list(kwargs)), *not_texts(self.kind, args, kwargs)):
+            RECORDING.problem(self, message)
         default = self.get("default_value")
-        if self.name == "DeclareLaunchArgument":
+        if self.kind == "DeclareLaunchArgument":
             name = text(self.get("name", 0))
             if default is None:
                 RECORDING.needed.add(name)
             else:
                 RECORDING.defaults[name] = text(default)
-        if self.name == "LaunchDescription":
-            self.entities = list(self.get("initial_entities", 0) or ())
+        if self.kind == "LaunchDescription":
+            given = self.get("initial_entities", 0) or ()
+            if isinstance(given, Said):
+                raise TypeError(f"LaunchDescription takes a list: write [ ] around {given.kind}(...)")
+            self.entities = list(given)
             RECORDING.descriptions.append(self)
 
     def get(self, key: str, place: int = -1, default: Any = None) -> Any:
@@ -185,14 +200,31 @@ class Said:
         return self.args[place] if 0 <= place < len(self.args) else default
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return self.__dict__.get("kwargs", {}).get(name, lambda *_, **__: None)
+        """The argument that was given for a parameter; None for none."""
+        if name in self.kwargs:
+            return self.kwargs[name]
+        known = PARAMETERS.get(self.kind, Parameters((), ()))
+        if name not in known.names:
+            raise AttributeError(f"{self.kind} has no {name!r} here: a launch file is read, and not run by launch")
+        return self.get(name, known.by_place.index(name) if name in known.by_place else -1)
+
+    def execute(self, context: Any = None) -> Any:
+        """Carry an action out, here and now; those of a file's own return the actions that they make."""
+        RECORDING.carry_out(self)
+        return [] if self.kind in ("GroupAction", "IncludeLaunchDescription") else None
+
+    def visit(self, context: Any = None) -> Any:
+        """The same under its condition, which is written down with it."""
+        return self.execute(context)
+
+    def describe(self) -> str:
+        """The call, as ROS's tools show it."""
+        return f"{self.kind}({', '.join(map(text, self.args or self.kwargs.values()))})"
 
     def add_action(self, action: Any) -> None:
         """As a LaunchDescription has it, also while it is carried out."""
         if "entities" not in self.__dict__:
-            raise AttributeError(f"{self.name} has no add_action")
+            raise AttributeError(f"{self.kind} has no add_action")
         self.entities.append(action)
 
     add_entity = add_action
@@ -208,19 +240,34 @@ class Said:
     def evaluate(self, context: Any = None) -> bool:
         """As a condition has it."""
         ((word, said),) = condition(self).items()
-        return truth(RECORDING.known(said)) is (word == "if")
+        return truth(RECORDING.known(said), RECORDING.file) is (word == "if")
 
     def __str__(self) -> str:
         return text(self)
 
+    def __format__(self, spec: str) -> str:
+        if BASES.get(self.kind) == "Substitution":
+            RECORDING.remark(self, f"{self.kind} in an f-string is an object to ROS 2; write a list: ['text', ...]")
+        return format(text(self), spec)
+
     def __add__(self, other: Any) -> str:
-        return text(self) + text(other)
+        raise TypeError(_no_sum(self, self, other))
 
     def __radd__(self, other: Any) -> str:
-        return text(other) + text(self)
+        raise TypeError(_no_sum(self, other, self))
 
-    def __fspath__(self) -> str:
-        return text(self)
+    def __truediv__(self, other: Any) -> Any:
+        """Join paths, as substitutions that are paths do."""
+        return stand_in_of("PathJoinSubstitution")([self, other])
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return stand_in_of("PathJoinSubstitution")([other, self])
+
+
+def _no_sum(said: Said, *parts: Any) -> str:
+    """What to say where something that only a launch knows is added to a text, as Python lets no one do with ROS 2."""
+    shown = ", ".join(f"{part.kind}(...)" if isinstance(part, Said) else repr(part) for part in parts)
+    return f"{said.kind} is no text before the launch, and has no +; write a list: [{shown}]"
 
 
 def text(value: Any) -> str:
@@ -237,7 +284,7 @@ def text(value: Any) -> str:
 def _written(value: Said) -> str:
     """A substitution of ROS's as a text."""
     first = value.args[0] if value.args else next(iter(value.kwargs.values()), "")
-    match value.name:
+    match value.kind:
         case "LaunchConfiguration":
             default = value.get("default", 1)
             return f"$(var {_word(first)}{'' if default is None else f' {_word(default)}'})"
@@ -245,11 +292,11 @@ def _written(value: Said) -> str:
             default = value.get("default_value", 1)
             return f"$(env {_word(first)}{'' if default is None else f' {_word(default)}'})"
         case "FindPackageShare" | "FindPackagePrefix":
-            return f"$(find-pkg-{value.name[11:].lower()} {_word(first)})"
+            return f"$(find-pkg-{value.kind[11:].lower()} {_word(first)})"
         case "ExecutableInPackage":
             return f"$(exec-in-pkg {_word(value.get('executable', 0))} {_word(value.get('package', 1))})"
         case "PathJoinSubstitution":
-            return "/".join(text(part).strip("/") if i else text(part) for i, part in enumerate(first))
+            return os.path.join("", *map(text, first))
         case "PythonExpression":
             expression = text(first)
             return f"$(eval {as_word(expression) if expression[:1] in QUOTES else expression})"
@@ -266,7 +313,7 @@ def _written(value: Said) -> str:
             ways = (value.get("if_value", 1, ""), value.get("else_value", 2, ""))
             return f"$(if {' '.join(map(_word, (value.get('condition', 0), *ways)))})"
         case "AnySubstitution" | "AllSubstitution":
-            return f"$({' '.join([value.name[:3].lower(), *map(_word, value.args)])})"
+            return f"$({' '.join([value.kind[:3].lower(), *map(_word, value.args)])})"
         case "Command":
             on_stderr = value.get("on_stderr", 1)
             return f"$(command {_word(first)}{'' if on_stderr is None else f' {_word(on_stderr)}'})"
@@ -279,13 +326,13 @@ def _written(value: Said) -> str:
         case "NotSubstitution":
             return f"$(not {_word(first)})"
         case "EqualsSubstitution" | "NotEqualsSubstitution" | "AndSubstitution" | "OrSubstitution":
-            word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.name[:-12]]
+            word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.kind[:-12]]
             return f"$({word} {' '.join(_word('' if part is None else part) for part in value.args)})"
-        case "TextSubstitution" | "ParameterValue" | "ParameterFile" | "PythonLaunchDescriptionSource":
+        case "TextSubstitution" | "PathSubstitution" | "ParameterValue" | "ParameterFile":
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
             return text(first)
-    RECORDING.problem(value, f"{value.name} has no words in a graph file")
+    RECORDING.problem(value, no_words(value))
     return ""
 
 
@@ -297,14 +344,21 @@ def _word(value: Any) -> str:
 def condition(said: Said) -> dict[str, str]:
     """A condition, as the attribute that actions of the YAML dialect have for it."""
     words = {"IfCondition": "if", "UnlessCondition": "unless"}
-    if said.name in words:
-        return {words[said.name]: text(said.args[0] if said.args else "")}
-    if said.name in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
-        word = "equals" if said.name.endswith("nEquals") else "not-equals"
+    if said.kind in words:
+        return {words[said.kind]: text(said.args[0] if said.args else "")}
+    if said.kind in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
+        word = "equals" if said.kind.endswith("nEquals") else "not-equals"
         variable, value = said.args
         return {"if": f"$({word} $(var {_word(variable)}) {_word(value)})"}
-    RECORDING.problem(said, f"{said.name} has no words in a graph file")
+    RECORDING.problem(said, no_words(said))
     return {}
+
+
+def no_words(said: Said) -> str:
+    """What to say of a class that graph files have nothing for, perhaps because its name is misspelt."""
+    known = {name for names in NAMES.values() for name in names.split()}
+    near = nearest(said.kind, known, cutoff=0.85) if said.kind not in known else None
+    return f"{said.kind} has no words in a graph file" + (f"; did you mean {near!r}?" if near else "")
 
 
 def plain(value: Any) -> Any:
@@ -318,15 +372,16 @@ def plain(value: Any) -> Any:
     return text(value)
 
 
-OWN: dict[str, type] = {
+OWN: dict[str, Any] = {
     "PackageNotFoundError": PackageNotFoundError,
     "SubstitutionFailure": SubstitutionError,
     "InvalidConditionExpressionError": SubstitutionError,
     "LaunchContext": Context,
 }
-"""Classes that do more than remember, by name; the module that defines one adds it."""
+"""Classes that do more than remember, and functions, by name; the module that defines one adds it."""
 _SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
 _SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle", "logging", "utilities"}
+_SUBMODULES |= {"frontend", "some_substitutions_type", "type_utils"}
 
 
 class _StandIn(ModuleType):
@@ -346,16 +401,21 @@ def _made(module: str, name: str) -> Any:
     """What a module of ROS's launch packages has under a name."""
     if name in _SUBMODULES:  # also for those who have only imported `launch`
         return import_module(f"{module}.{name}")
+    elsewhere = home(module, name)
+    if elsewhere is not None:
+        raise ImportError(f"{module} has no {name}; write: from {elsewhere} import {name}", name=module)
     if name in OWN:
         return OWN[name]
-    return _class(name) if name[:1].isupper() or name.startswith("matches_") else _function(name)
+    return stand_in_of(name) if name[:1].isupper() or name.startswith("matches_") else _function(module, name)
 
 
 @cache
-def _class(name: str) -> type:
+def stand_in_of(name: str) -> Any:
+    """The class that stands for one of ROS's."""
     if name.endswith(("Error", "Failure", "Exception")):  # which a file may want to catch
         return type(name, (Exception,), {})
-    return type(name, (Said,), {"name": name})
+    base = stand_in_of(BASES[name]) if name in BASES else Said
+    return type(name, (base,), {"kind": name})
 
 
 def stand_in(package: str) -> Callable[[str], Any]:
@@ -371,7 +431,7 @@ def stand_in(package: str) -> Callable[[str], Any]:
     return get
 
 
-def _function(name: str) -> Any:
+def _function(module: str, name: str) -> Any:
     what = "prefix" if name.endswith("prefix") else "share"
     if name in ("get_package_share_directory", "get_package_prefix"):
         return lambda package, *_: RECORDING.folder(what, package)
@@ -379,9 +439,13 @@ def _function(name: str) -> Any:
         return lambda package, *_: Path(RECORDING.folder(what, package))
     if name == "get_logger":
         return logging.getLogger
-    if name == "perform_substitutions":
-        return lambda _, parts: RECORDING.known(text(parts))
-    return lambda *_, **__: None
+
+    def missing(*_: Any, **__: Any) -> Any:
+        raise NotImplementedError(
+            f"{module}.{name} is not here: graphflow reads launch files without launch's own code"
+        )
+
+    return missing
 
 
 class StandIns(MetaPathFinder, Loader):

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Sequence
 from typing import Any
 
+from graphflow.errors import SupervisorError
 from graphflow.graph.plan import PlannedNode
-from graphflow.machines.process import Exit, State
+from graphflow.machines.process import ALARMS, BLOCKED_STOP_LIMIT, Exit, State
 from graphflow.machines.restarts import BACKOFF, Restarts
+
+BLOCKED_AFTER = 1.5
+"""Seconds of silence after which a loop, which beats once a second, counts as blocked when its process is ended."""
 
 
 class Process:
@@ -55,6 +60,10 @@ class Process:
         self.last_end = ""
         """How the one before this one ended, by itself."""
         self.alarm: asyncio.TimerHandle | None = None
+        self.alarm_after: float | None = None
+        """Seconds that the process may stay in its state; None for any time."""
+        self.blocks_loop = False
+        """Whether handlers block its event loop, and are to run in threads from the next start on."""
         policies = [node.restart for node in nodes if node.restart != BACKOFF]
         self.restarts = Restarts(policies[0] if policies else BACKOFF)
         self.ends_graph = any(node.on_exit == "shutdown" for node in nodes)
@@ -65,6 +74,32 @@ class Process:
     def is_program(self) -> bool:
         """Whether it is a foreign program, and no worker."""
         return bool(self.nodes[0].command)
+
+    def put_in_threads(self, node: str, handlers: Sequence[str]) -> PlannedNode:
+        """Have handlers of a node run in threads, whenever it is started; returns how it is planned now.
+
+        Raises:
+            SupervisorError: Its code alone says what runs in threads.
+        """
+        if self.is_program:
+            raise SupervisorError(f"{node} is a program: its own code says what runs in threads")
+        at = next(i for i, planned in enumerate(self.nodes) if planned.name == node)
+        self.nodes[at] = self.nodes[at].with_threads(handlers)
+        self.blocks_loop = True
+        return self.nodes[at]
+
+    def may_stay(self, now: float) -> float | None:
+        """Seconds that it may stay in its state; None for any time.
+
+        Args:
+            now: Seconds on the monotonic clock.
+        """
+        if self.state is State.WAITING:
+            return self.delay
+        if self.is_debugged and self.state is State.STARTING:
+            return None  # whoever debugs it has all the time in the world
+        is_blocked = self.blocks_loop and self.heard is not None and now - self.heard > BLOCKED_AFTER
+        return BLOCKED_STOP_LIMIT if is_blocked and self.state is State.RESTARTING else ALARMS.get(self.state)
 
     @property
     def word(self) -> str:
@@ -120,7 +155,7 @@ class Process:
         self.lifecycle = {}
         self.numbers = {node.name: number for number, node in enumerate(self.nodes, 1)}
         self.error = self.log_error = self.given_up = ""
-        self.stop_asked = self.failed = False
+        self.stop_asked = self.failed = self.blocks_loop = False
         self.waiting_for = {n.name for n in self.nodes}
 
     @property

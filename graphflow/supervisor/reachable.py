@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import os
+from contextlib import suppress
 from pathlib import Path
 
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlServer
 from graphflow.supervisor.rundir import GraphRun, RunDirectory
+from graphflow.supervisor.successor import Guard
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.system import is_portable
 
@@ -21,13 +22,16 @@ async def keep_reachable(
 ) -> None:
     """Make what is taken away, as at a logout, again; else stop, for no verb could do it.
 
-    Also says so when the guardian has ended, which only its children can see.
+    Also sees to it that there is a guardian, whose end only the supervisor can see.
     """
-    guardian = run.guardian
+    guard = Guard(run)
     while True:
-        if guardian and os.getppid() != guardian:
-            supervisor.note(f"{run.unguarded}; the graph goes on without it")
-            guardian = 0
+        if words := guard.look():
+            supervisor.note(words)
+        if guard.run is not run:
+            run = guard.run
+            with suppress(OSError):  # what is missing is made again below
+                directory.write(run)
         await asyncio.sleep(LOOK_EVERY)
         is_there, has_socket = directory.is_there(run), is_portable() or Path(run.socket).is_socket()
         if is_there and has_socket:

@@ -127,6 +127,8 @@ class GraphRun:
     plan_hash: str
     guardian: int = 0
     """The process that ends what is left when the supervisor has ended; 0 for none."""
+    guardian_started: float = 0.0
+    """`start_time` of it."""
 
     @property
     def is_here(self) -> bool:
@@ -146,6 +148,11 @@ class GraphRun:
             time.sleep(0.01)
         return True
 
+    def renewed(self) -> GraphRun:
+        """The same run with the guardian that it has now, if there is still a run file."""
+        now = read_run(runtime_root() / str(self.domain) / self.graph / "run.json")
+        return now if now is not None and now.run_id == self.run_id else self
+
     @property
     def unguarded(self) -> str:
         """The end of the guardian in words; empty while it lives, and where there is none."""
@@ -158,9 +165,8 @@ class GraphRun:
 
     @property
     def _is_guarded(self) -> bool:
-        """Whether the guardian, which was there before the supervisor, is there still."""
-        began = start_time(self.guardian) if self.guardian else None
-        return began is not None and began <= self.started
+        """Whether the guardian is there still."""
+        return bool(self.guardian) and start_time(self.guardian) == self.guardian_started
 
 
 class RunDirectory:

@@ -16,7 +16,7 @@ import secrets
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ import psutil
 
 from graphflow.supervisor import probe
 from graphflow.supervisor.preload import sweep
-from graphflow.supervisor.starter import Heard
+from graphflow.supervisor.starter import Heard, Start
 from graphflow.system import detached
 
 logger = logging.getLogger("graphflow.supervisor")
@@ -57,6 +57,9 @@ class SpawningStarter:
     def probed(self) -> dict[str, Any]:
         assert self._probing is not None
         return probe.finish(self._probing, self._wanted)
+
+    def begin(self, starts: Iterable[Start]) -> None:
+        """Workers need the loop, and the port at which it hears them."""
 
     async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
         self._heard = heard

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 Heard = Callable[[dict[str, Any]], None]
 """Called with what happens to workers:
@@ -22,6 +22,18 @@ Heard = Callable[[dict[str, Any]], None]
 """
 
 
+class Start(NamedTuple):
+    """One process that is to be started, as `Starter.spawn` takes it."""
+
+    process: str
+    job: dict[str, Any]
+    """See `worker.main`."""
+    log: str
+    """The file that its output is appended to."""
+    env: dict[str, str]
+    """Variables it gets besides the supervisor's own."""
+
+
 class Starter(Protocol):
     """Starts workers and ends them. Made before the loop runs."""
 
@@ -33,6 +45,11 @@ class Starter(Protocol):
 
         Raises:
             SupervisorError: The process that should import them died.
+        """
+
+    def begin(self, starts: Iterable[Start]) -> None:
+        """Start workers before `open`, where that is possible. The first `spawn` of each starts nothing more, and what
+        has become of it is told from then on; those that are never asked for end with the starter.
         """
 
     async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:

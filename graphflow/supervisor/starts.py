@@ -94,7 +94,7 @@ def starting() -> list[Start]:
 
 def being_started() -> str:
     """The graphs of this user that are being started, for a command that has found none; empty if there are none."""
-    files = ", ".join(f"{start.file} (process {start.pid})" for start in starting())
+    files = ", ".join(f"{start.file or 'a graph'} (process {start.pid})" for start in starting())
     return f"being started: {files}; wait for it with: graphflow wait" if files else ""
 
 

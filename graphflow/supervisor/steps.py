@@ -148,8 +148,19 @@ class StepRunner:
 
         if not await self._until(lambda: bool(types()), step.timeout):
             what = "action" if step.do == "goal" else "service"
-            raise ServiceUnavailable(f"no node offers the {what} {step.target}")
+            raise ServiceUnavailable(f"no node offers the {what} {step.target}{self._instead(step)}")
         return types()[0]
+
+    def _instead(self, step: PlannedStep) -> str:
+        """The end of a sentence on a step's target that is not there: what it is, and the key for that."""
+        cache = self._context.cache
+        actions, (services, hidden) = cache.served_actions(), cache.offered()
+        if step.do == "call" and step.target in actions:
+            return f"; it is an action: goal: {step.target}"
+        if step.do == "goal":
+            is_service = step.target in services | hidden
+            return f"; it is a service: call: {step.target}" if is_service else cache.instead(step.target, actions)
+        return "" if step.target in cache.services() else cache.instead(step.target, services, hidden)
 
     async def _until(self, condition: Callable[[], bool], timeout: float) -> bool:
         try:

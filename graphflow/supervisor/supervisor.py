@@ -6,7 +6,7 @@ import asyncio
 import logging
 import random
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +21,12 @@ from graphflow.supervisor import debugging
 from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.health import Health
+from graphflow.supervisor.jobs import MESH_LIMIT, environment_of, worker_start
 from graphflow.supervisor.lives import Lives
 from graphflow.supervisor.process import Process
 from graphflow.supervisor.programs import signal_of, words_of
 from graphflow.supervisor.rundir import log_file
-from graphflow.supervisor.starter import Starter
+from graphflow.supervisor.starter import Start, Starter
 from graphflow.supervisor.steps import StepRunner
 
 logger = logging.getLogger("graphflow.supervisor")
@@ -63,7 +64,6 @@ class Supervisor:
         self._first = self._needed_at_first()
         """What must be met for the graph to be up."""
         self._planned = {n["name"]: n for n in plan.to_json()["nodes"]}
-        self._mode = "peer" if len(self._processes) <= MESH_LIMIT else "client"
         self._stopping = False
         self._layers: list[list[str]] = []
         self._began = time.monotonic()
@@ -103,20 +103,15 @@ class Supervisor:
 
     def hello(self) -> dict[str, Any]:
         """What a door is told when it begins to follow."""
-        return {
-            "event": "hello",
-            "version": __version__,
-            "graph": self.plan.name,
-            "file": self.plan.file,
-            "console": self.plan.console,
-            "layout": self.doors.layout,
-        }
+        about = {"graph": self.plan.name, "file": self.plan.file, "console": self.plan.console}
+        return {"event": "hello", "version": __version__, **about, "layout": self.doors.layout}
 
-    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None:
+    def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None:
         """Start a node's process again, whether it runs or has ended.
 
         Args:
             only_ended: Not if it runs.
+            threads: Handlers of the node that run in threads from then on.
 
         Raises:
             SupervisorError: There is no such node, it cannot be started now, or the graph is being stopped.
@@ -125,11 +120,14 @@ class Supervisor:
         if self._stopping:
             raise SupervisorError("the graph is being stopped")
         if process.state is State.PENDING:
-            waits = ", ".join(need.name for need in self._order.after[process.name] - self._met)
+            waits = self._order.lacking(process.name, self._met)
             raise SupervisorError(f"{node} has not been started yet: it comes after {waits}")
         if only_ended and process.state not in (State.ENDED, State.WAITING):
             raise SupervisorError(f"{node} runs already: it is {process.word}; to begin anew: graphflow restart {node}")
-        self.doors.announce(f"{'start' if only_ended else 'restart'} {node}", by)
+        if threads:
+            self._planned[node] = process.put_in_threads(node, threads).to_json()
+        in_threads = f" with {', '.join(threads)} in threads" if threads else ""
+        self.doors.announce(f"{'start' if only_ended else 'restart'} {node}{in_threads}", by)
         process.restarts.forget()
         self._happen(process, Event.RESTART)
 
@@ -182,7 +180,7 @@ class Supervisor:
 
     async def run(self) -> int:
         """Bring the graph up and keep it until it has ended; returns its exit code."""
-        if self._mode == "client":
+        if len(self._processes) > MESH_LIMIT:
             self._tell(
                 event="note",
                 text=f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages "
@@ -273,7 +271,9 @@ class Supervisor:
                 self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
         if not self.up.is_set() and self._first <= self._met:
             self.up.set()
-            self._tell(event="up", seconds=time.monotonic() - self._began)
+            left = [p for p in self._processes.values() if p.state is State.PENDING]
+            pending = {n.name: self._order.lacking(p.name, self._met) for p in left for n in p.nodes}
+            self._tell(event="up", seconds=time.monotonic() - self._began, pending=pending)
 
     def _meet(self, name: str, *what: str) -> None:
         """Note what has become of a process or step, and start what waits for it."""
@@ -304,18 +304,16 @@ class Supervisor:
     def _happen(self, process: Process, event: Event) -> None:
         was = process.state
         if event is Event.LATE and was in (State.STOPPING, State.RESTARTING, State.RESETTING):
-            self._tell(event="note", text=f"{process.name} did not end within {ALARMS[was]:.0f} s: killed")
+            self._tell(event="note", text=f"{process.name} did not end within {process.alarm_after:g} s: killed")
         process.state, actions = step(was, event)
         if process.state is not was:
             process.since = time.time()
             if process.alarm is not None:
                 process.alarm.cancel()
                 process.alarm = None
-            delay = process.delay if process.state is State.WAITING else ALARMS.get(process.state)
-            if process.is_debugged and process.state is State.STARTING:
-                delay = None  # whoever debugs it has all the time in the world
-            if delay is not None:
-                process.alarm = self._context.loop.call_later(delay, self._happen, process, Event.LATE)
+            process.alarm_after = process.may_stay(time.monotonic())
+            if process.alarm_after is not None:
+                process.alarm = self._context.loop.call_later(process.alarm_after, self._happen, process, Event.LATE)
         if was in (State.RESTARTING, State.RESETTING) and event is Event.EXIT and process.state is not State.ENDED:
             self._tell_exit(process, unexpected=False)
         for action in actions:
@@ -343,27 +341,17 @@ class Supervisor:
                 self._fail(f"{process.name} did not become ready")
 
     def _spawn(self, process: Process) -> None:
-        env: dict[str, str] = {}
-        for node in process.nodes:
-            env.update(node.env)
-        job = {
-            "process": process.name,
-            "nodes": [self._planned[n.name] for n in process.nodes],
-            "log": process.log,
-            "file": self.plan.file,
-            "root": self.plan.root,
-            "domain": self._context.domain,
-            "mode": self._mode,
-            "deadlock": self.plan.deadlock,
-            "call_timeout": self.plan.call_timeout,
-            "allow_control": self.plan.allow_control,
-            "debug": process.is_debugged,
-        }
-        if process.is_program:
-            job = {"command": words_of(process.nodes[0]), "signal": signal_of(process.nodes[0])}
         process.begin()
         self._tell(event="starting", process=process.name, again=process.starts > 1)
-        self._starter.spawn(process.name, job, process.log, env)
+        self._starter.spawn(*self._start_of(process))
+
+    def _start_of(self, process: Process) -> Start:
+        nodes = process.nodes
+        if process.is_program:
+            job = {"command": words_of(nodes[0]), "signal": signal_of(nodes[0])}
+            return Start(process.name, job, process.log, environment_of(nodes))
+        described = [self._planned[node.name] for node in nodes]
+        return worker_start(self.plan, self._context.domain, process.name, nodes, described, process.log)
 
     def _member_changed(self, process: Process, node: PlannedNode, joined: bool) -> None:
         """A node was loaded into a process that runs, or unloaded: so it will be when that is started again."""
@@ -494,7 +482,3 @@ class Supervisor:
 
     def _tell(self, **event: Any) -> None:
         self.doors.tell(**event)
-
-
-MESH_LIMIT = 24
-"""Up to this many processes each is a peer of every other; beyond, they are clients of the rendezvous."""

@@ -24,10 +24,11 @@ from graphflow.graph.plan import PlannedNode, Setting, node_from_json
 from graphflow.interface import COMMON_PARAMETERS, Interface
 from graphflow.machines.lifecycle import LifecycleState
 from graphflow.names import did_you_mean
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
-from graphflow.runtime.ending import catch_signals
+from graphflow.runtime.ending import StopRequest, catch_signals
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.managed import ManagedCore
 from graphflow.runtime.node import Node
@@ -240,7 +241,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
 
 
 async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
-    stop = asyncio.Event()
+    stop = StopRequest()
     catch_signals(stop)
     ready: list[Node] = []
 
@@ -315,6 +316,7 @@ def _log_failure(error: Exception) -> None:
 
 def _one_line(error: Exception) -> str:
     place = place_in(error)
+    explain(error)
     text = str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
     return text if not place or place in text else f"{text} ({place})"
 

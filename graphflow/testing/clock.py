@@ -51,6 +51,8 @@ class ManualClock(Clock):
 
     async def advance(self, seconds: float) -> None:
         """Let `seconds` pass: whatever falls due happens in order, each with all its consequences."""
+        if seconds < 0:
+            raise ValueError(f"time does not go back: advance({seconds!r})")
         until = self._elapsed_ns + to_ns(seconds)
         await settle()
         while self._alarms and self._alarms[0][0] <= until:

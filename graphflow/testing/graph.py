@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import logging
 from collections.abc import Iterator, Sequence
 from typing import Any, Generic, TypeVar
 
@@ -20,6 +21,8 @@ from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.testing.outside import outside
 from graphflow.transport.memory import Network
+
+logger = logging.getLogger("graphflow")
 
 M = TypeVar("M", bound=Message)
 N = TypeVar("N", bound=Node)
@@ -61,7 +64,10 @@ class Graph:
         self._waits_outside = True
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
-        self._tester: Node | None = None
+        self.tester: Node | None = None
+        """The node that the test itself has, once it needs one."""
+        self.taps: list[tuple[str, Tap[Any]]] = []
+        """Each with the full name of its topic."""
         self.loop: asyncio.AbstractEventLoop | None = None
         """The event loop that its nodes run in, from the first on."""
 
@@ -79,6 +85,9 @@ class Graph:
     async def start(self, *nodes: Node) -> None:
         """Start nodes, each as if in a process of its own, and let them settle."""
         for node in nodes:
+            if any(other.is_running and other.full_name == node.full_name for other in self.nodes):
+                text = "two nodes are called %s: parameters, services and tools reach one of them by chance; rename one"
+                logger.warning(text, node.full_name)
             await core_of(node).start(self._context(deadlock=self.deadlock))
             self.nodes.append(node)
         await settle()
@@ -113,7 +122,8 @@ class Graph:
     def tap(self, type_: type[M], topic: str, qos: Qos | int = 1000) -> Tap[M]:
         """Collect everything published on `topic` from now on."""
         tap: Tap[M] = Tap()
-        self._test_node().create_subscription(type_, topic, tap.messages.append, qos)
+        made = self._test_node().create_subscription(type_, topic, tap.messages.append, qos)
+        self.taps.append((made.name, tap))
         return tap
 
     def publisher(self, type_: type[M], topic: str, qos: Qos | int = 10) -> TopicPublisher[M]:
@@ -156,12 +166,12 @@ class Graph:
                 raise core.failure
 
     def _test_node(self) -> Node:
-        if self._tester is None:
-            self._tester = Node(f"_test_{next(self._names)}")
+        if self.tester is None:
+            self.tester = Node(f"_test_{next(self._names)}")
             # Starting is a coroutine only for what it may wait for; a bare node waits for nothing.
-            _run_now(core_of(self._tester).start(self._context()))
-            self.nodes.append(self._tester)
-        return self._tester
+            _run_now(core_of(self.tester).start(self._context()))
+            self.nodes.append(self.tester)
+        return self.tester
 
     def _context(self, deadlock: DeadlockPolicy = "raise") -> Context:
         self.loop = asyncio.get_running_loop()

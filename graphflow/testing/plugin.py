@@ -73,6 +73,15 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
     return (yield)
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
+    """Say what could be meant by an attribute that is not there, as the logs of nodes do."""
+    errors = sys.modules.get("graphflow.runtime.attribute_errors")
+    if call.excinfo is not None and errors is not None:
+        errors.explain(call.excinfo.value)
+    return (yield)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     """Run such a test, unless another plugin does."""
@@ -113,6 +122,10 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                 watching = asyncio.create_task(_end_when_idle(limit)) if graph is not None else None
                 try:
                     await test(*args, **kwargs)
+                except (Exception, pytest.fail.Exception):
+                    if graph is not None and graph.loop is loop:
+                        await _tell_unmet(item, graph)
+                    raise
                 finally:
                     if watching is not None:
                         watching.cancel()
@@ -127,6 +140,18 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                 await graph.close()
 
     return limited
+
+
+async def _tell_unmet(item: pytest.Function, graph: Graph) -> None:
+    """Add to the report of a failing test what it may have waited for in vain."""
+    from graphflow.testing.unmet import unmet
+
+    try:
+        found = await unmet(graph)
+    except RuntimeError as error:  # it does not come to rest
+        found = [str(error)]
+    if found:
+        item.add_report_section("call", "graphflow", "\n".join(found))
 
 
 def _by_examples(item: pytest.Function, test: Test) -> Test:

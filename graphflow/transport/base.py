@@ -8,6 +8,7 @@ to run, so that a message dropped from a full inbox has cost nothing.
 from __future__ import annotations
 
 import os
+import sys
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
@@ -28,7 +29,11 @@ KEEP_ALL_BOUND = 10_000
 DEEP = 100
 """Messages of a queue from which on its bytes are bounded, too, and it holds none of the network's buffers."""
 BYTES_BOUND = 256 << 20
-"""Bytes of messages that wait in a deep queue."""
+"""Bytes of messages that wait in a deep queue, or of requests."""
+REQUESTS_BOUND = 10_000
+"""Requests that wait for the loop."""
+STAND_INS = 10
+"""How many times that are remembered to be refused."""
 
 
 class Closable(Protocol):
@@ -81,6 +86,10 @@ class Request(Protocol):
 
     @property
     def payload(self) -> bytes: ...
+
+    @property
+    def size(self) -> int:
+        """Bytes of the payload."""
 
     @property
     def attachment(self) -> bytes | None: ...
@@ -146,6 +155,14 @@ class Session(Protocol):
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Closable:
         """Call `changed(token, alive)` on the loop for every token that matches, including existing ones."""
+
+    def ask_tokens(self, key: str, limit: float, told: Callable[[list[str]], None]) -> None:
+        """Ask for the tokens that match now.
+
+        Args:
+            limit: Seconds that they have to arrive; over a network, it takes as long.
+            told: Called on the loop, once, with those that arrived.
+        """
 
     def open_report(self, key: str, report: Callable[[], bytes]) -> Closable:
         """Answer queries on `key` with what `report` returns. It is called on a thread of its own, where there
@@ -256,7 +273,7 @@ class Inbox:
         ready: Called by whom the bell wakes when there is something that is not being handled yet.
     """
 
-    __slots__ = ("_bell", "dropped", "items", "ready", "ringing")
+    __slots__ = ("_bell", "_losses", "_tell_at", "dropped", "items", "ready", "ringing")
 
     def __init__(self, bell: Rings, depth: int | None, ready: Callable[[], None]) -> None:
         self.items: deque[Any] = deque(maxlen=depth)
@@ -266,12 +283,25 @@ class Inbox:
         self.ringing = False
         """Whether the bell has been rung for what is in the queue."""
         self._bell = bell
+        self._losses: Inbox | None = None
+        """Rings the bell for losses."""
+        self._tell_at = sys.maxsize
+        """The number of losses that is told next."""
+
+    def tell_losses(self, told: Callable[[], None], first: int) -> None:
+        """Have whom the bell wakes call `told` at the `first` loss, and whenever there are twice as many.
+
+        It is the only sign of a queue from which nothing is taken any more; what loses nothing pays nothing for it.
+        """
+        self._losses, self._tell_at = Inbox(self._bell, 1, told), first
 
     def put(self, item: Any) -> None:
         """Add an item. Callable from any thread; of losses at the same moment on two, one may not be counted."""
         items = self.items
         if len(items) == items.maxlen:
             self.dropped += 1
+            if self.dropped >= self._tell_at:
+                self._tell_loss()
         items.append(item)
         if not self.ringing:
             self.ringing = True
@@ -279,6 +309,11 @@ class Inbox:
             bell.rung.append(self)
             if not bell.pending:
                 bell.ring()
+
+    def _tell_loss(self) -> None:
+        self._tell_at = 2 * self.dropped
+        if self._losses is not None:
+            self._losses.put(None)
 
 
 class DeepInbox(Inbox):
@@ -296,24 +331,77 @@ class DeepInbox(Inbox):
         """Bytes that wait if nothing was taken since they were counted."""
 
     def put(self, item: Any) -> None:
-        size = _size(item)
+        size = size_of(item)
         if self._at_most + size > BYTES_BOUND:
             self._make_room()
         self._at_most += size
         super().put(item)
 
     def _make_room(self) -> None:
-        waiting = sum(map(_size, tuple(self.items)))
+        waiting = sum(map(size_of, tuple(self.items)))
         while waiting > BYTES_BOUND * 3 // 4:
             try:
-                waiting -= _size(self.items.popleft())
+                waiting -= size_of(self.items.popleft())
             except IndexError:  # the loop has taken them meanwhile
                 break
             self.dropped += 1
         self._at_most = waiting
+        if self.dropped >= self._tell_at:
+            self._tell_loss()
 
 
-def _size(item: Any) -> int:
+class RequestInbox(Inbox):
+    """An inbox for work that somebody waits for: when it is full, what comes is refused, and what waits stays.
+
+    It is full with `depth` items or `BYTES_BOUND` bytes, and then takes no more until a quarter has gone. What waits is
+    counted no more often than that.
+
+    Args:
+        size: The bytes of an item.
+        stand_in: Called with what is refused, on any thread; what it returns waits in its place, unless that is None or
+            there are `STAND_INS` times the depth.
+    """
+
+    __slots__ = ("_at_most", "_size", "_stand_in", "_takes_at", "depth")
+
+    def __init__(
+        self,
+        bell: Rings,
+        depth: int,
+        ready: Callable[[], None],
+        size: Callable[[Any], int],
+        stand_in: Callable[[Any], Any],
+    ) -> None:
+        super().__init__(bell, None, ready)
+        self.depth = depth
+        self._size, self._stand_in = size, stand_in
+        self._at_most = 0
+        """Bytes that wait if nothing was taken since they were counted."""
+        self._takes_at = depth - 1
+        """The number of items at which one more is taken."""
+
+    def put(self, item: Any) -> None:
+        size = self._size(item)
+        number = len(self.items)
+        if number > self._takes_at or (self._at_most + size > BYTES_BOUND and not self._has_room(size, number)):
+            self._takes_at = min(self._takes_at, number * 3 // 4)
+            self.dropped += 1
+            if self.dropped >= self._tell_at:
+                self._tell_loss()
+            item, size = self._stand_in(item) if number < STAND_INS * self.depth else None, 0
+            if item is None:
+                return
+        else:
+            self._takes_at = self.depth - 1
+        self._at_most += size
+        super().put(item)
+
+    def _has_room(self, size: int, number: int) -> bool:
+        self._at_most = sum(map(self._size, tuple(self.items)))
+        return number == 0 or self._at_most + size <= BYTES_BOUND
+
+
+def size_of(item: Any) -> int:
     """Bytes of an arrival's payload."""
     return len(item.payload)
 
@@ -322,3 +410,8 @@ def open_inbox(qos: Qos, bell: Rings, ready: Callable[[], None]) -> Inbox:
     """The queue of a subscription."""
     bound = KEEP_ALL_BOUND if qos.history is History.KEEP_ALL else qos.depth
     return DeepInbox(bell, bound, ready) if bound > DEEP else Inbox(bell, bound, ready)
+
+
+def request_size(request: Request) -> int:
+    """Bytes of a request's payload."""
+    return request.size

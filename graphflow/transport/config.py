@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import atexit
 import logging
 import os
+import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 
 import zenoh
@@ -35,6 +38,9 @@ ANSWERING = "graphflow-questions"
 OPEN_LIMIT = 10.0
 """Seconds that two sessions may take to connect. Peers that find each other try once: on a busy machine, with twenty of
 them starting, an impatient one would never get a connection."""
+LEASE_HERE = 120.0
+"""Seconds of a lease between processes of this machine: the system tells at once of one that ends, and of its sockets.
+Only one that is stopped is silent; it is no longer there when it has been so for as long."""
 QUERY_LIMIT_MS = 600_000
 """As in rmw_zenoh; graphflow's own deadlines are shorter and kept by the runtime."""
 
@@ -63,8 +69,8 @@ _CONFIG = """{
   adminspace: { enabled: false },
   transport: {
     unicast: { open_timeout: %(open_limit)d, accept_timeout: 10000 },
-    // Two keep-alives per lease, as in rmw_zenoh: in a mesh of twenty they are most of what idle nodes do.
-    link: { tx: { lease: 10000, keep_alive: 2 } },
+    // Two keep-alives per lease, as in rmw_zenoh.
+    link: { tx: { lease: %(lease)d, keep_alive: 2 } },
     // Shared memory for publications only: zenoh#2628 affects queries.
     shared_memory: { transport_optimization: { messages: ["put"] } },
   },
@@ -77,9 +83,18 @@ def reaches_out() -> bool:
 
 
 def config(
-    mode: str, *, connect: Sequence[str] = (), listen: str | None = None, open_limit: float = OPEN_LIMIT
+    mode: str,
+    *,
+    connect: Sequence[str] = (),
+    listen: str | None = None,
+    open_limit: float = OPEN_LIMIT,
+    lease: float = LEASE_HERE,
 ) -> zenoh.Config:
-    """A session configuration. Multicast is off and nothing listens beyond `listen`."""
+    """A session configuration. Multicast is off and nothing listens beyond `listen`.
+
+    Args:
+        lease: Seconds without a sign of life after which the other side may take this one for dead.
+    """
     return zenoh.Config.from_json5(
         _CONFIG
         % {
@@ -88,6 +103,7 @@ def config(
             "listen": f'"{listen}"' if listen else "",
             "query_limit": QUERY_LIMIT_MS,
             "open_limit": round(open_limit * 1000),
+            "lease": round(lease * 1000),
         }
     )
 
@@ -111,7 +127,8 @@ def open_session(settings: zenoh.Config) -> zenoh.Session:
             "unset PYTHON_GIL, or set it to 1"
         )
     try:
-        return zenoh.open(settings)
+        with _at_work():
+            return zenoh.open(settings)
     except zenoh.ZError as error:
         raise TransportError(str(error).partition(" at /")[0]) from None
 
@@ -125,7 +142,11 @@ def close_session(session: zenoh.Session) -> bool:
         errors.extend([error] if error is not None else [])
         ended.set()
 
-    THREADS.run(session.close, done, "graphflow-close")
+    def close() -> None:
+        with _at_work():
+            session.close()  # type: ignore[no-untyped-call]
+
+    THREADS.run(close, done, "graphflow-close")
     is_closed = ended.wait(CLOSE_LIMIT)
     if session in _to_close:
         _to_close.remove(session)
@@ -134,23 +155,42 @@ def close_session(session: zenoh.Session) -> bool:
     return is_closed
 
 
+_works: list[threading.Event] = []
+"""Sessions that are being opened or closed: each is set when that is over."""
+
+
+@contextmanager
+def _at_work() -> Iterator[None]:
+    """Open or close a session, which the end of the interpreter waits for."""
+    over = threading.Event()
+    _works.append(over)
+    try:
+        yield
+    finally:
+        _works.remove(over)
+        over.set()
+
+
 _to_close: list[zenoh.Session] = []
 _before_closing: list[Callable[[], None]] = []
 _closer: threading.Thread | None = None
+_closing = threading.Lock()
+"""Held while the end of the interpreter closes sessions."""
 
 
 def close_at_exit(session: zenoh.Session) -> None:
-    """Close `session` when the main thread has ended, if it has not been closed by then.
+    """Close `session` when the program's threads have ended, daemons aside, if it has not been closed by then.
 
     Zenoh's callback threads keep the interpreter from ending, and `atexit` comes only after it has waited for them.
-    So a thread of our own waits for the main thread, which is done the moment the interpreter begins to end.
+    So a thread of our own waits for the main thread, which is done the moment the interpreter begins to end, and for
+    the others that the interpreter waits for.
     """
     _wait_for_main()
     _to_close.append(session)
 
 
 def before_closing_at_exit(what: Callable[[], None]) -> None:
-    """Call `what` when the main thread has ended, before sessions that are still open are closed. It must not raise."""
+    """Call `what` when the program's threads have ended, before open sessions are closed. It must not raise."""
     _wait_for_main()
     _before_closing.append(what)
 
@@ -161,19 +201,52 @@ def _wait_for_main() -> None:
         THREADS.reserve()
         _closer = threading.Thread(target=_close_after_main, name="graphflow-exit", daemon=False)
         _closer.start()
+        atexit.register(_close_interrupted)
+
+
+def _close_interrupted() -> None:
+    """Close them where Ctrl-C has broken off the wait for that thread: the interpreter goes on to its end all the same.
+
+    A second one often comes when the main thread has just ended.
+    """
+    if _closer is not None and _closer.is_alive():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # it takes some seconds at most
+        _close_all()
 
 
 def _close_after_main() -> None:
     threading.main_thread().join()
+    while threads := _programs_threads():
+        threads[0].join()
+    _close_all()
+
+
+def _close_all() -> None:
+    with _closing:
+        _close_one_by_one()
+
+
+def _close_one_by_one() -> None:
     while _before_closing:
         _before_closing.pop()()
     while _to_close:
         session = _to_close.pop()
         if not session.is_closed() and not close_session(session):
             break  # the process that ends takes the others with it
+    # A session is closed from the moment at which another thread begins to close it. That must come back, too: one in
+    # Zenoh's code that asks for the GIL when the interpreter has gone aborts the process, as a callback's thread does.
+    limit = time.monotonic() + CLOSE_LIMIT
+    for over in list(_works):
+        over.wait(max(limit - time.monotonic(), 0))
     limit = time.monotonic() + CALLBACK_LIMIT
     for thread in callback_threads():
         thread.join(max(limit - time.monotonic(), 0))
+
+
+def _programs_threads() -> list[threading.Thread]:
+    """The program's own threads that the interpreter waits for before it ends; they may still use sessions."""
+    not_theirs = {threading.current_thread(), threading.main_thread(), *callback_threads()}
+    return [t for t in threading.enumerate() if not t.daemon and t not in not_theirs]
 
 
 def callback_threads() -> list[threading.Thread]:

@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.errors import TransportError
@@ -34,6 +33,7 @@ from graphflow.transport.config import (
     config,
     open_session,
 )
+from graphflow.transport.foreign import at_once
 from graphflow.wire import net
 
 logger = logging.getLogger("graphflow.link")
@@ -42,8 +42,8 @@ PATIENCE = 2.0
 """Seconds that sent data may go without an acknowledgement."""
 DIAL_LIMIT = 2.0
 """Seconds until the other side must have answered a dial: time for five exchanges, and a retry comes soon."""
-LEASE_MS = 4000
-"""After this long without a sign of life the other side may take this one for dead; 10 s is Zenoh's default."""
+LEASE = 4.0
+"""Seconds without a sign of life after which the other side may take this one for dead; 10 is Zenoh's default."""
 
 _MESSAGES = (
     *("put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"),
@@ -76,19 +76,16 @@ class Link:
             zid, file = str(self._session.zid()), os.path.abspath(os.environ[PROFILE_VARIABLE])
             self._told = self._session.liveliness().declare_token(net.token(domain, zid, file, profile.allow))
         self._inbox = Inbox(bell, None, self._deliver)
-        self._listener = self._session.info.declare_link_events_listener(
-            Callback(self._inbox.put, indirect=False), history=True
-        )
+        self._listener = self._session.info.declare_link_events_listener(at_once(self._inbox.put), history=True)
         if not self._wanted:
             self.ready.set()
 
     def _config(self, profile: NetProfile | None, domain: int) -> zenoh.Config:
         listen = profile.listen if profile is not None else None
         connect = [rendezvous_endpoint(), *self._wanted]
-        settings = config("router", connect=connect, listen=listen, open_limit=DIAL_LIMIT)
+        settings = config("router", connect=connect, listen=listen, open_limit=DIAL_LIMIT, lease=LEASE)
         # Peers on both sides must not learn each other's addresses: they would try to connect directly.
         settings.insert_json5("scouting/gossip/enabled", "false")
-        settings.insert_json5("transport/link/tx/lease", str(LEASE_MS))
         if profile is not None:
             settings.insert_json5("transport/link/tls", json.dumps(_tls(profile)))
             settings.insert_json5("access_control", json.dumps(_access(profile, domain)))
@@ -151,7 +148,7 @@ def dial() -> zenoh.Session | None:
     endpoints = _endpoints(profile)
     if not endpoints:
         return None
-    settings = config("client", connect=endpoints, open_limit=DIAL_LIMIT)
+    settings = config("client", connect=endpoints, open_limit=DIAL_LIMIT, lease=LEASE)
     if profile is not None:
         settings.insert_json5("transport/link/tls", json.dumps(_tls(profile)))
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Callable, Coroutine
-from contextlib import suppress
+from contextlib import closing, suppress
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
@@ -48,7 +48,7 @@ def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
 def run(main: Coroutine[Any, Any, T]) -> T:
     """`asyncio.run` on a loop of the best kind available, in a process set up for large messages."""
     keep_freed_memory()
-    with asyncio.Runner(loop_factory=new_event_loop) as runner:
+    with closing(main), asyncio.Runner(loop_factory=new_event_loop) as runner:
         return runner.run(main)
 
 

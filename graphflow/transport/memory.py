@@ -144,7 +144,7 @@ class _Sender:
 
 class _Request:
     def __init__(self, payload: bytes, attachment: bytes, call: _Call) -> None:
-        self.payload, self.attachment = payload, attachment
+        self.payload, self.attachment, self.size = payload, attachment, len(payload)
         self._call: _Call | None = call
 
     def reply(self, payload: Payload, attachment: bytes) -> None:
@@ -314,6 +314,9 @@ class MemorySession:
                 self._loop.call_soon(changed, token, True)
         return self._keep(_Declared(lambda: self._network.watchers.remove(watcher)))
 
+    def ask_tokens(self, key: str, limit: float, told: Callable[[list[str]], None]) -> None:
+        self._loop.call_soon(lambda: told([token for token in self._network.tokens if _matches(key, token)]))
+
     def read(self, arrival: _Sample) -> tuple[bytes, bytes | None]:
         return arrival.payload, arrival.attachment
 
@@ -354,4 +357,8 @@ def _any_of(key: str) -> str:
 
 
 def _matches(key: str, token: str) -> bool:
-    return token.startswith(key.removesuffix("**")) if key.endswith("/**") else token == key
+    if "/*/" not in key:
+        return token.startswith(key.removesuffix("**")) if key.endswith("/**") else token == key
+    wanted, parts = key.removesuffix("/**").split("/"), token.split("/")
+    is_long_enough = len(parts) > len(wanted) if key.endswith("/**") else len(parts) == len(wanted)
+    return is_long_enough and all(chunk in ("*", part) for chunk, part in zip(wanted, parts, strict=False))

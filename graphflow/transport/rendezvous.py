@@ -13,6 +13,7 @@ import zenoh
 
 from graphflow.domain import ENDPOINT_VARIABLE, rendezvous_endpoint
 from graphflow.errors import TransportError
+from graphflow.graph.endpoint import port_fault
 from graphflow.system import user_id
 from graphflow.transport.config import close_session, config, open_session
 
@@ -35,7 +36,8 @@ def address(endpoint: str) -> tuple[str, int]:
     protocol, _, rest = endpoint.partition("/")
     host, _, port = rest.rpartition(":")
     if protocol != "tcp" or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: write it as tcp/127.0.0.1:7447")
+        fault = port_fault(port) or "write it as tcp/127.0.0.1:7447"
+        raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: {fault}")
     if not (host in ("localhost", "[::1]") or host.startswith("127.")):
         raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: the rendezvous is on this machine only, at 127.0.0.1")
     return host.strip("[]"), int(port)
@@ -105,12 +107,14 @@ def _listener_uid(port: int) -> int | None:
     for table in ("/proc/net/tcp", "/proc/net/tcp6"):
         try:
             with open(table, encoding="ascii") as file:
-                lines = file.read().splitlines()[1:]
+                next(file, "")  # the heads of the columns
+                # Those that listen come first. The system makes the table as it is read, and of all connections of a
+                # machine that takes milliseconds.
+                for fields in map(str.split, file):
+                    if fields[3] == _LISTENS and int(fields[1].rpartition(":")[2], 16) == port:
+                        return int(fields[7])
         except OSError:
             continue
-        for fields in map(str.split, lines):
-            if fields[3] == _LISTENS and int(fields[1].rpartition(":")[2], 16) == port:
-                return int(fields[7])
     return None
 
 

@@ -4,7 +4,7 @@ Zenoh calls back on threads of its own. What runs there only appends to an inbox
 Zenoh, a log line or user code in a callback can stall every other stream of the process.
 
 Data comes through Zenoh's default callback thread, one per subscription, which takes many samples each time it holds
-the GIL; requests, replies and tokens come directly (`indirect=False`), since the default would start a
+the GIL; requests, replies and tokens come directly (see `foreign`), since the default would start a
 thread per declaration and per call. So does the feedback of actions, which a result must not overtake.
 
 Zenoh itself sends large messages through shared memory. Buffers from a pool of ours gain nothing at 1 MB and a quarter
@@ -16,35 +16,32 @@ from __future__ import annotations
 import asyncio
 import logging
 import threading
-import time
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import zenoh
-from zenoh.handlers import Callback
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.qos import Durability, Qos, Reliability
 from graphflow.transport.base import EARLY, Answer, Bell, DeepInbox, Inbox, Payload
 from graphflow.transport.config import (
-    ANSWERING,
     QUERY_LIMIT_MS,
     close_at_exit,
     close_session,
     config,
     open_session,
 )
+from graphflow.transport.foreign import at_once
 from graphflow.transport.loop import in_thread
+from graphflow.transport.questions import Questions
 
 OWN = "@graphflow/"
 """What the keys begin with that ROS 2 does not know."""
+ASKED_BOUND = 10_000
+"""Tokens of an answer: other processes announce as many as they like."""
 WATCHED_AT_ONCE = 64
 """Tokens that are taken in before others have a turn of the loop."""
-QUESTIONS_BOUND = 256
-"""Questions to a process that wait to be taken."""
-PAUSE = 0.002
-"""Seconds from one question to the next."""
 logger = logging.getLogger("graphflow.transport")
 
 ASK_AGAIN = (0.5, 2.0)
@@ -69,35 +66,6 @@ class _Declared:
                 logger.debug("undeclare: %s", error)
 
 
-class _Questions(_Declared):
-    """Queries that anybody may ask, taken one after the other on a thread of their own, and not all of them.
-
-    Of those that wait, Zenoh keeps the latest and ends the others without an answer, all without Python. A callback
-    would need the GIL for each, and twenty thousand questions a second would leave nothing of it to the nodes.
-    """
-
-    def __init__(
-        self, session: ZenohSession, key: str, take: Callable[[zenoh.Query], None], *, complete: bool = False
-    ) -> None:
-        channel: Any = zenoh.handlers.RingChannel(QUESTIONS_BOUND)
-        queryable: Any = session.raw.declare_queryable(key, channel, complete=complete)
-        super().__init__(session, queryable)
-        threading.Thread(target=self._take_turns, args=(queryable.handler, take), name=ANSWERING).start()
-
-    def _take_turns(self, handler: Any, take: Callable[[zenoh.Query], None]) -> None:
-        while True:
-            try:
-                query = handler.recv()
-            except zenoh.ZError:  # it was closed, or the session was
-                return
-            try:
-                take(query)
-            except Exception as error:  # a question that fails must not end the answers to others
-                logger.debug("a question cannot be answered", exc_info=error)
-            del query  # which ends it, if nobody keeps it to answer it later
-            time.sleep(PAUSE)
-
-
 class _ZenohSender(_Declared):
     """A plain publisher, which knows whether there are listeners."""
 
@@ -107,7 +75,7 @@ class _ZenohSender(_Declared):
         # What changes is looked up when it is asked for. A callback needs the GIL on a thread of those that `config`
         # speaks of, and there would be one for each publisher at once when a peer leaves.
         channel: Any = zenoh.handlers.RingChannel(1)
-        handler = channel if self._inbox is None else Callback(self._matching, indirect=False)
+        handler = channel if self._inbox is None else at_once(self._matching)
         listener = publisher.declare_matching_listener(handler)
         self._news = listener.handler.try_recv if self._inbox is None else _nothing
         super().__init__(session, listener, publisher)
@@ -203,10 +171,18 @@ class _ZenohRequest:
         return payload.to_bytes() if payload is not None else b""
 
     @property
+    def size(self) -> int:
+        try:
+            payload = self._query.payload
+        except zenoh.ZError:  # it has been answered meanwhile, as another thread looks at what waits
+            return 0
+        return 0 if payload is None else len(payload)
+
+    @property
     def attachment(self) -> bytes | None:
         try:
             attachment = self._query.attachment
-        except zenoh.ZError:  # it has been answered meanwhile, as another thread looks at what waits
+        except zenoh.ZError:  # likewise
             return None
         return attachment.to_bytes() if attachment is not None else None
 
@@ -227,7 +203,7 @@ class _ZenohCaller(_Declared):
             changed()
 
         inbox = Inbox(session.bell, None, deliver)
-        listener = querier.declare_matching_listener(Callback(inbox.put, indirect=False))
+        listener = querier.declare_matching_listener(at_once(inbox.put))
         super().__init__(session, listener, querier)
         self._querier, self._bell = querier, session.bell
         # What the listener reports comes later than this, and in order.
@@ -246,7 +222,7 @@ class _ZenohCaller(_Declared):
         inbox = Inbox(self._bell, None, deliver)
         token = zenoh.CancellationToken()
         self._querier.get(
-            Callback(inbox.put, drop=lambda: inbox.put(None), indirect=False),
+            at_once(inbox.put, lambda: inbox.put(None)),
             payload=payload,
             attachment=attachment,
             cancellation_token=token,
@@ -321,7 +297,7 @@ class ZenohSession:
         if qos.durability is Durability.VOLATILE:
             put = _copying(inbox) if isinstance(inbox, DeepInbox) else inbox.put
             # Answers come directly, and so would overtake what waits for the subscription's own thread.
-            handler = Callback(put, indirect=False) if in_order else put
+            handler = at_once(put) if in_order else put
             return _Declared(self, self.raw.declare_subscriber(key, handler, allowed_origin=origin))
         ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
@@ -342,8 +318,8 @@ class ZenohSession:
             inbox.put(_ZenohRequest(query, key))
 
         if is_paced:
-            return _Questions(self, key, arrived, complete=True)
-        return _Declared(self, self.raw.declare_queryable(key, Callback(arrived, indirect=False), complete=True))
+            return _Declared(self, Questions(self.raw, key, arrived, complete=True))
+        return _Declared(self, self.raw.declare_queryable(key, at_once(arrived), complete=True))
 
     def open_caller(self, key: str, changed: Callable[[], None]) -> _ZenohCaller:
         querier = self.raw.declare_querier(
@@ -367,15 +343,33 @@ class ZenohSession:
                 self.loop.call_soon(deliver)
 
         inbox = Inbox(self.bell, None, deliver)
-        subscriber = self.raw.liveliness().declare_subscriber(key, Callback(inbox.put, indirect=False), history=True)
+        subscriber = self.raw.liveliness().declare_subscriber(key, at_once(inbox.put), history=True)
         return _Declared(self, subscriber)
+
+    def ask_tokens(self, key: str, limit: float, told: Callable[[list[str]], None]) -> None:
+        # Not by a query: of those of a session with several peers, some end without any of the replies.
+        found: dict[str, None] = {}
+
+        def changed(token: str, alive: bool) -> None:
+            if not alive:
+                found.pop(token, None)
+            elif len(found) < ASKED_BOUND:
+                found[token] = None
+
+        def ended() -> None:
+            watch.close()
+            told(list(found))
+
+        watch = self.watch(key, changed)
+
+        self.loop.call_later(limit, ended)
 
     def open_report(self, key: str, report: Callable[[], bytes]) -> _Declared:
         def asked(query: zenoh.Query) -> None:
             with query:
                 query.reply(key, report())
 
-        return _Questions(self, key, asked)  # on a thread: the loop may be blocked
+        return _Declared(self, Questions(self.raw, key, asked))  # on a thread: the loop may be blocked
 
     def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
         found: list[bytes] = []
@@ -393,7 +387,7 @@ class ZenohSession:
         inbox = Inbox(self.bell, None, deliver)
         self.raw.get(
             key,
-            Callback(inbox.put, drop=lambda: inbox.put(None), indirect=False),
+            at_once(inbox.put, lambda: inbox.put(None)),
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
             timeout=limit,
@@ -409,7 +403,7 @@ class ZenohSession:
                 changed(str(event.transport.zid), event.kind == zenoh.SampleKind.PUT)
 
         inbox = Inbox(self.bell, None, deliver)
-        listener = self.raw.info.declare_transport_events_listener(Callback(inbox.put, indirect=False))
+        listener = self.raw.info.declare_transport_events_listener(at_once(inbox.put))
         return _Declared(self, listener)
 
     def routers(self) -> list[str]:

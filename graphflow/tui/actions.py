@@ -36,7 +36,9 @@ class Action:
 CONSOLE: dict[str, tuple[Action, ...]] = {
     "Leave": (
         Action("detach", "detach; the nodes run on", ("d",), ("q", "ctrl+q"), hint=True, short="detach"),
-        Action("ask_to_stop", "stop the graph...", ("S",), ("ctrl+c",), verb="graphflow down", short="stop"),
+        Action("ask_to_stop", "stop the graph...", ("S",), verb="graphflow down", short="stop"),
+        Action("interrupt", "end what runs in the pane; where nothing can run, leave or stop...", keys=("ctrl+c",)),
+        Action("pause_in_shell", "back to the shell until fg; the nodes run on", keys=("ctrl+z",)),
         Action("sessions", "switch to another graph", ("s",), verb="graphflow attach --graph NAME", short="graphs"),
     ),
     "Panes": (
@@ -85,6 +87,7 @@ CONSOLE: dict[str, tuple[Action, ...]] = {
         Action(
             "restart_node", "restart the node that is chosen", ("r",), verb="graphflow restart {node}", short="restart"
         ),
+        Action("newest_error", "the newest error, in its log", ("e",), short="error"),
         Action("search_logs", "search in all logs", ("slash",), verb="graphflow logs", short="search"),
         Action("mute_node", "mute the node in merged logs, or not", ("m",)),
         Action("palette", "everything that can be done", (), ("ctrl+p",), hint=True),
@@ -127,6 +130,7 @@ _NAMES = {
     "tilde": "~",
     "plus": "+",
     "minus": "-",
+    "equals_sign": "=",
     "full_stop": ".",
     "left": "←",
     "right": "→",

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import signal
-import sys
 import time
 from typing import Any, ClassVar
 
@@ -20,9 +17,12 @@ from graphflow.tui.deeds import Deeds
 from graphflow.tui.desk import Desk
 from graphflow.tui.home import open_home
 from graphflow.tui.hub import Hub
-from graphflow.tui.ink import DARK, LIGHT, make_ink
+from graphflow.tui.ink import DARK, LIGHT, make_ink, recolouring
+from graphflow.tui.job_control import JobControl
 from graphflow.tui.keyboard import Keyboard, Typed
 from graphflow.tui.layout import Layout
+from graphflow.tui.lines import Lines
+from graphflow.tui.pacing import Pacing
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
 from graphflow.tui.view import View
@@ -77,7 +77,11 @@ class Console(Desk):
         self.keyboard = Keyboard(self, super().on_event, self.deeds.do)
         self.welcome = Welcome()
         self.welcome.display = welcome
+        self.job_control = JobControl(self, self.hints.refresh)
+        self.pacing = Pacing()
         self._beats = 0
+        self._stopped_for = ""
+        """Why the graph is being stopped."""
         self.register_theme(DARK)
         self.register_theme(LIGHT)
         self.theme = theme if theme in self.available_themes else DARK.name
@@ -96,26 +100,10 @@ class Console(Desk):
         return MainScreen(id="_default")
 
     def on_mount(self) -> None:
-        self.ink = make_ink(self)
-        if not (self.is_headless or self.is_web or sys.platform == "win32"):
-            self._hear_signals()
+        self.job_control.hear_signals()
         self.theme_changed_signal.subscribe(self, lambda _: self._new_ink())
         self.set_interval(PULSE, self._pulse)
         self.call_after_refresh(self._begin)
-
-    def _hear_signals(self) -> None:
-        """Take the terminal anew when the process goes on after a SIGSTOP.
-
-        Textual would start it a second time beside the first, whose threads then keep the process from ending. It has
-        no use for SIGTSTP either: in a terminal of its own kind, Ctrl-Z is for what runs in it.
-        """
-        loop = asyncio.get_running_loop()
-        loop.add_signal_handler(signal.SIGCONT, self._take_terminal)
-        loop.add_signal_handler(signal.SIGTSTP, lambda: None)
-
-    def _take_terminal(self) -> None:
-        with self.suspend():  # to leave the terminal and come back is what sets it up
-            self.hints.refresh()
 
     def _begin(self) -> None:
         """The first screen is drawn: now what takes longer."""
@@ -147,11 +135,14 @@ class Console(Desk):
             case "hello" if self.hub.supervision and self.hub.supervision.version_note:
                 self.say(self.hub.supervision.version_note)
             case "ps":
-                self.hub.logs.follow(_log_files(event["nodes"]))
+                self.hub.logs.follow(self.hub.log_files())
             case "announced" if self.hub.supervision and event["by"] != self.hub.supervision.name:
                 self.say(f"{event['text']} by {event['by']}")
-            case "note" | "said" | "stopping":
-                self.say(event.get("text") or f"stopping ({event['reason']})")
+            case "stopping":
+                self._stopped_for = str(event["reason"])
+                self.say(f"stopping ({self._stopped_for})")
+            case "note" | "said":
+                self.say(event["text"])
             case "step" if not event["ok"]:
                 self.say(f"step {event['step']} FAILED: {event['text']}", bad=True)
             case "error":
@@ -160,22 +151,32 @@ class Console(Desk):
                 self._crashed(event)
             case "end":
                 code = event["exit_code"]
-                self.say(f"the graph has ended, exit code {code}; q leaves", bad=bool(code))
+                why = f" ({self._stopped_for})" if self._stopped_for else ""
+                self.say(f"the graph has ended{why}, exit code {code}; q leaves", bad=bool(code))
             case "lost" if self.hub.supervision and self.hub.supervision.exit_code is None:
                 self.say(f"{event['message']}; q leaves", bad=True)
+        for frame in self.workspace.visible_frames:
+            if frame.view.SHOWS_STATES:
+                frame.view.look_soon()
         self.status.refresh()
 
     def _crashed(self, event: dict[str, Any]) -> None:
         names = ", ".join(event["nodes"])
         again = event.get("again")
-        follows = f"{shown(self.prefix)} r restarts" if again is None else f"it is started again in {again:.1f} s"
-        self.say(f"{names} died: {event['how']}; {follows}, enter on it shows why", bad=True)
+        follows = "" if again is None else f"; it is started again in {again:.1f} s"
+        self.say(f"{shown(self.prefix)} e shows why: {names} died, {event['how']}{follows}", bad=True)
         self.flags[self.windows.current] = "!"
 
     # the pulse
 
+    def _display(self, screen: Screen[Any], renderable: Any) -> None:
+        if self.is_headless or self.pacing.admits(self._driver):
+            super()._display(screen, renderable)
+
     async def _pulse(self) -> None:
         now = time.monotonic()
+        if self.pacing.catches_up(self._driver):
+            self.screen.refresh(layout=True)
         await self.keyboard.look(now)
         self._beats += 1
         if self._beats % 2 == 0:
@@ -186,6 +187,7 @@ class Console(Desk):
                 if view.is_mounted and now - view.looked >= view.EVERY - PULSE / 2:
                     view.looked = now
                     view.look(now)
+                if self._beats % 5 == 0:
                     frame.title_line.refresh_if_changed()
         if self._beats % 10 == 0:
             self.deeds.look(now)
@@ -197,7 +199,13 @@ class Console(Desk):
         return view_class(content.view)(self.hub, content)
 
     def _new_ink(self) -> None:
-        self.ink = make_ink(self)
+        old, self.ink = self.ink, make_ink(self)
+        recolour = recolouring(old, self.ink)
+        for frame in self.workspace.frames.values():
+            if frame.view.is_mounted:
+                frame.view.restyle()
+                for lines in frame.view.query(Lines):
+                    lines.recolour(recolour)
         self.refresh(layout=True)
 
     def open_beside(self, content: Content) -> None:
@@ -208,6 +216,9 @@ class Console(Desk):
 
     async def on_event(self, event: events.Event) -> None:
         if isinstance(event, Typed) and not event.is_forwarded:
+            # A terminal that types has the focus, whatever it has said before: tmux says nothing when it comes back.
+            # Textual focuses nothing in a dialog that opens while the terminal has not.
+            self.app_focus = True
             await self.keyboard.type(event)
         else:
             await super().on_event(event)
@@ -215,22 +226,22 @@ class Console(Desk):
     async def on_workspace_focus_arrived(self) -> None:
         await self.keyboard.go_on()
 
+    def on_lines_wanted(self, event: Lines.Wanted) -> None:
+        self.deeds.search_in(event.lines)
+
     async def on_keyboard_followed(self, event: Keyboard.Followed) -> None:
         await self.keyboard.followed(event)
 
     def action_do(self, name: str) -> None:
         self.deeds.do(name)
 
+    def watch_app_focus(self, focus: bool) -> None:
+        """Give the focus to a dialog that has opened while the terminal did not have it."""
+        if focus and len(self.screen_stack) > 1 and self.screen.focused is None:
+            self.screen.focus_next()
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """The console's bare keys are for its own screen, not for dialogs above it."""
         if action == "do" and len(self.screen_stack) > 1:
-            return parameters[:1] == ("ask_to_stop",)
+            return parameters[:1] == ("interrupt",)
         return True
-
-
-def _log_files(rows: list[dict[str, Any]]) -> list[tuple[str, tuple[str, ...]]]:
-    """Each log with the nodes that write it."""
-    found: dict[str, list[str]] = {}
-    for row in rows:
-        found.setdefault(row["log"], []).append(row["node"])
-    return [(log, tuple(nodes)) for log, nodes in found.items()]

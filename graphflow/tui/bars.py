@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rich.segment import Segment
@@ -39,10 +40,27 @@ MARKS = {
     "pending": StateMark("◌", "dim"),
     "ended": StateMark("○", "dim"),
     "failed": StateMark("✖", "bad"),
-    "given_up": StateMark("✖", "bad"),
-    "lost": StateMark("✖", "bad"),
+    "given_up": StateMark("⊘", "bad"),
+    "lost": StateMark("◇", "bad"),
     "foreign": StateMark("◆", "accent"),
+    "active": StateMark("●", "good"),
+    "inactive": StateMark("◒", "warn"),
+    "unconfigured": StateMark("◌", "warn"),
+    "finalized": StateMark("○", "dim"),
+    "deadlock": StateMark("∞", "bad"),
 }
+
+
+def word_of(row: Mapping[str, Any], stuck: Container[str]) -> str:
+    """The state of a node for people: that of its process, of its life cycle, or `deadlock`.
+
+    Args:
+        row: Its row of `ps`.
+        stuck: The nodes that are in a deadlock.
+    """
+    if row["node"] in stuck and row["state"] in ("ready", "unresponsive"):
+        return "deadlock"
+    return str(row.get("lifecycle") or row["state"])
 
 
 class Bar(Widget):
@@ -128,17 +146,19 @@ class Status(Bar):
     """Which graph, which windows, how the nodes are, and the two keys that one must know."""
 
     def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
-        app, ink = self.console_app, self.console_app.ink
-        found: list[tuple[str, Style]] = [(f" [{app.hub.graph}] ", ink.strong)]
-        found += [piece for _, pieces in self._windows() for piece in pieces]
-        right = [*self._states(), *self._keys()]
-        room = width - sum(len(t) for t, _ in found) - sum(len(t) for t, _ in right)
-        if room < 0:
-            right = self._states() if width - sum(len(t) for t, _ in [*found, *self._states()]) >= 0 else []
-            room = max(0, width - sum(len(t) for t, _ in [*found, *right]))
-        return [*found, (" " * room, ink.text), *right]
+        ink, states = self.console_app.ink, self._states()
+        found = [(self._head, ink.strong), *(piece for _, piece in self._windows(width))]
+        right = [*states, *self._keys()]
+        if _width(found) + _width(right) > width:
+            right = states
+        return [*found, (" " * max(0, width - _width(found) - _width(right)), ink.text), *right]
 
-    def _windows(self) -> list[tuple[int, list[tuple[str, Style]]]]:
+    @property
+    def _head(self) -> str:
+        return f" [{self.console_app.hub.graph}] "
+
+    def _windows(self, width: int) -> list[tuple[int, tuple[str, Style]]]:
+        """The windows that have room beside the states, the current one among them, each with its number."""
         app, ink = self.console_app, self.console_app.ink
         windows = app.windows
         found = []
@@ -148,8 +168,13 @@ class Status(Bar):
             mark += "Z" if window.zoomed else ""
             mark += app.flags.get(number, "")
             style = ink.cursor + ink.strong if current else ink.dim
-            found.append((number, [(f" {number}:{window.name}{mark} ", style)]))
-        return found
+            found.append((number, (f" {number}:{window.name}{mark} ", style)))
+        at = [number for number, _ in found].index(windows.current)
+        room = width - len(self._head) - _width(self._states())
+        first, last = _fitting([len(text) for _, (text, _) in found], at, room)
+        more = [(found[i][0], (mark, ink.accent)) for i, mark in ((first - 1, "<"), (last, ">")) if 0 <= i < len(found)]
+        before, after = more[: first > 0], more[first > 0 :]
+        return [*before, *found[first:last], *after]
 
     def _states(self) -> list[tuple[str, Style]]:
         app, ink = self.console_app, self.console_app.ink
@@ -161,10 +186,20 @@ class Status(Bar):
             return [(f"ended, exit code {supervision.exit_code} ", ink.bad if supervision.exit_code else ink.warn)]
         if supervision.is_lost:
             return [("✖ supervisor gone ", ink.bad)]
-        counts = Counter(row["state"] for row in supervision.nodes.values())
+        live, logs = app.hub.live, app.hub.logs
+        stuck = live.stuck_nodes if live is not None else ()
+        counts = Counter(word_of(row, stuck) for row in supervision.nodes.values())
         for state, mark in MARKS.items():
             if counts[state]:
                 found.append((f"{mark.glyph}{counts[state]} ", getattr(ink, mark.ink)))
+        errors = sum(app.hub.unseen(node)[0] for node in logs.errors)
+        if errors:
+            found.append((f"E{errors} {shown(app.prefix)} e ", ink.bad))
+        if logs.races:
+            many = "S" if len(logs.races) > 1 else ""
+            found.append((f"⇄{len(logs.races)} RACE{many} {shown(app.prefix)} g ", ink.warn))
+        if live is not None and live.misfits:
+            found.append((f"≠{len(live.misfits)} ", ink.bad))
         if app.deadlocks:
             many = "S" if app.deadlocks > 1 else ""
             found.append((f"✖ {app.deadlocks} DEADLOCK{many} {shown(app.prefix)} g ", ink.bad))
@@ -175,9 +210,9 @@ class Status(Bar):
         return [(f" {prefix} ?", ink.accent), (" help ", ink.text), (f" {prefix} d", ink.accent), (" leave ", ink.text)]
 
     def on_click(self, event: events.Click) -> None:
-        at = len(f" [{self.console_app.hub.graph}] ")
-        for number, pieces in self._windows():
-            at += sum(len(text) for text, _ in pieces)
+        at = len(self._head)
+        for number, (text, _) in self._windows(self.size.width):
+            at += len(text)
             if event.x < at:
                 self.console_app.deeds.go_to_window(number)
                 return
@@ -187,8 +222,23 @@ class Status(Bar):
             self.console_app.deeds.do_detach()
         elif from_right <= leave + len(self._keys()[0][0] + self._keys()[1][0]):
             self.console_app.deeds.do_help()
-        elif self.console_app.deadlocks:
+        elif self.console_app.deadlocks or self.console_app.hub.logs.races:
             self.console_app.deeds.do_groups()
+
+
+def _width(pieces: Iterable[tuple[str, Style]]) -> int:
+    return sum(len(text) for text, _ in pieces)
+
+
+def _fitting(widths: Sequence[int], at: int, room: int) -> tuple[int, int]:
+    """The first and the last (exclusive) of neighbours that have room, with a mark on each side where others are."""
+    first, last = 0, len(widths)
+    while last - first > 1 and sum(widths[first:last]) + (first > 0) + (last < len(widths)) > room:
+        if at - first > last - 1 - at:
+            first += 1
+        else:
+            last -= 1
+    return first, last
 
 
 class WhichKey(Bar):

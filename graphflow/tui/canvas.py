@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
+from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -40,6 +42,8 @@ class Dots:
         self.width, self.height = width, height
         self._bits = [bytearray(width) for _ in range(height)]
         self._colours: list[list[RGB | None]] = [[None] * width for _ in range(height)]
+        self.changed: set[tuple[int, int]] = set()
+        """The cells, by column and row, that have changed since somebody emptied this."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, colour: RGB) -> None:
         """Draw from one dot to another; dots count from the top left."""
@@ -50,8 +54,11 @@ class Dots:
     def dot(self, x: int, y: int, colour: RGB) -> None:
         """Set one dot, if it is on the board."""
         if 0 <= x < 2 * self.width and 0 <= y < 4 * self.height:
-            self._bits[y >> 2][x >> 1] |= _DOTS[y & 3][x & 1]
-            self._colours[y >> 2][x >> 1] = colour
+            column, row, bit = x >> 1, y >> 2, _DOTS[y & 3][x & 1]
+            if not self._bits[row][column] & bit or self._colours[row][column] != colour:
+                self._bits[row][column] |= bit
+                self._colours[row][column] = colour
+                self.changed.add((column, row))
 
     def row(self, y: int) -> list[tuple[str, RGB | None]]:
         """One row of cells as runs of text of one colour."""
@@ -149,6 +156,23 @@ def read_picture(svg: str) -> list[Line]:
     return lines
 
 
+LONGEST = 20
+"""Letters of a turtle's name that are drawn."""
+
+
+class Placed(NamedTuple):
+    """Where a turtle is drawn."""
+
+    column: int
+    row: int
+    head: str
+    name_row: int
+
+    def named(self, name: str) -> list[tuple[int, int]]:
+        """The cells of the name, right of the head."""
+        return [(self.column + 1 + i, self.name_row) for i in range(min(LONGEST, len(name)))]
+
+
 class TurtleCanvas(Widget):
     """A drawing on the screen, as large as fits, its height as its width."""
 
@@ -158,7 +182,7 @@ class TurtleCanvas(Widget):
         self._dots = Dots(0, 0)
         self._drawn: tuple[int, int, int] = (0, 0, -1)
         self._moves = 0
-        self._placed: object = None
+        self._placed: dict[str, Placed] = {}
 
     def redraw(self) -> None:
         """Draw what is new; everything, when the size or the picture has changed."""
@@ -177,10 +201,32 @@ class TurtleCanvas(Widget):
         self._moves = drawing.moves
         for move in fresh:
             self._line(move.x0, move.y0, move.x1, move.y1, move.colour)
-        placed = {name: (t.x, t.y, t.theta) for name, t in drawing.turtles.items()}
-        if is_new or fresh or placed != self._placed:
-            self._placed = placed
+        placed = self._place()
+        changed = self._dots.changed
+        for name in placed.keys() | self._placed.keys():
+            if placed.get(name) != self._placed.get(name):
+                for at in (each[name] for each in (self._placed, placed) if name in each):
+                    changed |= {(at.column, at.row), *(at.named(name)[:: max(1, min(LONGEST, len(name)) - 1)])}
+        self._placed = placed
+        if is_new:
             self.refresh()
+        elif changed:
+            self.refresh(*_regions(changed))
+        changed.clear()
+
+    def _place(self) -> dict[str, Placed]:
+        """The cells of all turtles: a name is above its turtle, or below if another name is there."""
+        placed: dict[str, Placed] = {}
+        taken: set[tuple[int, int]] = set()
+        for name, turtle in self._drawing.turtles.items():
+            dot_x, dot_y = self._dot(turtle.x, turtle.y)
+            column, row, head = int(dot_x) >> 1, int(dot_y) >> 2, _HEADS[round(turtle.theta / (math.pi / 4)) % 8]
+            at = Placed(column, row, head, row - 1)
+            if row == 0 or not taken.isdisjoint(at.named(name)):
+                at = Placed(column, row, head, row + 1)
+            taken.update(at.named(name))
+            placed[name] = at
+        return placed
 
     @property
     def _scale(self) -> float:
@@ -205,15 +251,15 @@ class TurtleCanvas(Widget):
             style = base + self._pen(colour) if colour is not None else base
             cells += [(c, style) for c in text]
         self._border(cells, y, base + ink.dim)
-        for i, (name, turtle) in enumerate(self._drawing.turtles.items()):
-            dot_x, dot_y = self._dot(turtle.x, turtle.y)
-            column, row = int(dot_x) >> 1, int(dot_y) >> 2
+        # As they were when what is to be drawn was found out: by now they may have gone on.
+        for i, (name, at) in enumerate(self._placed.items()):
             style = base + ink.nodes[(i + 1) % len(ink.nodes)] + Style(bold=True)
-            if row == y and 0 <= column < len(cells):
-                cells[column] = (_HEADS[round(turtle.theta / (math.pi / 4)) % 8], style)
-            if row == y + 1 and len(self._drawing.turtles) > 1:
-                for c, at in zip(name[:20], range(column + 1, len(cells)), strict=False):
-                    cells[at] = (c, style)
+            if at.row == y and 0 <= at.column < len(cells):
+                cells[at.column] = (at.head, style)
+            if at.name_row == y and len(self._placed) > 1:
+                for c, (column, _) in zip(name, at.named(name), strict=False):
+                    if 0 <= column < len(cells):
+                        cells[column] = (c, style)
         return Strip([Segment(text, style) for text, style in cells]).simplify()
 
     def _border(self, cells: list[tuple[str, Style]], y: int, style: Style) -> None:
@@ -238,3 +284,11 @@ class TurtleCanvas(Widget):
         elif max(colour) < 90:
             colour = (colour[0] + 90, colour[1] + 90, colour[2] + 90)
         return Style(color=Color.from_rgb(*colour))
+
+
+def _regions(cells: Iterable[tuple[int, int]]) -> list[Region]:
+    """A region for each row that has some of the cells, as wide as they are apart."""
+    rows: dict[int, list[int]] = {}
+    for column, row in cells:
+        rows.setdefault(row, []).append(column)
+    return [Region(min(at), row, max(at) - min(at) + 1, 1) for row, at in rows.items()]

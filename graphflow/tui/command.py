@@ -10,9 +10,11 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input, Label, Static
 
-from graphflow.tui.completion import Completer
+from graphflow.graph.console import VIEWS
+from graphflow.tui.completion import Completer, completed, nothing_to_complete
 from graphflow.tui.hub import Hub
-from graphflow.tui.views.prompt import Prompt
+
+ADVICE = "tab completes, ↑ recalls, enter runs it in a pane, esc back"
 
 
 class CommandLine(ModalScreen[str | None]):
@@ -27,17 +29,18 @@ class CommandLine(ModalScreen[str | None]):
 
     def __init__(self, hub: Hub) -> None:
         super().__init__()
-        self._completer = Completer(hub)
-        self._at = len(Prompt.past)
+        self._history = hub.history
+        self._completer = Completer(hub, VIEWS)
+        self._at = len(hub.history.lines)
 
     def compose(self) -> ComposeResult:
         with Vertical(classes="dialog wide"):
             yield Label("Any verb of graphflow; or a view, layout NAME, save-layout, quit", classes="question")
             yield Input(placeholder="topic echo /turtle1/pose")
-            yield Static("tab completes, ↑ recalls, enter runs it in a pane, esc back", classes="detail")
+            yield Static(ADVICE, classes="detail")
 
     def action_recall(self, step: int) -> None:
-        past = Prompt.past
+        past = self._history.lines
         self._at = max(0, min(len(past), self._at + step))
         self.query_one(Input).value = past[self._at] if self._at < len(past) else ""
 
@@ -45,13 +48,10 @@ class CommandLine(ModalScreen[str | None]):
         self.run_worker(self._complete(), exclusive=True)
 
     async def _complete(self) -> None:
-        line = self.query_one(Input)
-        line.value, choices = await self._completer.complete(line.value)
-        line.cursor_position = len(line.value)
-        text = "  ".join(choices[:40]) if len(choices) > 1 else ""
-        self.query_one(Static).update(text)
+        text, choices = await completed(self.query_one(Input), self._completer)
+        shown = "  ".join(choices[:40]) if len(choices) > 1 else ADVICE
+        self.query_one(".detail", Static).update(shown if choices else nothing_to_complete(text))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        if event.value.strip() and (not Prompt.past or Prompt.past[-1] != event.value.strip()):
-            Prompt.past.append(event.value.strip())
+        self._history.add(event.value)
         self.dismiss(event.value)

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
+from textual.widgets import Input
+
 from graphflow.errors import GraphflowError
+from graphflow.graph.console import ViewForm
 from graphflow.introspect import offers
 from graphflow.introspect.parameters import RemoteParameters
 from graphflow.tui.hub import Hub, Verbs
 
+TRANSITIONS = ("activate", "cleanup", "configure", "deactivate", "shutdown")
+"""The transitions of a life cycle that can be asked for."""
 ANSWER_LIMIT = 1.0
 """Seconds that a node has to tell its parameters."""
 
 
 class Completer:
-    """Completes lines of the command line, without the word `graphflow`."""
+    """Completes lines of the command line, without the word `graphflow`.
 
-    def __init__(self, hub: Hub) -> None:
-        self._hub = hub
+    Args:
+        views: Other first words, and what each is about, such as `topic`.
+    """
+
+    def __init__(self, hub: Hub, views: Mapping[str, ViewForm] = MappingProxyType({})) -> None:
+        self._hub, self._views = hub, views
         self._verbs: Verbs | None = None
 
     async def complete(self, line: str) -> tuple[str, list[str]]:
@@ -37,6 +48,10 @@ class Completer:
     async def _choices(self, words: list[str]) -> list[str]:
         if self._verbs is None:
             self._verbs = await asyncio.to_thread(self._hub.read_verbs)
+        if not words:
+            return [*self._verbs, *self._views]
+        if len(words) == 1 and words[0] in self._views and words[0] not in self._verbs:
+            return await self._named(self._views[words[0]].about.partition(".")[0], [])
         at: Any = {"commands": self._verbs}
         rest = list(words)
         while rest and at.get("commands") and rest[0] in at["commands"]:
@@ -78,6 +93,8 @@ class Completer:
                 return offers.message(given[1])
             case "HANDLER" if given:
                 return self._handlers(given[0])
+            case "TRANSITION":
+                return list(TRANSITIONS)
         return offers.names_for(what, given, live.cache)
 
     def _handlers(self, node: str) -> list[str]:
@@ -92,6 +109,22 @@ class Completer:
             return await self._hub.live.ask(lambda view: RemoteParameters(view, view.node(node), ANSWER_LIMIT).names())
         except GraphflowError:
             return []
+
+
+async def completed(line: Input, completer: Completer) -> tuple[str, list[str]]:
+    """Complete what is typed in a line, and leave what is typed on meanwhile; the result is that of `complete`."""
+    before = line.value
+    text, choices = await completer.complete(before)
+    if line.value.startswith(before):
+        line.value = text + line.value[len(before) :].lstrip(" " if text.endswith(" ") else "")
+        line.cursor_position = len(line.value)
+    return text, choices
+
+
+def nothing_to_complete(text: str) -> str:
+    """What to say where a line cannot be completed."""
+    last = text.rpartition(" ")[2]
+    return f"nothing here begins with {last!r}" if last else "there is nothing to complete here"
 
 
 def _common(words: list[str]) -> str:

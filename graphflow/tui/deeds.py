@@ -10,6 +10,7 @@ from graphflow.graph import project
 from graphflow.graph.console import LAYOUTS, VIEWS, known_views
 from graphflow.tui.actions import carry_out, console_actions, keys_of, shown
 from graphflow.tui.dialogs import Ask, AskToStop, Choice, Item, Note, Pick
+from graphflow.tui.history import without_program
 from graphflow.tui.ink import DARK, LIGHT
 from graphflow.tui.lines import Lines
 from graphflow.tui.pane_deeds import PaneDeeds
@@ -33,7 +34,7 @@ class Deeds(PaneDeeds):
             return
         live.want("concurrency")
         if live.concurrency is not None:
-            found = len(live.concurrency.reports)
+            found = len(live.deadlocks)
             seen = any(frame.view.NAME in ("groups", "tour") for frame in app.workspace.visible_frames)
             if found > app.deadlocks and not seen:
                 app.say(f"DEADLOCK found; {shown(app.prefix)} g shows it and how to end it", bad=True)
@@ -44,24 +45,34 @@ class Deeds(PaneDeeds):
     def do_detach(self) -> None:
         self._app.run_worker(self._app.leave("detach"))
 
-    def do_ask_to_stop(self) -> None:
-        app = self._app
-        view = app.focused_view
+    def do_pause_in_shell(self) -> None:
+        if self._app.job_control.has_shell:
+            self._app.job_control.pause()
+        else:
+            self._app.say("there is no shell behind this console")
+
+    def do_interrupt(self) -> None:
+        """Take Ctrl-C: it never stops the graph by itself, however often it is typed."""
+        app, view = self._app, self._app.focused_view
         if isinstance(app.screen, AskToStop):
-            self.stop_now()
-            return
-        if view is not None and view.interrupt():
-            app.say("ended the command; ^c again asks to stop the graph")
             return
         if len(app.screen_stack) > 1:
             app.pop_screen()
-        if app.hub.supervision is None:
+        elif view is None or not view.interrupt():
+            self.do_ask_to_stop()
+
+    def do_ask_to_stop(self) -> None:
+        app = self._app
+        supervision = app.hub.supervision
+        if supervision is None:
             self._ask("No supervisor here: these nodes were started elsewhere.", [Choice("d", "leave")], self._leave)
             return
-        nodes = len(app.hub.supervision.nodes)
+        nodes = len(supervision.nodes)
         question = f"Leave or stop {app.hub.graph}, {nodes} node{'s' if nodes != 1 else ''}?"
-        choices = [Choice("d", "detach: the nodes run on"), Choice("s", "stop the graph   (or ^c again)")]
-        app.push_screen(AskToStop(question, choices), self._leave)
+        others = [console["name"] for console in supervision.consoles if console["name"] != supervision.name]
+        also = f"Stopping ends it for the other console{'s' if len(others) > 1 else ''}, too: {', '.join(others)}"
+        choices = [Choice("d", "detach: the nodes run on"), Choice("s", "stop the graph")]
+        app.push_screen(AskToStop(question, choices, also if others else ""), self._leave)
 
     def _ask(self, question: str, choices: list[Choice], answered: Any, detail: str = "") -> None:
         self._app.push_screen(Ask(question, choices, detail), answered)
@@ -119,6 +130,19 @@ class Deeds(PaneDeeds):
         self._app.did("graphflow waits")
         self.open_window(Content("groups"))
 
+    def do_newest_error(self) -> None:
+        self.show_newest_error("")
+
+    def show_newest_error(self, node: str) -> None:
+        """Show the newest error in the log of its node; of any node where none is given."""
+        errors = self._app.hub.logs.last_error
+        error = errors.get(node) if node else next(iter(reversed(errors.values())), None)
+        if error is None:
+            self._app.say(f"no error in the log{f' of {node}' if node else 's'} so far")
+            return
+        self._app.did(f"graphflow logs {error.node} --level error")
+        self.open_beside(Content("log", error.node, {"at": f"{error.file}:{error.offset}"}))
+
     def do_restart_node(self) -> None:
         view = self._app.focused_view
         node = view.chosen().get("node", "") if view is not None else ""
@@ -154,10 +178,11 @@ class Deeds(PaneDeeds):
     def _has_no_supervisor(self) -> bool:
         """Whether nobody is left who could start or stop a node; says so, and what starts the graph again."""
         supervision = self._app.hub.supervision
-        if supervision is None or not supervision.is_lost:
+        if supervision is None or not (supervision.is_lost or supervision.exit_code is not None):
             return False
         again = f"graphflow up {project.shown(Path(supervision.run.file))}"
-        self._app.say(f"the supervisor has gone; q leaves, and the graph is started again with: {again}", bad=True)
+        what = "the supervisor has gone" if supervision.exit_code is None else "the graph has ended"
+        self._app.say(f"{what}; q leaves, and the graph is started again with: {again}", bad=True)
         return True
 
     def stop_node(self, node: str) -> None:
@@ -221,7 +246,7 @@ class Deeds(PaneDeeds):
     def _typed(self, text: str | None) -> None:
         if not text or not text.strip():
             return
-        text = text.strip().removeprefix("graphflow ").removeprefix("gf ").strip()
+        text = without_program(text)
         word, _, rest = text.partition(" ")
         if (
             word in known_views()
@@ -243,7 +268,9 @@ class Deeds(PaneDeeds):
     def do_help(self) -> None:
         from graphflow.tui.views.help import VIEW as HELP
 
-        self._app.push_screen(Note("Keys", lambda: HELP(self._app.hub, Content("help"))))
+        view = self._app.focused_view
+        first = {"first": view.NAME} if view is not None else {}
+        self._app.push_screen(Note("Keys", lambda: HELP(self._app.hub, Content("help", options=first))))
 
     def do_clients(self) -> None:
         supervision = self._app.hub.supervision
@@ -278,5 +305,4 @@ class Deeds(PaneDeeds):
         if not self._app.last_shell:
             self._app.say("no command has been shown yet")
             return
-        self._app.copy_to_clipboard(self._app.last_shell)
-        self._app.say(f"copied: {self._app.last_shell}")
+        self._app.copy(self._app.last_shell)

@@ -9,10 +9,12 @@ from collections.abc import Awaitable, Callable
 from textual.app import App
 from textual.timer import Timer
 
+from graphflow.tui import clipboard
 from graphflow.tui.actions import shown
 from graphflow.tui.bars import Hints, Status
 from graphflow.tui.hub import Hub
 from graphflow.tui.ink import Ink
+from graphflow.tui.job_control import JobControl
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Window
 from graphflow.tui.view import View
@@ -36,6 +38,7 @@ class Desk(App[str]):
     status: Status
     welcome: Welcome
     workspace: Workspace
+    job_control: JobControl
     ink: Ink
 
     def __init__(self, hub: Hub, windows: Layout, prefix: str) -> None:
@@ -78,7 +81,7 @@ class Desk(App[str]):
     def focused_view(self) -> View | None:
         """The view in the focused pane."""
         frame = self.workspace.focused
-        return None if frame is None else frame.view
+        return None if frame is None else frame.view.active
 
     def say(self, text: str, *, bad: bool = False) -> None:
         """Tell the user something in the bottom line."""
@@ -114,6 +117,23 @@ class Desk(App[str]):
     def window(self) -> Window:
         return self.windows.window
 
-    def copy_to_clipboard(self, text: str) -> None:
+    def copy(self, text: str, what: str = "") -> None:
+        """Copy a text, and say so.
+
+        Args:
+            what: What it is; the text itself, if empty.
+        """
         self.clipboard_text = text
-        super().copy_to_clipboard(text)
+        self.copy_to_clipboard(text)
+        words = clipboard.program()
+        if not words:
+            self.say(
+                f"copied {what or text}, if the terminal lets programs copy; {shown(self.prefix)} ] pastes it here"
+            )
+            return
+
+        async def copy() -> None:
+            trouble = await asyncio.to_thread(clipboard.copy_by, words, text)
+            self.say(f"not copied: {trouble}" if trouble else f"copied {what or text}", bad=bool(trouble))
+
+        self.spawn(copy)

@@ -62,7 +62,7 @@ class Ask(ModalScreen[str | None]):
 
 
 class AskToStop(Ask):
-    """Whether to leave or to stop the graph. Ctrl-C, the key that asks, is an answer too: it stops the graph."""
+    """Whether to leave or to stop the graph. Ctrl-C, the key that asks, is no answer."""
 
 
 class AskLine(ModalScreen[str | None]):
@@ -123,15 +123,18 @@ class Pick(ModalScreen[Any]):
     def _show(self, wanted: str) -> None:
         if wanted:
             matcher = Matcher(wanted)
-            ranked = [(matcher.match(f"{item.text} {item.detail}"), item) for item in self._items]
-            self._found = [item for score, item in sorted(ranked, key=lambda pair: -pair[0]) if score > 0][:SHOWN]
+            ranked = [(_rank(item, wanted.lower(), matcher), item) for item in self._items]
+            ranked.sort(key=lambda pair: pair[0], reverse=True)
+            self._found = [item for (_, score), item in ranked if score > 0][:SHOWN]
         else:
             self._found = self._items[:SHOWN]
         options = self.query_one(OptionList)
         options.clear_options()
-        width = max((len(item.text) for item in self._found), default=0)
         dim = self.app.ink.dim  # type: ignore[attr-defined]
         room = min(100, int(self.app.size.width * 0.95)) - 10
+        longest = max((len(item.detail) for item in self._found), default=0)
+        widest = max((len(item.text) for item in self._found), default=0)
+        width = min(widest, max(room // 2, room - longest - 2))
         nothing = f"nothing here is called {wanted!r}" if wanted and self._items else self._empty
         options.add_options(
             [Option(_line(item, width, room, dim)) for item in self._found] or [Option(nothing, disabled=True)]
@@ -162,8 +165,18 @@ class Pick(ModalScreen[Any]):
             self.dismiss(self._found[event.option_index].value)
 
 
+def _rank(item: Item, wanted: str, matcher: Matcher) -> tuple[int, float]:
+    """How well a thing is what was typed: by its name, its first word, its beginning, a part of it, or by letters."""
+    name = item.text.lower()
+    nearness = (name == wanted, wanted in name.split(), name.startswith(wanted), wanted in name)
+    rank = next((len(nearness) - i for i, is_so in enumerate(nearness) if is_so), 0)
+    return rank, matcher.match(f"{item.text} {item.detail}")
+
+
 def _line(item: Item, width: int, room: int, dim: Style) -> Text:
-    text = Text(item.text.ljust(width + 2), no_wrap=True).append(item.detail, style=dim)
+    text = Text(item.text, no_wrap=True)
+    text.truncate(width, overflow="ellipsis", pad=True)
+    text.append("  ").append(item.detail, style=dim)
     text.truncate(max(10, room), overflow="ellipsis")
     return text
 
@@ -171,7 +184,7 @@ def _line(item: Item, width: int, room: int, dim: Style) -> Text:
 class Note(ModalScreen[None]):
     """Something to read, until any of the keys that end it."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,enter", "dismiss", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,enter,f1", "dismiss", show=False)]
 
     def __init__(self, title: str, body: Callable[[], Any]) -> None:
         super().__init__()

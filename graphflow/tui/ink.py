@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any
 
 from rich.color import Color as RichColor
 from rich.color import ColorParseError
-from rich.style import Style
+from rich.style import Style, StyleType
+from rich.text import Span, Text
 from textual.app import App
 from textual.theme import Theme
 
@@ -41,9 +44,9 @@ LIGHT = Theme(
     dark=False,
     variables={"text-muted": "#545e68", "block-cursor-text-style": "none", "footer-key-foreground": "#0a5aa8"},
 )
-_NODES_DARK = ("#6cb6ff", "#8ddb8c", "#f0b35a", "#d2a8ff", "#5fd7d7", "#ff9e9e", "#c8d36b", "#ffb3e6")
-_NODES_LIGHT = ("#0a5aa8", "#24672d", "#835200", "#6b36b0", "#0b6470", "#a8332b", "#5b6100", "#96206f")
-_NODES_ANSI = ("blue", "green", "yellow", "magenta", "cyan", "red")
+_NODES_DARK = ("#6cb6ff", "#8ddb8c", "#f0b35a", "#d2a8ff", "#5fd7d7", "#e6c9a8", "#c8d36b", "#ffb3e6")
+_NODES_LIGHT = ("#0a5aa8", "#24672d", "#835200", "#6b36b0", "#0b6470", "#3d4a94", "#5b6100", "#96206f")
+_NODES_ANSI = ("blue", "green", "yellow", "magenta", "cyan")
 
 
 @dataclass(frozen=True)
@@ -71,10 +74,23 @@ class Ink:
         return (self.dim, self.text, self.warn, self.bad, self.bad)[level]
 
 
+def recolouring(old: Ink, new: Ink) -> Callable[[Text], None]:
+    """A function that gives text drawn in one theme the styles of another."""
+    names = ("match", "cursor", "bad", "warn", "good", "accent", "strong", "dim", "text")
+    styles: dict[StyleType, Style] = dict(zip(old.nodes, cycle(new.nodes), strict=False))
+    styles |= {getattr(old, name): getattr(new, name) for name in names}
+
+    def recolour(text: Text) -> None:
+        text.style = styles.get(text.style, text.style)
+        text.spans = [Span(s.start, s.end, styles.get(s.style, s.style)) for s in text.spans]
+
+    return recolour
+
+
 def make_ink(app: App[Any]) -> Ink:
     """The styles that fit the theme in force."""
     theme = app.current_theme
-    variables = app.theme_variables
+    variables = app.get_css_variables()
 
     def style(name: str, *, bold: bool = False) -> Style:
         return Style(color=_colour(variables.get(name)), bold=bold or None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, ClassVar, NamedTuple
 
 from rich.cells import cell_len
@@ -14,6 +14,7 @@ from rich.text import Text
 from textual import events
 from textual.binding import Binding, BindingType
 from textual.geometry import Size
+from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
@@ -36,15 +37,24 @@ class Part(NamedTuple):
     """The column of the row at which the piece begins."""
     end: int
     indent: int
-    """Columns of the row's beginning that stand before the piece."""
+    """Columns of the row's beginning, or if `is_blank` as many spaces, that stand before the piece."""
+    is_blank: bool = False
 
 
-def breaks(text: str, width: int) -> Iterator[tuple[int, int, int]]:
-    """Where to break a row, between words if need be in them: start, end and indent of each piece, in columns."""
+def breaks(text: str, width: int, hanging: int | None = None) -> Iterator[tuple[int, int, int]]:
+    """Where to break a row, between words if need be in them: start, end and indent of each piece, in columns.
+
+    Args:
+        hanging: The indent of what goes on; None for that of the row.
+    """
     found = _INDENT.match(text)
-    indent = found.end() if found and found.end() <= min(_DEEPEST, width // 2) else 0
+    indent = hanging if hanging is not None else found.end() if found else 0
+    if indent > (min(_DEEPEST, width // 2) if hanging is None else width // 2):
+        indent = 0
     if cell_len(text) != len(text):  # columns are not characters: cut where the line is full
-        yield from ((at, at + width, 0) for at in range(0, min(cell_len(text), width * WRAPS_INTO), width))
+        rest = range(width, min(cell_len(text), width * WRAPS_INTO), width - indent)
+        yield 0, width, 0
+        yield from ((at, at + width - indent, indent) for at in rest)
         return
     start, room = 0, width
     for _ in range(WRAPS_INTO):
@@ -63,6 +73,7 @@ class Lines(ScrollView, can_focus=True):
     Args:
         bound: Lines kept; the oldest go first.
         wraps: Whether long rows go on in the next line, rather than being cut off.
+        copies: Whether `y` copies the chosen line; in some views it copies something else.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -72,10 +83,26 @@ class Lines(ScrollView, can_focus=True):
         Binding("pagedown", "page(1)", show=False),
         Binding("home,g", "top", show=False),
         Binding("end,G", "bottom", show=False),
+        Binding("slash", "search", show=False),
+        Binding("n", "next_match(1)", show=False),
+        Binding("N", "next_match(-1)", show=False),
+        Binding("y", "copy_line", show=False),
     ]
 
-    def __init__(self, bound: int = KEPT, *, wraps: bool = False) -> None:
+    HAS_SEARCH: ClassVar[bool] = True
+    """Whether `/` searches here; what has a filter of its own needs no search."""
+
+    class Wanted(Message):
+        """Something is to be searched for."""
+
+        def __init__(self, lines: Lines) -> None:
+            super().__init__()
+            self.lines = lines
+
+    def __init__(self, bound: int = KEPT, *, wraps: bool = False, copies: bool = False) -> None:
         super().__init__()
+        self.copies = copies
+        self.sought = ""
         self.wraps = wraps
         self._wrapped_at = 0
         self.rows: deque[Any] = deque(maxlen=bound)
@@ -96,6 +123,19 @@ class Lines(ScrollView, can_focus=True):
                 yield segment.text, segment.style or whole
         else:
             yield str(row), self.ink.text
+
+    def hanging(self, row: Any) -> int | None:
+        """Columns by which what goes on in the next line is indented; None for as many as the row begins with."""
+        return None
+
+    def replace_last(self, row: Any) -> None:
+        """Show another row in place of the last one."""
+        while self.rows:
+            if self.row_that_begins(len(self.rows) - 1) is not None:
+                self.rows.pop()
+                break
+            self.rows.pop()
+        self.extend([row])
 
     def extend(self, rows: Iterable[Any]) -> None:
         """Add rows at the end."""
@@ -120,6 +160,11 @@ class Lines(ScrollView, can_focus=True):
         return _whole(self.rows[self.cursor])
 
     @property
+    def last_row(self) -> Any:
+        """The newest row; None where there is none."""
+        return _whole(self.rows[-1]) if self.rows else None
+
+    @property
     def whole_rows(self) -> Iterator[Any]:
         """The rows as they were given, each once."""
         return (_whole(row) for row in self.rows if not isinstance(row, Part) or row.start == 0)
@@ -140,12 +185,20 @@ class Lines(ScrollView, can_focus=True):
             if cell_len(text) <= width:
                 yield row
             else:
-                yield from (Part(row, *piece) for piece in breaks(text, width))
+                hanging = self.hanging(row)
+                yield from (Part(row, *piece, hanging is not None) for piece in breaks(text, width, hanging))
 
     def wrap(self, wraps: bool) -> None:
         """Let long rows go on in the next line, or not."""
         self.wraps = wraps
         self.replace(list(self.whole_rows))
+
+    def recolour(self, recolour: Callable[[Text], None]) -> None:
+        """Follow a change of the theme; rows that are no text are drawn in the one in force anyway."""
+        for row in self.whole_rows:
+            if isinstance(row, Text):
+                recolour(row)
+        self.refresh()
 
     def _moved(self, lost: int) -> None:
         self.virtual_size = Size(self._widest, len(self.rows))
@@ -172,13 +225,54 @@ class Lines(ScrollView, can_focus=True):
         row = self.rows[index]
         strip = Strip([Segment(text, style + piece) for text, piece in self.draw(_whole(row))])
         if isinstance(row, Part):
-            strip = Strip.join([strip.crop(0, row.indent), strip.crop(row.start, row.end)])
+            head = Strip.blank(row.indent, style) if row.is_blank else strip.crop(0, row.indent)
+            strip = Strip.join([head, strip.crop(row.start, row.end)])
         return strip.crop_extend(left, left + width, style)
 
     def on_resize(self, event: events.Resize) -> None:
         if self.wraps and self._wrapped_at != self.scrollable_content_region.width:
             self.wrap(True)
         self._moved(lost=0)
+
+    # searching
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        if action == "copy_line":
+            return self.copies
+        if action == "next_match":
+            return bool(self.sought)
+        return self.HAS_SEARCH or action != "search"
+
+    def action_copy_line(self) -> None:
+        if self.chosen is not None:
+            text = "".join(piece for piece, _ in self.draw(self.chosen)).strip()
+            self.app.copy(text, "the line")  # type: ignore[attr-defined]
+
+    def action_search(self) -> None:
+        self.post_message(self.Wanted(self))
+
+    def action_next_match(self, step: int) -> None:
+        self.search(self.sought, step)
+
+    def search(self, text: str, step: int) -> bool:
+        """Go to the next line with a text, or the one before; returns whether there is one.
+
+        Small letters stand for capital ones too.
+        """
+        self.sought = text
+        count = len(self.rows)
+        at = self.cursor if self.cursor is not None else (count if step < 0 else self.scroll_offset.y - 1)
+        for i in range(at + step, count if step > 0 else -1, step) if text else ():
+            row = self.row_that_begins(i)
+            if row is None:
+                continue
+            words = "".join(piece for piece, _ in self.draw(row))
+            if text in (words.lower() if text.islower() else words):
+                self.hold()
+                self.cursor = i
+                self.show_row(i)
+                return True
+        return False
 
     # moving
 

@@ -10,7 +10,7 @@ import asyncio
 import os
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -18,6 +18,7 @@ from graphflow.errors import GraphflowError
 from graphflow.introspect import concurrency
 from graphflow.introspect.concurrency import ConcurrencyReport
 from graphflow.introspect.numbers import Numbers
+from graphflow.introspect.picture import misfit
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.reduction import deadlocked
@@ -30,6 +31,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.tui.logs import plain_text
 from graphflow.wire import process
+from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import NUMBERS, WAITS, ProcessToken, answer_key
 
 T = TypeVar("T")
@@ -42,6 +44,8 @@ WANTED_FOR = 2.5
 """Seconds after which nobody asks any more for what nobody has looked at."""
 REPLIES_BOUND = 1000
 PROCESSES_BOUND = 10_000
+ENDS_BOUND = 200
+"""Endpoints of a topic up to which each publisher is held against each subscription."""
 ROSOUT_KEPT = 2000
 """Log messages remembered for where they were written; they are decoded only when somebody asks."""
 SAME_MOMENT = 1e-2
@@ -63,11 +67,17 @@ class Live:
         """Why there is no graph to see."""
         self.numbers = Numbers()
         self.concurrency: ConcurrencyReport | None = None
+        self.asked_at = 0.0
+        """When the processes were asked for it, by the monotonic clock."""
         self.deadlocks: list[Deadlock] = []
         self.processes: dict[str, ProcessToken] = {}
         """The graphflow processes of the domain, by session."""
         self.changes = 0
         """How often a node or endpoint has come or gone."""
+        self._looked_at = -1
+        """The number of changes at which misfits were looked for."""
+        self._ends: dict[str, list[Entity]] = {}
+        self._misfits: dict[str, str] = {}
         self._nothing = GraphCache()
         self._node: Node | None = None
         self._rosout: TopicSubscription[Log] | None = None
@@ -125,6 +135,28 @@ class Live:
         return {activities[name].node for deadlock in self.deadlocks for name in deadlock.ring}
 
     @property
+    def misfits(self) -> dict[str, str]:
+        """Mismatches of publishers and subscriptions, by topic; looked for when the graph has changed."""
+        if self._looked_at != self.changes:
+            self._looked_at = self.changes
+            self._ends = {}
+            for entity in self.others():
+                if entity.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
+                    self._ends.setdefault(entity.name, []).append(entity)
+            found = {topic: misfit(there) for topic, there in self._ends.items() if len(there) < ENDS_BOUND}
+            self._misfits = {topic: why for topic, why in found.items() if why}
+        return self._misfits
+
+    def misfits_of(self, node: str) -> int:
+        """Topics on which something of a node does not fit."""
+        return sum(any(e.node_name == node for e in self._ends[topic]) for topic in self.misfits)
+
+    def others(self) -> Iterator[Entity]:
+        """Nodes and endpoints but for those of this console, which would count as a publisher of what it drives."""
+        own = "" if self.context is None else self.context.session.zid
+        return (entity for entity in self.cache if entity.zid != own)
+
+    @property
     def node(self) -> Node | None:
         """The console's own hidden node, once it is in the graph."""
         return self._node
@@ -141,7 +173,9 @@ class Live:
                 replies = await self._ask(NUMBERS)
                 self.numbers.take(replies, time.monotonic())
             if "concurrency" in wanted:
-                self.concurrency = found = concurrency.read(await self._ask(WAITS))
+                answers = await self._ask(WAITS)
+                self.concurrency, self.asked_at = concurrency.read(answers), now
+                found = self.concurrency
                 self.deadlocks = explained(found.graph, deadlocked(found.graph)) if found.reports else []
             await asyncio.sleep(max(0.1, LOOK_EVERY - (time.monotonic() - now)) if wanted else 0.1)
 

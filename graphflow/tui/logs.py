@@ -15,6 +15,10 @@ from typing import NamedTuple
 
 RECORDS = 40_000
 """Records kept, of all nodes together."""
+SERIOUS = 5_000
+"""Warnings and errors kept, however many other records come after them."""
+WARNING, ERROR = 2, 3
+"""Indices of LEVELS."""
 BACKLOG = 4 << 20
 """Bytes of each file that a console reads when it comes."""
 AT_ONCE = 1 << 20
@@ -23,6 +27,8 @@ LINE_BOUND = 4_000
 """Characters kept of one line."""
 LOGGERS = 1000
 """Loggers of one file whose nodes are remembered."""
+RACE = "RACE: "
+"""How the report of a lost update begins: see `deadlock.races`."""
 LEVELS = ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 _LINE = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[(\d{1,12}\.\d{1,9})\] \[([^\]]{1,300})\]: ?(.*)", re.DOTALL)
 _ESCAPES = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?|[\x00-\x08\x0b-\x1f\x7f-\x9f]")
@@ -41,6 +47,12 @@ class Record(NamedTuple):
     """Whether the line goes on with the record before it, as a traceback's lines do."""
     file: str
     offset: int
+    times: int = 1
+    """How often the line came in a row."""
+
+    def repeats(self, other: Record) -> bool:
+        """Whether this is the same line once more."""
+        return not self.is_more and (self.text, self.node, self.level) == (other.text, other.node, other.level)
 
 
 def plain_text(text: str) -> str:
@@ -126,10 +138,19 @@ class Logs:
         self.records: deque[Record] = deque(maxlen=bound)
         self.total = 0
         """Records ever added; the newest has this number less one."""
+        self.serious: deque[Record] = deque(maxlen=SERIOUS)
+        """The warnings and errors among them, and those that had to go since."""
         self.counts: Counter[str] = Counter()
         """Records by node."""
-        self.worst: dict[str, int] = {}
-        """The highest level by node."""
+        self.warnings: Counter[str] = Counter()
+        self.errors: Counter[str] = Counter()
+        """By node; a traceback's lines count as one."""
+        self.last_error: dict[str, Record] = {}
+        """By node, the newest last."""
+        self.races: list[list[Record]] = []
+        """The reports of lost updates, line by line; a race is reported once."""
+        self._report: dict[str, list[Record]] = {}
+        """By node, the one of these that is being read."""
         self._files: dict[Path, LogFile] = {}
 
     def follow(self, files: Iterable[tuple[str, tuple[str, ...]]]) -> None:
@@ -150,10 +171,32 @@ class Logs:
         """Take in records from elsewhere."""
         for record in fresh:
             self.counts[record.node] += 1
-            if record.level > self.worst.get(record.node, 0):
-                self.worst[record.node] = record.level
+            if record.level >= WARNING:
+                self._note(record)
         self.records.extend(fresh)
         self.total += len(fresh)
+
+    def _note(self, record: Record) -> None:
+        """Keep a warning or an error."""
+        self.serious.append(record)
+        if record.is_more:
+            self._report.get(record.node, []).append(record)
+            return
+        self._report.pop(record.node, None)
+        if record.level == WARNING:
+            self.warnings[record.node] += 1
+            if record.text.startswith(RACE):
+                self._report[record.node] = [record]
+                self.races.append(self._report[record.node])
+            return
+        self.errors[record.node] += 1
+        self.last_error.pop(record.node, None)
+        self.last_error[record.node] = record
+
+    @property
+    def lost(self) -> int:
+        """Records that are not kept any more."""
+        return self.total - len(self.records)
 
     def since(self, number: int) -> Iterator[Record]:
         """The records from a number on, as far as they are still there."""

@@ -12,9 +12,10 @@ os.environ["TEXTUAL_FPS"] = "20"  # Textual reads it when it is imported
 
 from graphflow.domain import go_to
 from graphflow.errors import SupervisorError
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 from graphflow.supervisor.rundir import GraphRun, running
 from graphflow.tui.app import Console
+from graphflow.tui.history import History, history_file
 from graphflow.tui.hub import Hub, Verbs
 from graphflow.tui.ink import DARK
 from graphflow.tui.layout import Layout
@@ -78,7 +79,7 @@ def _show(
     prefix: str | None,
     layout: dict[str, Any] | None,
 ) -> tuple[str, int | None]:
-    hub = Hub(domain, None, command, verbs)
+    hub = Hub(domain, None, command, verbs, History(history_file()))
     hello: dict[str, Any] = {}
     app: Console | None = None
     if run is not None:

@@ -13,7 +13,10 @@ from graphflow.tui.dialogs import AskLine, Item, Pick
 from graphflow.tui.layout import to_section
 from graphflow.tui.lines import Lines
 from graphflow.tui.panes import MAX_WINDOWS, Axis, Content, Direction
+from graphflow.tui.registry import view_class
 
+LEAST_HEIGHT = 8
+"""Rows that a pane is given at least when something is opened beside another."""
 STEP = {"left": 4, "right": 4, "up": 2, "down": 2}
 """Cells by which a key moves a border."""
 
@@ -44,14 +47,27 @@ class PaneDeeds:
     def open_beside(self, content: Content) -> None:
         """Show something beside the focused pane; where there is no room, in a window of its own."""
         app = self._app
+        visible = {frame.number: frame.view for frame in app.workspace.visible_frames}
+        for number, view in visible.items():
+            if view.shows(content):
+                app.window.focus(number)
+                app.changed()
+                return
         same = [p for p in app.window.panes() if str(p.content) == str(content) and content.view != "prompt"]
         if same:
             app.window.focus(same[0].number)
             app.changed()
+            if same[0].number in app.workspace.frames:
+                app.workspace.frames[same[0].number].view.asked_again(content)
             return
         room = app.workspace.room(app.window.focused)
-        axes: tuple[Axis, Axis] = ("columns", "rows") if room.width > 2.5 * room.height else ("rows", "columns")
-        if (room.width >= 60 or room.height >= 16) and any(self._split(axis, content) for axis in axes):
+        least = view_class(content.view).LEAST_WIDTH
+        ways: list[tuple[Axis, bool]] = [
+            ("columns", room.width >= 2 * least + 1 and room.width > 2.5 * room.height),
+            ("rows", room.width >= least and room.height >= 2 * LEAST_HEIGHT),
+            ("columns", room.width >= 2 * least + 1),
+        ]
+        if any(fits and self._split(axis, content) for axis, fits in ways):
             return
         self.open_window(content)
         app.say(f"opened in a window of its own; {shown(app.prefix)} l goes back")
@@ -135,7 +151,16 @@ class PaneDeeds:
             return
         lines.focus()
         lines.action_page(-1)
-        self._app.say("scrolled back: ↑↓ pgup pgdn move, y copies a line, end follows again")
+        self._app.say("scrolled back: ↑↓ pgup pgdn move, / searches, n N go on, y copies a line, end follows again")
+
+    def search_in(self, lines: Lines) -> None:
+        """Ask what to search for in some lines."""
+
+        def typed(text: str | None) -> None:
+            if text and not (lines.search(text, -1) or lines.search(text, 1)):
+                self._app.say(f"no line has {text!r}")
+
+        self._app.push_screen(AskLine("Search for; n and N go on from there", lines.sought), typed)
 
     def do_paste(self) -> None:
         focused = self._app.focused

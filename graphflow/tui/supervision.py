@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import time
 from collections import deque
 from collections.abc import Callable
@@ -15,6 +14,7 @@ from graphflow import __version__
 from graphflow.graph.plan import Plan
 from graphflow.supervisor.control import ControlStream
 from graphflow.supervisor.rundir import GraphRun
+from graphflow.system import terminal_name
 
 ASK_EVERY = 1.0
 """Seconds between two looks at the list of nodes."""
@@ -39,7 +39,7 @@ class Supervision:
 
     def __init__(self, run: GraphRun, heard: Callable[[dict[str, Any]], None]) -> None:
         self.run = run
-        self.name = _own_name()
+        self.name = terminal_name()
         """What other consoles call this one."""
         self.nodes: dict[str, dict[str, Any]] = {}
         """The rows of `ps` by node."""
@@ -146,11 +146,3 @@ class Supervision:
             self.send(do="ps")
         self.events.append(event)
         self._heard(event)
-
-
-def _own_name() -> str:
-    """The terminal's name, as `who` prints it."""
-    try:
-        return os.ttyname(0).removeprefix("/dev/")
-    except (OSError, AttributeError):
-        return f"process {os.getpid()}"

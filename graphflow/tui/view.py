@@ -6,6 +6,7 @@ takes time goes through `work`, and its result comes back on the loop.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Awaitable, Callable
 from typing import Any, ClassVar
 
@@ -16,6 +17,9 @@ from graphflow.tui.actions import Action, carry_out
 from graphflow.tui.hub import Hub
 from graphflow.tui.ink import Ink
 from graphflow.tui.panes import Content
+
+SOON = 0.1
+"""Seconds after an event in which what follows it may come, too, to be drawn with it."""
 
 
 class View(Widget):
@@ -31,8 +35,12 @@ class View(Widget):
     """What the view shows, in a line for the list of views."""
     ACTIONS: ClassVar[tuple[Action, ...]] = ()
     """What its keys do while it is focused: `do_<name>` for each."""
+    LEAST_WIDTH: ClassVar[int] = 30
+    """Columns without which it says little: where a split would leave less, it opens otherwise."""
     EVERY: ClassVar[float] = 0.5
     """Seconds between two looks at most."""
+    SHOWS_STATES: ClassVar[bool] = False
+    """Whether it shows the states of nodes: then it looks soon after the supervisor has told of one."""
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__()
@@ -60,6 +68,9 @@ class View(Widget):
     def look(self, now: float) -> None:
         """Draw what has changed. Called while the view is on screen."""
 
+    def restyle(self) -> None:
+        """Draw everything again: the theme has changed."""
+
     @property
     def heart(self) -> Widget:
         """What has the focus when the pane has: the first widget that can, unless told otherwise."""
@@ -69,11 +80,23 @@ class View(Widget):
         """Take the focus."""
         self.screen.set_focus(self.heart)
 
+    def asked_again(self, content: Content) -> None:
+        """Take in that what it shows was asked for once more, perhaps with other options."""
+
     def closed(self) -> None:
         """The view is going away: let go of what it holds."""
 
+    @property
+    def active(self) -> View:
+        """The view whose keys count while the pane has the focus: one inside of it, perhaps."""
+        return self
+
+    def shows(self, content: Content) -> bool:
+        """Show something that was asked for inside of this view; returns whether it is a place for that."""
+        return False
+
     def interrupt(self) -> bool:
-        """End what runs in the view, as Ctrl-C does; returns whether anything did."""
+        """Take Ctrl-C, as a shell does; returns whether it was for the view."""
         return False
 
     def offers(self, action: Action) -> bool:
@@ -104,6 +127,10 @@ class View(Widget):
     def say(self, text: str, *, bad: bool = False) -> None:
         """Tell the user something in the bottom line."""
         self.console.say(text, bad=bad)
+
+    def look_soon(self) -> None:
+        """Look again before it is due, but not for each of many events."""
+        self.looked = min(self.looked, time.monotonic() - self.EVERY + SOON)
 
     def did(self, shell: str) -> None:
         """Show the shell command that does what was just done."""

@@ -32,9 +32,9 @@ class Welcome(Bar):
         for key, what in (
             ("tab", "next pane"),
             (f"{prefix} d", "leave, all runs on"),
-            ("^c", "stop"),
+            ("^c", "stop..."),
             ("^p", "menu"),
-            ("esc", "hide this"),
+            ("esc", "hide"),
         ):
             found += [(key, ink.accent), (f" {what}  ", ink.text)]
         return found

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _NO_MARGIN = Spacing()
+NOTE_LEAST = 8
+"""Columns of a note beside a title below which it says nothing."""
 TRIES, TRY_AGAIN_AFTER = 20, 0.02
 """How often, and after how many seconds, a pane that is not there yet is given the focus again."""
 
@@ -42,6 +44,7 @@ class Title(Widget):
         super().__init__()
         self._frame = frame
         self._shown: tuple[object, ...] = ()
+        """What was drawn last."""
 
     def render_line(self, y: int) -> Strip:
         frame, width = self._frame, self.size.width
@@ -49,11 +52,13 @@ class Title(Widget):
         focused = frame.is_focused
         base = self.rich_style + (ink.cursor if focused else Style())
         name, note = frame.view.title, frame.view.note
+        self._shown = (name, note, focused)
         mark = "▌" if focused else " "
-        head = f"{mark}{frame.view.title}"
-        note = note[: max(0, width - len(head) - 3)]
-        room = max(1, width - len(head) - len(note) - 1)
-        fill = " " * room if focused or room < 3 else f" {'─' * (room - 2)} "
+        name = _cut(name, width - 1)
+        head = f"{mark}{name}"
+        note = _cut(note, width - len(head) - 3, NOTE_LEAST)
+        gap = max(1, width - len(head) - len(note) - 1)
+        fill = " " * gap if focused or gap < 3 else f" {'─' * (gap - 2)} "
         pieces = [
             Segment(mark, base + ink.accent),
             Segment(name, base + (ink.strong if focused else ink.dim)),
@@ -65,13 +70,18 @@ class Title(Widget):
     def refresh_if_changed(self) -> None:
         """Draw again when what is said differs."""
         frame = self._frame
-        shown = (frame.view.title, frame.view.note, frame.is_focused)
-        if shown != self._shown:
-            self._shown = shown
+        if (frame.view.title, frame.view.note, frame.is_focused) != self._shown:
             self.refresh()
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         self.post_message(self.Grabbed(self._frame, int(event.screen_x), int(event.screen_y)))
+
+
+def _cut(text: str, width: int, least: int = 1) -> str:
+    """A text that fits, with a sign where it does not whole; empty where fewer columns than `least` are left of it."""
+    if len(text) <= width:
+        return text
+    return f"{text[: width - 1]}…" if width >= least else ""
 
 
 class Frame(Widget):

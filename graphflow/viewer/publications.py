@@ -12,6 +12,7 @@ from graphflow.names import expand
 from graphflow.qos import DEFAULT
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
+from graphflow.runtime.serialized import RawPublisher
 from graphflow.viewer.client import Client
 from graphflow.viewer.protocol import Announced, Message
 
@@ -26,7 +27,7 @@ class Publications:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._publishers: dict[tuple[Client, int], tuple[raw.RawPublisher, str]] = {}
+        self._publishers: dict[tuple[Client, int], tuple[RawPublisher, str]] = {}
 
     def __len__(self) -> int:
         return len(self._publishers)

@@ -15,6 +15,7 @@ from graphflow.names import is_hidden
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
+from graphflow.runtime.serialized import RawSubscription
 from graphflow.viewer.client import Client
 from graphflow.viewer.protocol import Subscription, message_head, told
 from graphflow.wire.attachment import MessageInfo
@@ -56,7 +57,7 @@ class Topics:
         self._by_id: dict[int, Key] = {}
         self._coming: dict[Key, asyncio.Task[None]] = {}
         self._left_out: set[Key] = set()
-        self._looks: dict[tuple[Client, int], tuple[Key, raw.RawSubscription]] = {}
+        self._looks: dict[tuple[Client, int], tuple[Key, RawSubscription]] = {}
         self._is_full = False
 
     def look(self) -> None:

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 from graphflow.errors import DecodeError
 
-_LAYOUT = struct.Struct("<qqB16s")
-SIZE = _LAYOUT.size
-_pack, _unpack = _LAYOUT.pack, _LAYOUT.unpack
+LAYOUT = struct.Struct("<qqB16s")
+SIZE = LAYOUT.size
+_pack, _unpack = LAYOUT.pack, LAYOUT.unpack
 _new = tuple.__new__
 """Makes a named tuple without its Python constructor: one is made for every message."""
 

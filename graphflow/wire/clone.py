@@ -24,7 +24,6 @@ class Cloner(Code):
 
     def __init__(self, types: Types, parts: Parts) -> None:
         super().__init__(types, "<", parts)
-        self.names["new"] = object.__new__
         self.targets: list[str] = []
 
     def flush(self) -> None:
@@ -38,10 +37,10 @@ class Cloner(Code):
         self.line(f"({', '.join(targets)},) = {unpack}({pack}({', '.join(item.expression for item in items)}))")
 
     def message(self, message: Message, source: str, copy: str) -> None:
-        cls = self.constant("C", self.types.message_class(message.name))
-        self.line(f"{copy} = new({cls})")
-        for field in message.fields:
-            self.field(field.type, f"{source}.{field.name}", f"{copy}.{field.name}", field.name)
+        values = [self.fresh("v") for _ in message.fields]
+        for field, value in zip(message.fields, values, strict=True):
+            self.field(field.type, f"{source}.{field.name}", value, field.name)
+        self.make(self.types.message_class(message.name), values, copy)
 
     def field(self, type_: FieldType, source: str, target: str, name: str) -> None:
         if type_.array and type_.base in FORMATS:
@@ -63,10 +62,9 @@ class Cloner(Code):
             function = "text" if type_.base == "string" else "wide_text"
             self.line(f"{target} = {function}({source}, {type_.string_bound})")
         else:
-            local, copy = self.fresh("m"), self.fresh("o")
+            local = self.fresh("m")
             self.line(f"{local} = {source}")
-            self.message(self.types.schema(type_.base), local, copy)
-            self.line(f"{target} = {copy}")
+            self.message(self.types.schema(type_.base), local, target)
 
     def numeric_array(self, type_: FieldType, owner: str, name: str, target: str) -> None:
         from graphflow.wire import lending
@@ -113,6 +111,7 @@ def compile_clone_part(message: Message, types: Types, parts: Parts) -> Clone:
     code = Cloner(types, parts)
     code.message(message, "m", "o")
     code.flush()
+    code.make_all()
     code.line("return o")
     clone: Clone = code.compile("clone", "def clone(m):", f"{message.name} cloned")
     return clone

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
 from graphflow.wire.schema import FieldType, Message
+from graphflow.wire.unchecked import unchecked_class
 
 FORMATS = {
     "bool": "?",
@@ -116,6 +117,8 @@ class Code:
         self.names: dict[str, Any] = {}
         self.depth = 1
         self.run: list[Item] = []
+        self.making: list[str] = []
+        """Lines that make messages of values, once all values are there."""
         self.position: int | None = HEADER
         """The code's position in the payload, while that is the same for all messages; then None."""
         self._count = 0
@@ -134,6 +137,16 @@ class Code:
         if name not in self.parts:
             self.parts[name] = compile_part(self.types.schema(name), self.types, self.parts)
         return self.constant("part", self.parts[name])
+
+    def make(self, cls: type, values: list[str], target: str) -> None:
+        """Have a message made of the values of its fields."""
+        made = f"{self.constant('U', unchecked_class(cls))}({', '.join(values)})"
+        self.making += [f"{target} = {made}", f"{target}.__class__ = {self.constant('C', cls)}"]
+
+    def make_all(self) -> None:
+        """Write what makes the messages, inner ones first."""
+        for text in self.making:
+            self.line(text)
 
     def line(self, text: str) -> None:
         self.lines.append("    " * self.depth + text)

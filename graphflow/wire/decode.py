@@ -43,13 +43,20 @@ class Decoder(Code):
             self.line(f"p = {self.position}")
             self.position = None
 
-    def message(self, message: Message, local: str, target: str = "") -> None:
-        cls = self.constant("C", self.types.message_class(message.name))
-        self.line(f"{local} = {f'{target} = ' if target else ''}new({cls})")
+    def message(self, message: Message, target: str) -> None:
+        cls = self.types.message_class(message.name)
+        if self.types.style == "rosidl":
+            local = self.fresh("o")
+            self.line(f"{local} = {target} = new({self.constant('C', cls)})")
+            values = [f"{local}._{field.name}" for field in message.fields]
+        else:
+            values = [self.fresh("v") for _ in message.fields]
         if not message.fields:
             self.number("x", "")
-        for field in message.fields:
-            self.field(field, f"{local}.{self.types.prefix}{field.name}")
+        for field, value in zip(message.fields, values, strict=True):
+            self.field(field, value)
+        if self.types.style != "rosidl":
+            self.make(cls, values, target)
 
     def field(self, field: Field, target: str) -> None:
         type_ = field.type
@@ -66,8 +73,7 @@ class Decoder(Code):
         elif type_.base in ("string", "wstring"):
             self.string(type_, target)
         else:
-            local = self.fresh("o")
-            self.message(self.types.schema(type_.base), local, target)
+            self.message(self.types.schema(type_.base), target)
 
     def string(self, type_: FieldType, target: str) -> None:
         n = self.fresh("n")
@@ -171,6 +177,7 @@ def compile_decode_part(order: Order, message: Message, types: Types, parts: Par
     code.position = None
     code.message(message, "o")
     code.flush()
+    code.make_all()
     code.line("return o, p")
     return code.compile("decode", "def decode(buf, p, size, left):", message.name)
 
@@ -186,6 +193,7 @@ def compile_decode(message: Message, types: Types, order: Order, otherwise: Deco
     before = len(code.lines)
     code.message(message, "o")
     code.flush()
+    code.make_all()
     if code.position is None:
         code.lines.insert(before, f"        size, left = len(buf), [{types.values}]")
     code.line("return o")

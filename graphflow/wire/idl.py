@@ -32,8 +32,17 @@ _FIELD_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*\Z")
 _CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z")
 _TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _PACKAGE_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*\Z")
+_NEAR_SEPARATOR = re.compile(r"\s*[-_=\u2013\u2014]+\s*(#.*)?\Z")
+"""A line that is probably meant to part two sections."""
 _STRING = re.compile(r"""(?P<q>["'])(?P<body>(?:\\.|(?!(?P=q))[^\\])*)(?P=q)\Z""")
 _ALIASES = {"Header": "std_msgs/msg/Header"}
+_ELSEWHERE = {"double": "float64", "float": "float32", "int": "int32", "uint": "uint32", "short": "int16"} | {
+    "long": "int64",
+    "boolean": "bool",
+    "str": "string",
+}
+"""Types of C++, Python and Java, and those that take their place."""
+_SEPARATOR = "---"
 
 
 def is_type_name(text: str) -> bool:
@@ -86,13 +95,16 @@ _Line = tuple[int, str]
 def _sections(full_name: str, text: str, expected: int) -> list[list[_Line]]:
     sections: list[list[_Line]] = [[]]
     for number, line in enumerate(text.splitlines(), 1):
-        if line.strip() == "---":
+        if line.strip() == _SEPARATOR:
             sections.append([])
         else:
             bare = without_comment(line).strip()
             if bare:
                 sections[-1].append((number, bare))
     if len(sections) != expected:
+        for number, line in enumerate(text.splitlines(), 1):
+            if _NEAR_SEPARATOR.match(line) and line.strip() != _SEPARATOR:
+                raise InterfaceError(f"{full_name} line {number}: {line.strip()!r}: write {_SEPARATOR}")
         raise InterfaceError(
             f"{full_name}: expected {expected - 1} line(s) of '---' "
             f"between its {expected} section(s), found {len(sections) - 1}"
@@ -194,7 +206,8 @@ def _type_name(text: str, package: str) -> str:
         if text in _ALIASES:
             return _ALIASES[text]
         if not is_type_name(text):
-            raise InterfaceError(f"{text!r} is not a type{did_you_mean(text, PRIMITIVES)}")
+            near = f"; did you mean {_ELSEWHERE[text]!r}?" if text in _ELSEWHERE else did_you_mean(text, PRIMITIVES)
+            raise InterfaceError(f"{text!r} is not a type{near}")
         return f"{package}/msg/{text}"
     if len(parts) == 2 or (len(parts) == 3 and parts[1] == "msg"):
         check_interface_name(parts[0], parts[-1])
@@ -204,9 +217,12 @@ def _type_name(text: str, package: str) -> str:
 
 def _constant(type_: FieldType, name: str, text: str) -> Constant:
     if type_.array or not type_.is_primitive or type_.base == "wstring":
-        raise InterfaceError(f"constant {name!r}: only numbers, bool and string can be constants, not {type_}")
+        default = f"; a default has no =: {type_} {name} {text}" if _FIELD_NAME.match(name) else ""
+        raise InterfaceError(f"constant {name!r}: only numbers, bool and string can be constants, not {type_}{default}")
     if not _CONSTANT_NAME.match(name):
-        raise InterfaceError(f"constant name {name!r}: capitals, digits and single _ only")
+        ways = f"; a constant: {type_} {name.upper()}={text}; a default of a field: {type_} {name} {text}"
+        is_field = text and _FIELD_NAME.match(name)
+        raise InterfaceError(f"constant name {name!r}: capitals, digits and single _ only{ways if is_field else ''}")
     if type_.base == "string" and not _STRING.match(text):
         return Constant(name, "string", text.strip())
     value = _literal(type_, text)

@@ -16,12 +16,10 @@ import numpy as np
 from numpy import ndarray
 
 from graphflow.wire.arrays import DTYPES, as_array
+from graphflow.wire.unchecked import LENT
 
 SMALL = 4096
 """Bytes up to which an array is copied in any case: it costs less than finding out."""
-
-LENT = "_lent"
-"""The attribute of a message that has its lent arrays, by field."""
 
 
 def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
@@ -54,10 +52,9 @@ def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
 
 def _set_aside(message: Any, name: str, array: ndarray[Any, Any]) -> ndarray[Any, Any]:
     delattr(message, name)
-    try:
-        object.__getattribute__(message, LENT)[name] = array
-    except AttributeError:
-        setattr(message, LENT, {name: array})
+    lent = getattr(message, LENT) or {}
+    lent[name] = array
+    setattr(message, LENT, lent)
     return array.reshape(-1)
 
 

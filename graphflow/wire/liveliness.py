@@ -36,6 +36,10 @@ class Kind(StrEnum):
     CLIENT = "SC"
 
 
+NODES = f"{ADMIN_SPACE}/*/*/*/*/{Kind.NODE}/**"
+"""The key that the tokens of all nodes match, in all domains."""
+
+
 def _mangle(name: str) -> str:
     return name.replace("/", "%")
 

@@ -41,6 +41,14 @@ def watch_key(domain: int) -> str:
     return f"@graphflow/{domain}/net/**"
 
 
+def refusal(name: str, profiles: Iterable[NetToken]) -> str:
+    """Which net profile keeps a topic or service on its machine, and what to do about it; empty if none does."""
+    blocking = next((profile for profile in profiles if not profile.passes(name)), None)
+    if blocking is None:
+        return ""
+    return f"{name} does not pass {blocking}; if its node is on another machine, add it to `allow` on both"
+
+
 def parse(text: str) -> NetToken | None:
     """Read a token; None if the text is not one."""
     parts = text.split("/") if len(text) <= TOKEN_BOUND else []

@@ -34,8 +34,7 @@ def wire_profile() -> str:
     """
     profile = os.environ.get(VARIABLE, "").strip() or PROFILES[0]
     if profile not in PROFILES:
-        hint = did_you_mean(profile, PROFILES)
-        raise GraphflowError(f"{VARIABLE}={profile!r} is not a wire profile{hint}; there are {', '.join(PROFILES)}")
+        raise GraphflowError(f"{VARIABLE}={profile!r} is not a wire profile{did_you_mean(profile, PROFILES)}")
     return profile
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -64,8 +65,16 @@ def test_a_file_that_is_too_large(tmp_path: Path) -> None:
     """Is refused, not cut."""
     file = tmp_path / "qos.yaml"
     file.write_text("/a: {depth: 1}\n" + "#" * (1 << 20) + "\n/b: {depth: 1}\n")
-    with pytest.raises(UsageFault, match="larger than"):
+    with pytest.raises(UsageFault, match="it has more than 1,048,576 bytes"):
         read(file)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
+def test_a_fifo(tmp_path: Path) -> None:
+    """Is refused: nobody may ever write to it."""
+    os.mkfifo(tmp_path / "qos.yaml")
+    with pytest.raises(UsageFault, match="it is not a regular file"):
+        read(tmp_path / "qos.yaml")
 
 
 def test_no_file(tmp_path: Path) -> None:

@@ -77,6 +77,32 @@ def test_formats_of_files(tmp_path: Path, form: str) -> None:
     assert read(folder) == EXPECTED
 
 
+@pytest.mark.parametrize(("count", "times"), [(1, 1), (2, 4)])
+def test_a_single_file_is_decompressed_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int, times: int
+) -> None:
+    """For contents and messages; of several, each is decompressed when it is read. Nothing of it stays."""
+    folder = write(tmp_path / "bag")
+    file = folder / "bag_0.mcap"
+    for number in range(count):
+        (folder / f"bag_{number}.mcap.zstd").write_bytes(zstandard.compress(file.read_bytes()))
+    file.unlink()
+    (folder / "metadata.yaml").unlink()
+    done: list[Path] = []
+    decompress = packing.decompress
+
+    def counted(source: Path, target: Path) -> None:
+        done.append(target)
+        decompress(source, target)
+
+    monkeypatch.setattr(packing, "decompress", counted)
+    bag = Bag(folder)
+    assert sum(1 for _ in bag.records()) == count * len(some_records())
+    assert len(done) == times
+    del bag
+    assert not any(target.parent.exists() for target in done)
+
+
 @pytest.mark.parametrize("form", PACK)
 def test_formats_of_messages(tmp_path: Path, form: str) -> None:
     """Zstandard and LZ4."""

@@ -245,6 +245,19 @@ async def test_a_new_name_that_is_a_command(graph: Graph, tmp_path: Path) -> Non
         Player(show.node, show.bag, PlayOptions(remaps={"/chatter": GOAL.name}))
 
 
+async def test_a_new_name_of_another_type(graph: Graph, tmp_path: Path) -> None:
+    """It is refused, whether the bag or the graph has that topic; one of the same type is not."""
+    show = Show(graph, tmp_path / "bag")
+    await graph.start(show.node)
+    show.node.create_publisher(Int32, "/number", 1)
+    await graph.settle()
+    for taken in ("/count", "/number"):
+        text = f"/chatter is of type std_msgs/msg/String, and {taken} of type std_msgs/msg/Int32; give it another name"
+        with pytest.raises(BagError, match=text):
+            Player(show.node, show.bag, PlayOptions(remaps={"/chatter": taken}))
+    Player(show.node, show.bag, PlayOptions(remaps={"/chatter": "/map", "/count": "/number"}))
+
+
 async def test_nothing_of_it(graph: Graph, tmp_path: Path) -> None:
     """Says what there is."""
     show = Show(graph, tmp_path / "bag")

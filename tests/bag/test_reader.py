@@ -58,7 +58,11 @@ def test_some_of_it(foreign: Path) -> None:
     ("make", "message"),
     [
         (lambda folder: folder / "nothing", "there is no such file or folder"),
-        (lambda folder: folder, "it has no .mcap or .db3 file"),
+        (lambda folder: folder, "it has no .mcap, .db3 or .bag file"),
+        (
+            lambda folder: text(folder / "metadata.yaml", "a: 1"),
+            "metadata.yaml is a part of the bag; give its folder: ",
+        ),
         (lambda folder: text(folder / "a.mcap", "hello"), "a.mcap: it is no MCAP file"),
         (lambda folder: text(folder / "a.db3", "hello"), "a.db3: it is no SQLite file"),
         (lambda folder: text(folder / "a.db3", "SQLite format 3\0" + "x" * 200), "a.db3: "),
@@ -73,7 +77,7 @@ def test_some_of_it(foreign: Path) -> None:
                     folder / "metadata.yaml", "rosbag2_bagfile_information: {relative_file_paths: [../../x.mcap]}"
                 ).parent
             ),
-            "it has no .mcap or .db3 file; its metadata.yaml names x.mcap",
+            "it has no .mcap, .db3 or .bag file; its metadata.yaml names x.mcap",
         ),
         (
             lambda folder: (
@@ -133,7 +137,7 @@ def test_files_of_a_bag_that_are_none(tmp_path: Path) -> None:
     folder = tmp_path / "bag"
     folder.mkdir()
     os.mkfifo(folder / "bag_0.mcap")
-    with pytest.raises(BagError, match=r"it has no \.mcap or \.db3 file"):
+    with pytest.raises(BagError, match=r"it has no \.mcap, \.db3 or \.bag file"):
         Bag(folder)
     os.mkfifo(folder / "metadata.yaml")
     with pytest.raises(BagError, match=r"metadata\.yaml: it is not a regular file"):

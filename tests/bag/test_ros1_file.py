@@ -223,3 +223,35 @@ def test_bombs(tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(ros1_file, "CHUNK_BOUND", 1000)
     with pytest.raises(BagError, match="a chunk has more than 1,000 bytes"):
         list(Bag(path).records())
+
+
+def test_a_folder_of_them(tmp_path: Path) -> None:
+    """Is one bag, whatever their names; files of ROS 2 in it come first."""
+    store = Store()
+    text = store("std_msgs/msg/String", "later")
+    writer = Writer(tmp_path / "a_1.bag")
+    with writer:
+        made = writer.add_connection("/chatter", "std_msgs/msg/String", typestore=store.types)
+        writer.write(made, START + 10 * 10**9, store.types.serialize_ros1(text, "std_msgs/msg/String"))
+    chatter(tmp_path / "b_2.bag", count=2)
+    bag = Bag(tmp_path)
+    assert (bag.storage, bag.contents.counts) == ("rosbag_v2", {"/chatter": 3})
+    assert [s.message.data for s in read(tmp_path)] == ["hello 0", "hello 1", "later"]
+    with BagWriter(tmp_path / "new") as new:
+        for record in bag.records():
+            new.add(record)
+    for file in (tmp_path / "new").glob("*.mcap"):
+        file.rename(tmp_path / file.name)
+    assert Bag(tmp_path).storage == "mcap"
+
+
+@pytest.mark.parametrize("name", ["cut.bag", "cut.bag.active"])
+@pytest.mark.parametrize("has_place", [True, False])
+def test_a_recording_that_did_not_end(tmp_path: Path, name: str, has_place: bool) -> None:
+    """Has no index; what writes one is told."""
+    data = chatter(tmp_path / "a.bag").read_bytes()
+    at = data.index(b"index_pos=") + len(b"index_pos=")
+    place = int.from_bytes(data[at : at + 8], "little")
+    (tmp_path / name).write_bytes((data if has_place else data[:at] + bytes(8) + data[at + 8 :])[: place + 3])
+    with pytest.raises(BagError, match=rf"{name}: it has no whole index, .* rosbag reindex {name}$"):
+        Bag(tmp_path / name)

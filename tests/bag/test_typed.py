@@ -28,6 +28,14 @@ def test_messages(tmp_path: Path) -> None:
     assert numbers == [Int32(data=n) for n in range(10, 20)]
 
 
+def test_topics_by_name(tmp_path: Path) -> None:
+    """One may stand alone, and without its slash; one that is not there is told at once, with the nearest."""
+    folder = write(tmp_path / "bag")
+    assert list(read(folder, "count")) == list(read(folder, ["/count"]))
+    with pytest.raises(BagError, match="no topic /cont; did you mean '/count'"):
+        read(folder, ["/cont"])
+
+
 def test_a_type_that_is_nowhere_installed(tmp_path: Path) -> None:
     """Is made of the definition in the bag."""
     [said] = read(write(tmp_path / "bag", [record(LAB, THING, 0.0)]))

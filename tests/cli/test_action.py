@@ -103,6 +103,7 @@ def test_echo(standing: Machine) -> None:
     assert len(found["goal_id"]["uuid"]) == 16
 
 
+@slow
 def test_a_goal_for_programs(standing: Machine) -> None:
     """What becomes of it, a line of JSON each."""
     text = standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: 3}", "-f", "--json")

@@ -69,13 +69,31 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
         ("play nothing", 1, "error: nothing: there is no such file or folder"),
         ("play bag --rate 0", 2, "--rate"),
         ("play bag -m /a:/b", 2, "'/a:/b' is no remap rule; write OLD:=NEW"),
+        ("play bag -s 2", 2, "-s is the bag's format, mcap or sqlite3, not '2'; the speed is -r"),
+        ("record -a /chatter", 2, "all topics, or only /chatter: leave out -a, or the names"),
         ("play bag --clock often", 2, "--clock takes a number of Hz"),
+        ("record -o /chatter", 2, "nothing to record was named; -o took /chatter as the bag's folder; write topics"),
         ("record", 2, "nothing to record was named; write topics, or -a for all: graphflow bag record -a"),
         ("record -e [", 2, "'[' is no regular expression"),
         ("record -a -o bag", 1, "bag is there already; choose another name with -o"),
         ("filter bag -o bag", 1, "bag is there already; choose another name with -o"),
         ("record a//b", 2, "a//b"),
         ("filter bag -m /a:/b -o new", 2, "'/a:/b' is no remap rule; write OLD:=NEW"),
+        (
+            "filter bag --start 2023-11-14T22:13:20+00:00",
+            2,
+            "'2023-11-14T22:13:20+00:00' is no number of seconds, from",
+        ),
+        ("filter bag --end soon", 2, "'soon' is no number of seconds, from the beginning of the bag or since 1970\n"),
+        ("play bag /map", 2, "topics are named by --topics: graphflow bag play bag --topics /map"),
+        ("filter /map /count bag", 2, "topics are named by --topics: graphflow bag filter bag --topics '/map /count'"),
+        ("echo /map bag", 2, "the bag stands first: graphflow bag echo bag /map"),
+        ("plot /count.data bag", 2, "the bag stands first: graphflow bag plot bag /count.data"),
+        (
+            "filter bag --exclude-topic-types std_msgs/String -e chatter -o new",
+            1,
+            "error: bag: no topic matches; there",
+        ),
         ("echo bag --csv -n 0", 2, "0 is not in the range"),
         ("echo bag /chater", 1, "error: bag: no topic /chater; did you mean '/chatter'?"),
         ("filter bag --topics /topp -o new", 1, "error: bag: no topic /topp; there is /chatter, /count, /map"),
@@ -89,3 +107,19 @@ def test_words_that_do_not_fit(machine: Machine, folder: Path, words: str, code:
     assert told in machine.look("bag", *words.split(), cwd=folder, code=code)
     assert [file.name for file in folder.iterdir() if (file / "metadata.yaml").exists()] == ["bag"]
     assert [file.name for file in folder.iterdir() if file.name not in ("state", "run")] == ["bag"]
+
+
+def test_convert_by_a_file_of_options(machine: Machine, folder: Path) -> None:
+    """As scripts for ROS 2 do it: `-o` is a file; where it is none, it is the new bag's folder."""
+    rows = "[{uri: some, storage_id: mcap, topics: [/count, /mapp]}, {uri: all, storage_id: sqlite3, alll: true}]"
+    (folder / "out.yaml").write_text(f"output_bags: {rows}\n")
+    text = machine.look("bag", "convert", "-i", "bag", "mcap", "-o", "out.yaml", cwd=folder)
+    assert "note: bag: no topic /mapp; did you mean '/map'?\nsome: 20 messages of 1 topic, " in text
+    assert "note: out.yaml: alll has no effect; did you mean 'all'?\nall: 41 messages of 3 topics, " in text
+    assert [file.suffix for file in (folder / "all").iterdir() if file.suffix != ".yaml"] == [".db3"]
+    machine.look("bag", "convert", "-i", "some", "-i", "all", "-o", "both", cwd=folder)
+    assert Bag(folder / "both").contents.message_count == 61
+    assert "other.yaml: No such file or directory; to make a bag of that name" in machine.look(
+        "bag", "convert", "bag", "-o", "other.yaml", cwd=folder, code=2
+    )
+    assert "name one bag, or several by -i" in machine.look("bag", "convert", "bag", "all", cwd=folder, code=2)

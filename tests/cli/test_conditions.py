@@ -26,3 +26,11 @@ def test_a_condition_that_fails() -> None:
     """Says why."""
     with pytest.raises(UsageFault, match=r"'m\.dat': AttributeError: .*dat"):
         compiled("m.dat")(Int32())
+
+
+def test_a_field_without_its_message() -> None:
+    """Is answered with both; another name with how a message is called."""
+    with pytest.raises(UsageFault, match=r"name 'data' is not defined; write m\.data$"):
+        compiled("data > 3")(Int32())
+    with pytest.raises(UsageFault, match=r"name 'msg' is not defined; the message is m, as in m\.data > 3$"):
+        compiled("msg.data > 3")(Int32())

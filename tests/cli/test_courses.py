@@ -189,10 +189,10 @@ def test_what_is_said_with_numbers(turtlesim: Machine, place: Path, line: str, l
 
 # The mistakes of the slides.
 MISTAKES = [
-    ("ros2 run demo_nodes_cpp talker ___ns:=/turtle1", r"'___ns' is not a remap key; did you mean '__ns'\?"),
+    ("ros2 run demo_nodes_cpp talker ___ns:=/turtle1", r"'___ns' is not a remap key; did you mean '__ns:=/turtle1'\?"),
     (
         "ros2 run demo_nodes_cpp talker --ros-args -r ___ns:=/t",
-        r"\?; use --ros-args -r __ns:=/turtle1",
+        r"'___ns' is not a remap key; did you mean '__ns:=/t'\?",
     ),
     (
         "ros2 run nodes.via_point_follower:ViaPointFollower --ros-args -r /turtle2/goal:=/turtle1/pose",

@@ -134,6 +134,8 @@ def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_
     ("words", "told"),
     [
         (["my-pkg"], "did you mean 'my_pkg'?"),
+        (["3pkg"], "begin with a letter, and take no keyword of Python's; did you mean 'my_3pkg'?"),
+        (["class"], "did you mean 'my_class'?"),
         (["../pkg"], "'../pkg' is no name of a package"),
         (["class"], "'class' is no name of a package"),
         (["test"], "a Python package cannot be called 'test'"),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from graphflow import errors
 from graphflow.cli import exits
 from graphflow.cli.exits import exit_code
 from graphflow.errors import UsageFault
+from tests.conftest import Machine
 
 
 def test_the_codes() -> None:
@@ -40,3 +43,28 @@ def test_the_codes() -> None:
 def test_what_a_command_ends_with(error: errors.GraphflowError, code: int) -> None:
     """Whose fault it was decides: the words or file given, nobody there, too late, or anything else."""
     assert exit_code(error) == code
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *(
+            "node info",
+            "param list",
+            "param dump",
+            "param describe",
+            "lifecycle get",
+            "lifecycle list",
+            "groups",
+            "logs",
+        ),
+        *("component list", "status", "stop", "start", "restart", "wait"),
+        *("param get {} rate", "param set {} rate 3", "param delete {} rate", "lifecycle set {} configure"),
+        *("groups limit {} a 2", "groups thread {} a", "groups move {} a b", "component unload tutorial {}"),
+    ],
+)
+def test_a_node_that_is_not_there(standing: Machine, words: str) -> None:
+    """The running graph is not as the command would have it, which is no wrong usage; what there is is named."""
+    line = words if "{}" in words else f"{words} {{}}"
+    told = standing.look(*line.format("/talkerr").split(), code=exits.FAILED)
+    assert re.search(r"did you mean '/?talker'\?|there is |no node here has a life cycle", told)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -45,8 +46,13 @@ def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest
     ("text", "told"),
     [
         ("labb.yaml", "labb.yaml: there is no such file; did you mean 'lab.yaml'"),
+        ("lba", "lba: there is no such file; did you mean 'lab.yaml'"),
+        ("ohter", "ohter: there is no such file; did you mean 'graphs/other.yaml'"),
         ("graphs/ohter.yaml", "graphs/ohter.yaml: there is no such file; did you mean 'graphs/other.yaml'"),
-        ("graphs", "graphs: is a folder"),
+        ("graphs", "graphs: is a folder; name one of its files: graphs/other.yaml"),
+        ("talker", "'talker' is a node and no graph: graphflow run talker"),
+        ("lamp.launch.py", "lamp.launch.py: there is no such file; to start it: graphflow launch lamp lamp.launch.py"),
+        ("pipe.yaml", "pipe.yaml: it is not a regular file"),
         ("turtlesm", "turtlesm: there is no such file; did you mean 'turtlesim'"),
     ],
 )
@@ -54,6 +60,10 @@ def test_neither(text: str, told: str, tmp_path: Path, monkeypatch: pytest.Monke
     """The nearest one is told: beside it, in `graphs/`, or bundled."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "graphs").mkdir()
+    (tmp_path / "src" / "lamp" / "launch").mkdir(parents=True)
+    (tmp_path / "src" / "lamp" / "package.xml").write_text("<package><name>lamp</name></package>")
+    (tmp_path / "src" / "lamp" / "launch" / "lamp.launch.py").touch()
+    os.mkfifo(tmp_path / "pipe.yaml")
     for name in ("lab.yaml", "graphs/other.yaml"):
         (tmp_path / name).write_text(GRAPH)
     with pytest.raises(UsageFault) as caught:
@@ -147,6 +157,21 @@ def test_names_explained(machine: Machine) -> None:
     assert "did you mean '/spawn'?" in machine.look("explain", GRAPHS[0], "/spwan", code=2)
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("/chatter", "GRAPH.yaml /chatter; of what runs: graphflow node info /chatter or topic info /chatter"),
+        ("/chatter lab.yaml", "lab.yaml /chatter"),
+        ("chatter lab.yaml", "lab.yaml chatter"),
+    ],
+)
+def test_a_name_without_its_graph(here: Machine, tmp_path: Path, words: str, told: str) -> None:
+    """The order is told, and the verbs for what runs."""
+    (tmp_path / "lab.yaml").write_text(GRAPH)
+    said = here.look("explain", *words.split(), cwd=tmp_path, code=2)
+    assert said == f"error: the graph file stands first: graphflow explain {told}\n"
+
+
 def test_the_schema(machine: Machine) -> None:
     """It is one document."""
     assert json.loads(machine.look("schema"))["title"] == "A graph file of graphflow"
@@ -189,3 +214,12 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     [place] = json.loads(machine.look("check", "own", "--json", cwd=tmp_path))["unfollowed"]
     assert place["line"] == 7
     assert "there is no file none.py" in machine.look("check", "none.py", cwd=tmp_path, code=2)
+
+
+@pytest.mark.parametrize("text", ["own.robot", "own.robot:Robot", "own/robot.py:Robot"])
+def test_source_is_checked_by_its_file(machine: Machine, tmp_path: Path, text: str) -> None:
+    """A module or a class is answered with the file that it is in."""
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "robot.py").touch()
+    told = machine.look("check", text, cwd=tmp_path, code=2)
+    assert told == f"error: {text}: source is checked by its file: graphflow check own/robot.py\n"

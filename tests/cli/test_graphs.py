@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from graphflow.cli.graphs import _table
+from graphflow.cli.graphs import _open_console, _table
+from graphflow.errors import SupervisorError
+from graphflow.supervisor.rundir import GraphRun, start_time
 from tests.cases import slow
 from tests.conftest import Machine, Program
 from tests.supervisor.running import GOOD, make_project, nothing_is_left, rows, supervisor_of, write
@@ -28,7 +32,8 @@ def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Pat
     pids = [row["pid"] for row in rows(machine).values()] + [supervisor_of(machine)["pid"]]
     assert "red" in machine.run("service", "call", "/b/ask", "std_srvs/srv/Trigger")
 
-    assert "graph lab is down" in machine.run("down")
+    assert "graph 'nolab' is not running; did you mean 'lab'?" in machine.look("down", "nolab", code=3)
+    assert "graph lab is down" in machine.run("down", "lab")
 
     nothing_is_left(machine, pids)
     assert "no graph is running" in machine.run("down", code=3)
@@ -44,7 +49,7 @@ def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
     machine.look("down")
 
     assert "I heard" in machine.run("logs", "/listener", "-n", "3")
-    assert "did you mean 'talker'" in machine.look("logs", "talkr", code=2)
+    assert "did you mean 'talker'" in machine.look("logs", "talkr", code=1)
 
 
 @slow
@@ -156,3 +161,24 @@ def test_a_part_of_a_graph_and_in_place_of_it(machine: Machine) -> None:
     machine.run("up", "-d", file, "--replace", cwd=project)
     assert list(rows(machine)) == ["/a", "/b", "/c"]
     machine.look("down")
+
+
+@pytest.mark.parametrize("lives", [False, True])
+def test_a_supervisor_that_was_killed_before_the_console(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], lives: bool
+) -> None:
+    """Its end is told, not that its socket does not answer; one that lives and does not answer is told as such."""
+
+    def show(run: GraphRun, domain: int) -> int:
+        raise SupervisorError("it does not answer")
+
+    monkeypatch.setattr("graphflow.cli.console.show", show)
+    monkeypatch.setattr("graphflow.cli.streaming.GONE_LIMIT", 0.0)
+    pid = os.getpid() if lives else 2**22 + 1
+    run = GraphRun("1", "lab", 0, pid, start_time(pid) or 0.0, 0.0, "lab.yaml", "", str(tmp_path), "", "")
+    if lives:
+        with pytest.raises(SupervisorError, match="it does not answer"):
+            _open_console(asdict(run), lambda: "")
+        return
+    assert _open_console(asdict(run), lambda: "the supervisor was ended by signal SIGKILL") == 1
+    assert "error: the supervisor was ended by signal SIGKILL\n" in capsys.readouterr().err

@@ -81,10 +81,21 @@ def test_its_graph_can_be_included_under_namespaces(machine: Machine, tmp_path: 
     assert "/right/greeter" in plan
 
 
-@pytest.mark.parametrize("name", ["My-Lab", "1lab", "lab__a"])
-def test_a_name_must_be_a_packages(machine: Machine, tmp_path: Path, name: str) -> None:
-    """Since the interface package is called after it."""
-    assert "a project's name has only lower-case letters" in machine.run("init", name, cwd=tmp_path, code=2)
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("My-Lab", "a project's name has only lower-case letters, digits and single _, and begins with a letter; did"),
+        ("My-Lab", "did you mean 'my_lab'?"),
+        ("1lab", "did you mean 'my_1lab'?"),
+        ("lab__a", "did you mean 'lab_a'?"),
+        ("..lab", "did you mean 'lab'?"),
+        ("class", "'class' is a name of Python's, which yours would hide; did you mean 'my_class'?"),
+        ("random", "did you mean 'my_random'?"),
+    ],
+)
+def test_a_name_must_be_a_packages(machine: Machine, tmp_path: Path, name: str, told: str) -> None:
+    """Since the interface package is called after it, and Python imports it; one that can be is told."""
+    assert told in machine.run("init", name, cwd=tmp_path, code=2)
     assert not (tmp_path / name).exists()
 
 
@@ -95,3 +106,12 @@ def test_nothing_is_overwritten(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "lab" / "README.md").write_text("mine")
     assert "lab already exists" in machine.run("init", "lab", cwd=tmp_path, code=2)
     assert (tmp_path / "lab" / "README.md").read_text() == "mine"
+
+
+def test_the_folder_itself(machine: Machine, tmp_path: Path) -> None:
+    """Is filled if it is empty; else it is said how to make a new one."""
+    (tmp_path / "lab").mkdir()
+    assert machine.run("init", ".", cwd=tmp_path / "lab").endswith("next:\n  graphflow up graphs/lab.yaml\n")
+    assert (tmp_path / "lab" / "lab" / "greeter.py").is_file()
+    told = machine.run("init", ".", cwd=tmp_path / "lab", code=2)
+    assert told == "error: this folder is not empty; graphflow init NAME writes a project into a new one\n"

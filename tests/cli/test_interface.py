@@ -101,7 +101,7 @@ def test_without_comments(own: Path, show: Show) -> None:
             "error: there is no interface package 'geometry_msg'; did you mean 'geometry_msgs'?",
         ),
         ("std_msgs/Heder", "error: package 'std_msgs' has no interface 'Heder'; did you mean 'Header'?"),
-        ("Twist", "error: 'Twist' is not an interface name; write package/msg/Name, for example std_msgs/msg/String"),
+        ("Twist", "error: 'Twist' is not an interface name; did you mean 'geometry_msgs/msg/Twist'?"),
         ("a/b/c/d", "error: 'a/b/c/d' is not an interface name; write package/msg/Name"),
         ("../msg/Name", "error: '../msg/Name' is not an interface name"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -66,6 +67,8 @@ def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
         "launch", "convert", str(tmp_path / "a.py"), code=2
     )
     assert "does not exist" in machine.look("launch", "convert", "gone.xml", code=2)
+    told = machine.look("launch", "turtlesim", "multisim.launch.py", code=2)
+    assert "comes with graphflow has no launch files; to start its graph: graphflow up turtlesim" in told
     assert "Package 'nav2' not found" in machine.look("launch", "nav2", "a.launch.xml", code=2)
 
 
@@ -133,3 +136,28 @@ def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
     file.write_text(XML)
     assert "Stop with: graphflow down" in machine.run("launch", "--detach", str(file), cwd=tmp_path)
     machine.run("down")
+
+
+def test_json(machine: Machine, tmp_path: Path) -> None:
+    """What happens, a line each, as by `up --json`; with -p, the plan."""
+    file = tmp_path / "a.launch.xml"
+    file.write_text(XML)
+    shown = json.loads(machine.look("launch", "--json", "-p", str(file)))
+    assert [node["name"] for node in shown["nodes"]] == ["/talker"]
+    graph = machine.start("launch", "--json", str(file), cwd=tmp_path)
+    graph.wait_for('{"event": "up"')
+    assert graph.end() == 0
+    assert '{"event": "end"' in graph.text
+
+
+def test_a_package_without_a_file(machine: Machine, tmp_path: Path) -> None:
+    """Its launch files are named."""
+    folder = tmp_path / "src" / "lamp"
+    (folder / "launch").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>lamp</name></package>")
+    (folder / "setup.py").write_text("from setuptools import setup\nsetup()\n")
+    for file in ("b.launch.py", "a_launch.xml"):
+        (folder / "launch" / file).touch()
+    told = machine.look("launch", "lamp", cwd=tmp_path, code=2)
+    assert told == "error: 'lamp' is a package; write graphflow launch lamp FILE; it has a_launch.xml, b.launch.py\n"
+    assert "lamb: there is no such file" in machine.look("launch", "lamb", cwd=tmp_path, code=2)

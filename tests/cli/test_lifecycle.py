@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -36,18 +37,22 @@ def test_a_life(machine: Machine) -> None:
     assert "error: /lc_listener has no life cycle; those that do: /lc_talker" in machine.look(
         "lifecycle", "get", "/lc_listener", code=2
     )
+    told = machine.look("lifecycle", "get", "/nobody", code=1)
+    assert told == "error: there is no node /nobody; there is /lc_talker\n"  # and not the other
     machine.look("down")
     log = machine.look("logs", "--node", "/lc_talker")
     assert "on_cleanup() is called after" in log
     assert log.count("on_shutdown() is called.") == 1
 
 
+@slow
 def test_a_node_that_cannot_be_brought_up(machine: Machine) -> None:
     """The graph does not come up, and says why."""
     text = machine.run("up", "-d", "tests/programs/supervisor/refusing.yaml", code=1)
     assert "exit code 70 (an error in the node): /camera could not configure: on_configure refused: no camera" in text
 
 
+@slow
 def test_a_transition_that_is_refused(machine: Machine) -> None:
     """`set` fails, and says where the reason is."""
     machine.run("up", "-d", "tests/programs/supervisor/refusing.yaml", "state:=unconfigured")

@@ -41,6 +41,31 @@ def test_restart_and_stop(machine: Machine) -> None:
     machine.look("down")
 
 
+def test_the_last_node(machine: Machine) -> None:
+    """The graph ends with it, which is no failure of the command that wanted it."""
+    project = make_project(machine.run_directory / "lab")
+    file = write(project, "nodes: {/a: {class: nodes.lab:Good}}\n")
+    machine.run("up", "-d", file, cwd=project)
+    assert machine.look("stop", "/a").startswith("/a has ended")
+
+
+def test_a_node_that_runs_by_itself(machine: Machine) -> None:
+    """It is told where it runs, as no graph has it."""
+    node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")
+    node.wait_for("Publishing")
+    told = machine.look("stop", "/talker", code=3)
+    assert f"/talker runs by itself, in no graph of `up`, in process {node.pid}: " in told
+    assert told.rstrip().endswith(f"; end it there by Ctrl-C, or by: kill {node.pid}")
+    assert told.strip() in machine.look("node", "kill", "/talker", code=2).replace("Error", "error")
+    assert "no graph is running" in machine.look("stop", "/talkr", code=3)
+    project = make_project(machine.run_directory / "lab")
+    machine.run("up", "-d", write(project, "nodes: {/a: {class: nodes.lab:Good}}\n"), cwd=project)
+    assert told == machine.look("restart", "/talker", code=1)
+    assert "has no node /talkr" in machine.look("restart", "/talkr", code=1)
+    machine.look("down")
+    assert node.end() == 0
+
+
 def test_the_status_of_a_node(standing: Machine) -> None:
     """Its state, class and log with the end of it, or the same for programs."""
     lines = standing.look("status", "talker").splitlines()
@@ -50,7 +75,7 @@ def test_the_status_of_a_node(standing: Machine) -> None:
     found = json.loads(standing.look("status", "/talker", "--json"))
     assert (found["graph"], found["node"], found["state"], found["restarts"]) == ("standing", "/talker", "ready", 0)
     assert found["last_lines"]
-    assert "has no node /tolker; did you mean '/talker'?" in standing.look("status", "tolker", code=2)
+    assert "has no node /tolker; did you mean '/talker'?" in standing.look("status", "tolker", code=1)
 
 
 def test_waiting(standing: Machine) -> None:
@@ -62,7 +87,7 @@ def test_waiting(standing: Machine) -> None:
     [row] = json.loads(standing.look("wait", "talker", "--json"))
     assert (row["node"], row["state"]) == ("/talker", "ready")
     assert "--ready and --ended: one of them" in standing.look("wait", "--ready", "--ended", code=2)
-    assert "has no node /tolker; did you mean '/talker'?" in standing.look("wait", "tolker", code=2)
+    assert "has no node /tolker; did you mean '/talker'?" in standing.look("wait", "tolker", code=1)
 
 
 def test_what_cannot_be_done(standing: Machine) -> None:

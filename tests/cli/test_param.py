@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +134,9 @@ def test_a_wrong_value_in_a_file_fails_alone(machine: Machine, tmp_path: Path) -
     file.write_text("other: {ros__parameters: {gain: 2.0}}\n")
     text = machine.look("param", "load", "/robot", str(file), code=2)
     assert "p.yaml has nothing for /robot; there is /other" in text
+    file.write_text("robt: {ros__parameters: {gain: 2.0}}\n")
+    text = machine.look("param", "load", "/robot", str(file), code=2)
+    assert f"p.yaml has nothing for /robot; did you mean /robot in place of /robt at {file}:1" in text
     file.write_text("robot: [\n")
     assert "p.yaml:1:9: not valid YAML" in machine.look("param", "load", "/robot", str(file), code=2)
     assert "cannot be read: No such file" in machine.look("param", "load", "/robot", str(tmp_path / "no"), code=2)
@@ -196,3 +200,34 @@ def test_some_of_a_list(standing: Machine) -> None:
     )
     assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim_time") == "  use_sim_time\n"
     assert "'(' is no regular expression" in standing.look("param", "list", "--filter", "(", code=2)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("set rate 20", "write param set NODE PARAMETER VALUE: graphflow param set /talker rate 20"),
+        ("set talker rate", "write param set NODE PARAMETER VALUE: graphflow param set talker rate VALUE"),
+        ("set talker rate=2.0", "write param set NODE PARAMETER VALUE: graphflow param set talker rate 2.0"),
+        ("set /talker rate:=2", "write param set NODE PARAMETER VALUE: graphflow param set /talker rate 2"),
+        ("set talker 'rate: [2, 3]'", "graphflow param set talker rate '[2, 3]'"),
+        ("set talker '{a.rate: 2}'", "write param set NODE PARAMETER VALUE: graphflow param set talker a.rate 2"),
+        ("set talker", "write param set NODE PARAMETER VALUE: graphflow param set talker PARAMETER VALUE"),
+        ("set rate", "write param set NODE PARAMETER VALUE: graphflow param set /talker rate VALUE"),
+        ("get rate", "write param get NODE PARAMETER: graphflow param get /talker rate"),
+        ("delete talker", "write param delete NODE PARAMETER: graphflow param delete talker PARAMETER"),
+        ("describe rate", "write param describe NODE PARAMETER: graphflow param describe /talker rate"),
+        ("get /talker.rate", "write param get NODE PARAMETER: graphflow param get /talker rate"),
+        ("set /talker/rate 2", "write param set NODE PARAMETER VALUE: graphflow param set /talker rate 2"),
+        ("get rtae", "there is no node 'rtae', nor a parameter of that name; did you mean 'rate'?"),
+        ("get use_sim_time", "write param get NODE PARAMETER; 'use_sim_time' is a parameter of /"),
+    ],
+)
+def test_a_word_too_few(standing: Machine, words: str, told: str) -> None:
+    """The whole command is told, with the node that has the parameter."""
+    assert told in standing.look("param", *shlex.split(words), code=2)
+
+
+def test_a_mapping(standing: Machine) -> None:
+    """No parameter is one: the name of the first that was meant is told."""
+    told = standing.look("param", "set", "/talker", "rate", "{x: 2}", code=1)
+    assert "{'x': 2} cannot be a parameter: it is a mapping, whose keys are parameters of their own, as in " in told

@@ -51,9 +51,15 @@ async def test_without_a_number_it_goes_on(graph: Graph) -> None:
 
 async def test_once_waits_for_a_listener(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
     """A message that nobody would hear is not sent; it says that it waits."""
+    graph.tap(String, "/sad")
     task = await begun(graph, PubOptions(once=True))
     await graph.clock.advance(100.0)
-    assert capsys.readouterr().out == "Waiting for at least 1 matching subscription(s)...\n"
+    told = capsys.readouterr()
+    assert told.out == "Waiting for at least 1 matching subscription(s)...\n"
+    assert told.err == (
+        "no node listens to /said so far; Ctrl-C ends the waiting, and -w 0 publishes without it; did you mean "
+        "'/sad'?\n"
+    )
     heard = graph.tap(String, "/said")
     await graph.clock.advance(1.0)
     assert task.result() == exits.OK
@@ -69,7 +75,10 @@ async def test_waiting_has_a_limit(graph: Graph, capsys: pytest.CaptureFixture[s
     await graph.clock.advance(0.2)
     assert task.result() == exits.TIMEOUT
     assert not heard
-    assert capsys.readouterr().err == "error: /said: fewer than 2 subscriptions after 3 s\n"
+    assert capsys.readouterr().err == (
+        "1 of 2 nodes listen to /said so far; Ctrl-C ends the waiting, and -w 0 publishes without it\n"
+        "error: /said: fewer than 2 subscriptions after 3 s\n"
+    )
 
 
 async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:

@@ -24,6 +24,7 @@ def talk(machine: Machine) -> None:
     machine.start("run", "nodes.talker:Talker").wait_for("Publishing: 'Hello World: 1'")
 
 
+@slow
 def test_recording_and_playing(machine: Machine, tmp_path: Path) -> None:
     """What was said is in the bag when Ctrl-C has ended it, and is said again by `play`."""
     talk(machine)
@@ -89,6 +90,26 @@ def test_for_some_time(machine: Machine, tmp_path: Path) -> None:
     text = machine.run("bag", "record", "/nobody", "--duration", "0.5", "-o", "bag", cwd=tmp_path, code=1)
     assert "WARNING: topic [/nobody] does not appear to be published yet" in text
     assert "no topic was there to be recorded; `graphflow topic list` shows those that are" in text
+
+
+@slow
+def test_a_domain_without_nodes(machine: Machine, tmp_path: Path) -> None:
+    """Another one that has some is told, as it is where rates are measured."""
+    other = str(machine.domain + 1)
+    talker = machine.start("--domain", other, "run", "nodes.talker:Talker")
+    talker.wait_for("Publishing")
+    told = f"no nodes in domain {machine.domain}; there is 1 node in domain {other}: graphflow --domain {other} ..."
+    assert told in machine.run("bag", "record", "-a", "--duration", "4", "-o", "bag", cwd=tmp_path, code=1)
+    rates = machine.start("topic", "hz", "/chatter")
+    rates.wait_for(told)
+    rates.end()
+    assert talker.end() == 0
+
+
+def test_types_without_their_package(machine: Machine) -> None:
+    """Nothing could be of such a type."""
+    told = machine.look("bag", "record", "--topic-types", "String", code=2)
+    assert "'String' is not an interface name; did you mean " in told
 
 
 @pytest.fixture

@@ -67,9 +67,11 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
             (["nodes.talker:Talker", "-p", "rtae:=2.0"], 2, "did you mean 'rate'?"),
             (["nodes.talker:Talker", "-p", "rate:=fast"], 2, "parameter 'rate' is of type double, 'fast' is not"),
             (["nodes.talker:Talker", "-p", "rate:=-1.0"], 2, "out of range"),
-            (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns'?"),
+            (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns:=/turtle1'?"),
             (["nodes.talker:Talker", "--ros-args", "-r"], 2, "needs a value"),
             (["nodes.talker:Talker", "--log-level", "loud"], 2, "is not a log level"),
+            (["nodes.talker:Talker", "--rate", "5.0"], 2, "nothing reads the option '--rate'; to set the parameter"),
+            (["--rate", "5.0", "nodes.talker:Talker"], 2, "run has no option '--rate'"),
         ]
     ),
 )
@@ -183,11 +185,13 @@ def test_a_command_before_it(machine: Machine) -> None:
     [
         (["-r", "foo:=/news"], "error: the remap foo:=/news matches no name of this node; there is chatter"),
         (["-r", "**/chattr:=/news"], "error: the remap **/chattr:=/news matches no name of this node"),
+        (["-r", "__node:=my", "turtle"], "a value with a space in it goes into quotes: -r '__node:=my turtle'"),
+        (["-r", "__node:=my turtle"], "'my turtle' is not a node name: use letters, digits and _, and do not begin"),
         (["-r", "rate:=5.0"], "to set the parameter write -p rate:=5.0"),
     ],
 )
-def test_a_remap_that_matches_nothing(machine: Machine, words: list[str], told: str) -> None:
-    """Is an error, with exit code 2: ROS 2 would say nothing, and nothing would come."""
+def test_a_remap_that_cannot_be(machine: Machine, words: list[str], told: str) -> None:
+    """One that matches nothing is an error, too, with exit code 2: ROS 2 would say nothing, and nothing would come."""
     assert told in machine.run("run", "talker", "--ros-args", *words, code=2)
 
 

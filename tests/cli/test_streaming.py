@@ -13,7 +13,7 @@ import pytest
 
 from graphflow.cli import exits
 from graphflow.cli.streaming import LogReader, _Stream
-from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.control_client import ControlClient
 from tests.conftest import Machine
 from tests.supervisor.running import make_project, nothing_is_left, rows, supervisor_of, write
 
@@ -167,6 +167,8 @@ def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert "  graphflow node info /a  " in err
     assert f"Logs are in {tmp_path}\nStop with Ctrl-C.\n" in err
     assert "export" not in err
+    streaming(tmp_path)._show({"event": "up", "seconds": 0.25, "pending": {"/a": "the end of /b"}})
+    assert "\n  /a  nodes.lab:Good  waits for the end of /b\n" in capsys.readouterr().err
 
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", "8")
     detached = streaming(tmp_path, detach=True)

@@ -83,8 +83,20 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
     ("words", "code", "told"),
     [
         ("topic info /chater", 1, "error: Unknown topic '/chater'; did you mean '/chatter'?"),
+        (
+            "topic info /office/clerk/add",
+            1,
+            "error: Unknown topic '/office/clerk/add'; it is a service, of type example_int",
+        ),
+        (
+            "service call /chatter std_srvs/srv/Empty",
+            4,
+            "error: no node offers the service /chatter; it is a topic, of",
+        ),
+        ("topic echo /chatter.data", 2, "error: a field is shown by: graphflow topic echo /chatter --field data"),
+        ("topic echo /talker", 1, "Unknown topic '/talker'; it is a node"),
         ("topic echo /chater", 1, "topic /chater does not appear to be published yet; did you mean '/chatter'?"),
-        ("topic echo /chater", 1, "to wait for it, give its type: graphflow topic echo /chater TYPE"),
+        ("topic echo /chater", 1, "To wait for it, give its type: graphflow topic echo /chater TYPE"),
         (
             "topic echo /chatter std_msgs/msg/Int32",
             2,
@@ -101,8 +113,24 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
             "topic pub /chatter std_msgs/msg/String ...; it carries std_msgs/msg/String",
         ),
         ("topic pub /new {data: x}", 2, "the topic's type comes before the values: graphflow topic pub /new TYPE ..."),
+        (
+            "topic echo /chatter /rosout",
+            2,
+            "'/rosout' was taken for the type of /chatter; /rosout needs a command of its",
+        ),
+        ("topic echo chatter rosout", 2, "error: 'rosout' was taken for the type of /chatter; /rosout needs a command"),
+        (
+            "topic echo /chatter Strin",
+            2,
+            "error: 'Strin' was taken for the type of /chatter; that is std_msgs/msg/String",
+        ),
+        (
+            "topic pub /chatter hello",
+            2,
+            "error: 'hello' was taken for the type of /chatter; that is std_msgs/msg/String",
+        ),
         ("topic pub /chatter std_msgs/msg/String dta: x", 2, "did you mean 'data'?"),
-        ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "did you mean 'String'?"),
+        ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "that is std_msgs/msg/String"),
     ],
 )
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.types import agree, use_project
+from graphflow.cli.types import agree, check_kind, names_of_type, refuse_turned, use_project
 from graphflow.errors import UsageFault
 from graphflow.msgs import registry
 
@@ -57,3 +57,37 @@ def test_those_of_a_workspace_are_known(tmp_path: Path, monkeypatch: pytest.Monk
     assert registry.full_name("lamp_interfaces/Fade") == "lamp_interfaces/action/Fade"
     assert not registry._later
     assert "lamp_interfaces" in registry.packages()
+
+
+@pytest.mark.parametrize(
+    ("type_name", "kind", "told"),
+    [
+        ("turtlesim/srv/Spawn", "msg", "is a service, not a message; graphflow service call takes such types"),
+        ("std_msgs/msg/String", "srv", "is a message, not a service; graphflow topic pub takes such types"),
+        ("a/action/B", "srv", "is an action, not a service; graphflow action send_goal takes such types"),
+    ],
+)
+def test_a_type_of_another_kind(type_name: str, kind: str, told: str) -> None:
+    """Is refused with the command that takes it; parts of services and actions are messages and services."""
+    with pytest.raises(UsageFault, match=f"^{type_name} {told}$"):
+        check_kind(type_name, kind)
+    check_kind(f"{type_name}_Request", kind)
+    check_kind(f"a/{kind}/B", kind)
+
+
+def test_words_in_another_order() -> None:
+    """The line to type is told; without a slash at the front a name may be meant, too."""
+    with pytest.raises(
+        UsageFault, match=r"^the name comes first, then its type: graphflow topic pub /t a/msg/B \.\.\.$"
+    ):
+        refuse_turned("a/msg/B", "/t", "topic pub")
+    with pytest.raises(UsageFault, match=r"^the values come last, .*: graphflow service call /t TYPE '\{x: 1\}'$"):
+        refuse_turned("{x: 1}", "/t", "service call")
+    for name, type_name in (("/t", "a/msg/B"), ("t", "/x"), ("t", None), ("a/t", "a/B")):
+        refuse_turned(name, type_name, "topic pub")
+
+
+def test_a_type_by_its_last_part(capsys: pytest.CaptureFixture[str]) -> None:
+    """Is found by none, and the whole of one that is there is told."""
+    assert names_of_type({"/t": ["std_msgs/msg/String"]}, "String", only_count=False) == []
+    assert capsys.readouterr().err == "nothing is of type String; did you mean 'std_msgs/msg/String'?\n"

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from graphflow.cli.main import cli
-from graphflow.cli.verbs import NOT_NEEDED
+from graphflow.cli.verbs import NOT_NEEDED, OF_ONE
 from tests.conftest import Machine
 
 
@@ -33,6 +33,18 @@ def test_a_word_that_is_misspelt(words: str, told: str) -> None:
     done = CliRunner().invoke(cli, words.split(), prog_name="graphflow")
     assert done.exit_code == 2
     assert told in done.output
+
+
+@pytest.mark.parametrize(("words", "one"), [*OF_ONE.items(), ("interface list", "interface show")])
+def test_a_name_behind_a_verb_that_tells_of_all(words: str, one: str) -> None:
+    """The verb that takes it is named, and is one that does."""
+    name = "std_msgs/msg/String" if one == "interface show" else "talker"
+    done = CliRunner().invoke(cli, [*words.split(), name], prog_name="graphflow")
+    assert done.exit_code == 2
+    assert f"{words} takes no name; for one: graphflow {one} {name}" in " ".join(done.output.split())
+    described = CliRunner().invoke(cli, [*one.split(), "--help"], prog_name="graphflow")
+    assert described.exit_code == 0
+    assert f"Usage: graphflow {one} [" in described.output
 
 
 @pytest.mark.parametrize(

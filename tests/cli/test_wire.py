@@ -10,6 +10,7 @@ from tests.conftest import Machine
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_profile_chooses_definitions(machine: Machine) -> None:
     """By option or variable, the option first."""
     event = ("interface", "show", "lifecycle_msgs/msg/TransitionEvent")

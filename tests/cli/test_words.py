@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -17,7 +19,7 @@ from hypothesis import strategies as st
 
 from graphflow.cli.param import set_
 from graphflow.cli.topic import pub
-from graphflow.cli.words import message_values, messages_in, split_values
+from graphflow.cli.words import message_values, messages_in, repaired, split_values
 from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import Int32, String
@@ -156,7 +158,9 @@ def test_what_is_missing_is_left_to_click() -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["{x:", "1"], "'{x: 1', character 6: not valid YAML"),
+        (["{}", "extra"], "'extra' is one word too many: '{}' is a message by itself"),
+        (["{x:", "1}", "{y:", "2}"], "'{y:' is one word too many: '{x: 1}' is a message by itself"),
+        (["{x:", "[1"], "'{x: [1', character 7: not valid YAML"),
         (["{x:2.0}"], "'{x:2.0}': write a space after each colon and quotes around all, for example '{x: 2.0}'"),
         (["x:2.0", "y:1"], "'x:2.0 y:1': write a space after each colon"),
         (["{a: *b}"], "*b: aliases are not used here"),
@@ -211,3 +215,62 @@ def test_files_without_messages(tmp_path: Path, data: bytes | None, told: str) -
         messages_in(file)
     assert str(caught.value).startswith(str(file))
     assert told in str(caught.value)
+
+
+def test_messages_in_a_file_of_another_kind(tmp_path: Path) -> None:
+    """A FIFO without a writer keeps nobody waiting."""
+    os.mkfifo(tmp_path / "fifo")
+    with pytest.raises(UsageFault, match="fifo: it is not a regular file"):
+        messages_in(tmp_path / "fifo")
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("{linear: {x:2.0}}", "{linear: {x: 2.0}}"),
+        ("{linear={x: 2.0}}", "{linear: {x: 2.0}}"),
+        ("{linear: {x: 2,0}}", "{linear: {x: 2.0}}"),
+        ("a: 2 b: 5", "{a: 2, b: 5}"),
+        ("a: 2, b: 5", "{a: 2, b: 5}"),
+        ("{a: 2; b: 5}", "{a: 2, b: 5}"),
+        ('"{a: 2, b: 5}"', "{a: 2, b: 5}"),
+        ("linear: {x: 1.0}, angular: {z: 2.0}", "{linear: {x: 1.0}, angular: {z: 2.0}}"),
+        ("linear: x: 2.0", "linear: {x: 2.0}"),
+        ("{linear: {x: 2.0}", "{linear: {x: 2.0}}"),
+        ("{data: 'it's me'}", "{data: 'it''s me'}"),
+        ("data: 'it's me'", "data: 'it''s me'"),
+        ("{p: {x: 1.0} q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
+    ],
+)
+def test_values_with_a_slip(text: str, meant: str) -> None:
+    """Are answered with the ones to type."""
+    with pytest.raises(UsageFault, match=re.escape(f"did you mean {meant!r}?")):
+        message_values([text])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{data: a=b}",
+        "{data: 'x:y'}",
+        "[1,2]",
+        "{at: 12:30}",
+        "{data: it's me}",
+        "data: 'a; b: c'",
+        "{a: {b: [{c: 1}]}}",
+        "1,5",
+    ],
+)
+def test_values_without_one(text: str) -> None:
+    """Are as they are."""
+    message_values([text])
+    assert repaired("{x: [}") is None
+
+
+def test_an_option_with_too_few_dashes_or_words() -> None:
+    """It is no value of a message."""
+    with pytest.raises(click.NoSuchOption) as caught:
+        parsed(pub, ["/t", "T", "-rate", "5"])
+    assert caught.value.possibilities == ["--rate"]
+    with pytest.raises(click.BadOptionUsage, match="Option '-r' requires an argument"):
+        parsed(pub, ["/t", "T", "--once", "-r"])

@@ -20,7 +20,7 @@ def workspace(tmp_path: Path) -> Path:
         (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
     (tmp_path / "src/lamp/setup.py").write_text(SETUP)
     (tmp_path / "src/lamp/lamp").mkdir()
-    (tmp_path / "src/lamp/lamp/node.py").write_text("import rclpy\n")
+    (tmp_path / "src/lamp/lamp/node.py").write_text("import rclpy\ndef main(): ...\n")
     (tmp_path / "src/lamp_interfaces/msg").mkdir()
     (tmp_path / "src/lamp_interfaces/msg/LampLight.msg").write_text("int32 level\n")
     return tmp_path
@@ -64,6 +64,9 @@ def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
     shown = machine.look("ws", cwd=workspace, code=1)
     assert "lamp is lamp.node:main, and there is no" in shown
     assert "Broken.msg" in shown
+    (workspace / "src/lamp/lamp/node.py").write_text("import rclpy\ndef mian(): ...\n")
+    shown = machine.look("ws", cwd=workspace, code=1)
+    assert "lamp/node.py has no function 'main'; did you mean 'mian'?" in shown
     (workspace / "src/lamp_interfaces/msg/Broken.msg").write_text("lamp_interfaces/LampLigt light\n")
     shown = machine.look("ws", cwd=workspace, code=1)
     assert "Broken.msg: " in shown
@@ -130,3 +133,16 @@ def test_what_is_no_package(machine: Machine, workspace: Path) -> None:
     assert said.endswith(
         "or with graphflow; /WORKSPACE has lamp, lamp_interfaces\n".replace("/WORKSPACE", str(workspace))
     )
+
+
+def test_what_ros_2_would_not_build(machine: Machine, workspace: Path) -> None:
+    """A broken package.xml, and a name of ROS 2's."""
+    (workspace / "src/lamp/package.xml").write_text("<package><name>lamp</name>")
+    (workspace / "src/lamp/setup.py").write_text(SETUP.replace("setup(", "setup(name='lump', "))
+    (workspace / "src/std_msgs/std_msgs").mkdir(parents=True)
+    (workspace / "src/std_msgs/package.xml").write_text("<package><name>std_msgs</name></package>")
+    (workspace / "src/std_msgs/std_msgs/__init__.py").touch()
+    told = machine.look("ws", cwd=workspace, code=1)
+    assert f"{workspace}/src/lamp/package.xml:1: no element found" in told
+    assert f"{workspace}/src/lamp/setup.py:2: the package is called 'lump' here, and 'lamp' in package.xml" in told
+    assert f"{workspace}/src/std_msgs hides ROS 2's std_msgs" in told

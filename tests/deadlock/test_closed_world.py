@@ -319,13 +319,26 @@ async def test_who_cancels(
 
 @pytest.mark.parametrize(
     "body",
-    ["def tick(self):\n    keep(self.task)\n    self.other.cancel()", "def on_arrive(self, other): other.cancel()"],
+    [
+        "def tick(self):\n    keep(self.task)\n    self.other.cancel()",
+        "def on_arrive(self, other): other.cancel()",
+    ],
 )
 async def test_somebody_may_cancel(graphflow_runner: asyncio.Runner, written: Written, body: str) -> None:
     """Where the task is given away, or is one of several, whatever is cancelled may be it."""
     scene = Scene(written, body)
     thing = Goal()
     scene.node.task = [thing]
+
+    with pytest.raises(Unknown):
+        cancellers(thing, scene.actor)
+
+
+async def test_a_part_of_a_gather_cancels(graphflow_runner: asyncio.Runner, written: Written) -> None:
+    """It may belong to the very run that waits."""
+    body = "async def on_arrive(self): await asyncio.gather(self.end())\nasync def end(self): self.task.cancel()"
+    scene = Scene(written, body)
+    scene.node.task = thing = Goal()
 
     with pytest.raises(Unknown):
         cancellers(thing, scene.actor)

@@ -215,6 +215,8 @@ async def test_conditions_that_are_understood(
         "(lambda: self.there)()",
         "end.is_set()",
         "self.goal.cancel()",
+        "self.goal.ended.cancelled()",
+        "self.goal == self.there",
         "local(3) or self.there",
         "self.arrived.clear()",
         "self.nav",
@@ -231,7 +233,12 @@ async def test_conditions_that_are_not(graphflow_runner: asyncio.Runner, written
 
 @pytest.mark.parametrize(
     ("condition", "attributes"),
-    [("self.goal.done", {"goal"}), ("self.task.done()", {"task"}), ("self.there or self.goal.done", {"there", "goal"})],
+    [
+        ("self.goal.done", {"goal"}),
+        ("self.goal is not None and self.goal.done", {"goal"}),
+        ("self.task.done()", {"task"}),
+        ("self.there or self.goal.done", {"there", "goal"}),
+    ],
 )
 async def test_tasks_of_the_nodes(
     graphflow_runner: asyncio.Runner, written: Written, condition: str, attributes: set[str]

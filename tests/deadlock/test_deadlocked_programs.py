@@ -241,6 +241,101 @@ async def test_the_parts_of_a_gather(graph: Graph, caplog: Caplog, program: type
         assert "behind them: subscription go of /robot" in told
 
 
+class PermitsAcquiredTwice(PermitsTwiceInEach):
+    """The same by hand."""
+
+    async def part(self) -> None:
+        await self.permits.acquire()
+        await self.clock.sleep(0.1)
+        await self.permits.acquire()  # stuck: PermitsAcquiredTwice
+        self.permits.release()
+        self.permits.release()
+
+
+class LockAcquiredTwice(Robot):
+    def __init__(self) -> None:
+        super().__init__()
+        self.bar = asyncio.Lock()
+
+    async def part(self) -> None:
+        await self.bar.acquire()
+        await self.bar.acquire()  # stuck: LockAcquiredTwice
+        self.bar.release()
+        self.bar.release()
+
+    async def go(self, _: String) -> None:
+        await asyncio.gather(*(self.part() for _ in range(2)))
+
+
+@pytest.mark.parametrize("program", [PermitsAcquiredTwice, LockAcquiredTwice])
+async def test_parts_of_a_gather_that_only_release(graph: Graph, caplog: Caplog, program: type[Robot]) -> None:
+    """What one of them holds is not to be seen; but all that could release it stand still."""
+    graph.deadlock = "report"
+    await graph.start(program())
+    await say(graph, "/go")
+    await graph.clock.advance(2.0)
+
+    told = flat(the_report(caplog))
+    assert told.startswith("LIKELY DEADLOCK: subscription go of /robot waits for self.")
+    assert f"task part of /robot {at(f'stuck: {program.__name__}')}part, for" in told.replace("  ", " ")
+
+
+class Keeper:
+    """Keeps a goal, as a navigator does."""
+
+    task: Any = None
+
+    def is_over(self) -> bool:
+        return self.task is not None and self.task.done
+
+
+class PollsAKeptGoal(Planner):
+    def __init__(self) -> None:
+        super().__init__()
+        self.keeper = Keeper()
+
+    async def go(self, _: String) -> None:
+        self.keeper.task = await self.plan.send_goal(Fibonacci.Goal(order=3))
+        while not self.keeper.is_over():
+            await self.clock.sleep(0.05)  # stuck: PollsAKeptGoal
+
+
+async def test_a_goal_that_an_object_of_the_nodes_keeps(graph: Graph, caplog: Caplog) -> None:
+    """It is polled by a method that first asks whether there is one."""
+    graph.deadlock = "report"
+    await graph.start(PollsAKeptGoal())
+    await say(graph, "/go")
+    await graph.clock.advance(2.0)
+
+    assert f"or the result of action /plan {at('stuck: PollsAKeptGoal')}go" in flat(the_report(caplog))
+
+
+class PlansInTurn(Node):
+    """Its action, which another node has too, waits for its handlers."""
+
+    motion = Group(1)
+    plan = ActionClient(Fibonacci, "/plan")
+
+    @subscription(String, "/go", group=motion)
+    async def go(self, _: String) -> None:
+        handle = await self.plan.send_goal(Fibonacci.Goal(order=3))
+        await handle.result()  # stuck: PlansInTurn
+
+    @action(Fibonacci, "/plan", group=motion, policy="queue")
+    async def on_plan(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        return Fibonacci.Result()
+
+
+async def test_a_goal_that_two_servers_have(graph: Graph, caplog: Caplog) -> None:
+    """Neither can begin it."""
+    graph.deadlock = "report"
+    await graph.start(PlansInTurn("left"), PlansInTurn("right"))
+    await say(graph, "/go")
+    await graph.clock.advance(2.0)
+
+    assert f"waits for the result of action /plan {at('stuck: PlansInTurn')}go" in flat(the_report(caplog))
+
+
 class SemaphoreAcquired(Robot):
     def __init__(self) -> None:
         super().__init__()

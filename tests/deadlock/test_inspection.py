@@ -66,6 +66,10 @@ async def ask(graph: Graph, node: Node, payload: bytes) -> Answer:
     return answer
 
 
+def limited(limit: object, group: str = "motion") -> bytes:
+    return json.dumps({"node": "/arm", "group": group, "limit": limit}).encode()
+
+
 def wanted(**changes: object) -> bytes:
     return json.dumps({"node": "/arm", "handler": "tick", "group": "motion", **changes}).encode()
 
@@ -83,8 +87,8 @@ async def test_groups_and_their_handlers(graph: Graph) -> None:
         "thread": False,
     }
     assert motion["handlers"] == [
-        {"handler": "go", "kind": "subscription", "running": 2, "waiting": 0, "runs": 2, "errors": 0},
-        {"handler": "land", "kind": "service", "running": 0, "waiting": 0, "runs": 0, "errors": 0},
+        {"handler": "go", "kind": "subscription", "async": True, "running": 2, "waiting": 0, "runs": 2, "errors": 0},
+        {"handler": "land", "kind": "service", "async": True, "running": 0, "waiting": 0, "runs": 0, "errors": 0},
     ]
     assert (rest["name"], [each["handler"] for each in rest["handlers"]]) == ("", ["tick"])
 
@@ -130,6 +134,18 @@ async def test_a_handler_that_is_moved(graph: Graph) -> None:
     assert tick.group is None
 
 
+async def test_a_group_with_another_limit(graph: Graph) -> None:
+    """It holds at once, and the answer has the lines that keep it."""
+    node = await start(graph)
+    told = json.loads((await ask(graph, node, limited(3))).payload)
+
+    assert core_of(node).groups.by_name["motion"].limit == 3
+    assert told["groups"][0]["limit"] == 3
+    assert told["yaml"] == ["  /arm: {concurrency: {motion: {limit: 3}}}"]
+    assert not (await ask(graph, node, limited(None))).is_error
+    assert core_of(node).groups.by_name["motion"].limit is None
+
+
 @pytest.mark.parametrize(
     ("payload", "kind", "words"),
     [
@@ -139,7 +155,13 @@ async def test_a_handler_that_is_moved(graph: Graph) -> None:
         (wanted(group="two words"), "DeclarationError", "'two words' is not a group name"),
         (b"nonsense", "JSONDecodeError", ""),
         (b"[]", "TypeError", ""),
-        (b'{"node": "/arm"}', "KeyError", "handler"),
+        (b'{"node": "/arm"}', "KeyError", "group"),
+        (b'{"node": "/arm", "group": "motion"}', "KeyError", "handler"),
+        (limited(0), "InvalidName", "the limit '0' is not a number from 1 to 1,000,000, and not none"),
+        (limited(1_000_001), "InvalidName", "the limit '1000001' is not a number"),
+        (limited(True), "InvalidName", "the limit 'True' is not a number"),
+        (limited("2" * 100), "InvalidName", "the limit '2222222222222222222222222222222222222222' is not a number"),
+        (limited(2, group="motoin"), "InvalidName", "/arm has no group 'motoin'; did you mean 'motion'?"),
         (b"\xff", "UnicodeDecodeError", ""),
         pytest.param(b"[" * 5_000, "RecursionError|JSONDecodeError", "", id="too deep"),  # the latter since 3.13
         pytest.param(b"[" * 100_000, "InvalidName", "a request of 100000 bytes names no handler", id="too long"),
@@ -156,6 +178,15 @@ async def test_what_cannot_be_done(graph: Graph, payload: bytes, kind: str, word
     assert error.type in kind.split("|")
     assert words in str(error)
     assert groups_of(core_of(node)) == before
+
+
+async def test_a_limit_where_no_group_is(graph: Graph) -> None:
+    """The verb that makes one is told."""
+    node = Node("leg")
+    await graph.start(node)
+    answer = await ask(graph, node, json.dumps({"node": "/leg", "group": "motion", "limit": 2}).encode())
+    told = "/leg has no group 'motion'; it has none, and graphflow groups move /leg HANDLER GROUP makes one"
+    assert RemoteError.from_payload(answer.payload, "").message == told
 
 
 async def test_groups_are_not_made_without_limit(graph: Graph) -> None:

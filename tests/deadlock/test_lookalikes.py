@@ -457,6 +457,39 @@ class FlagOfAPartner(Driver):
         await asyncio.gather(self.drive(), self.watch())
 
 
+class LockOfAPartner(Driver):
+    """One part of a `gather` releases what the other waits for."""
+
+    pause = 1.5
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.wheel = asyncio.Lock()
+
+    async def steer(self) -> None:
+        await self.wheel.acquire()
+        await self.clock.sleep(self.pause)
+        self.wheel.release()
+
+    async def go(self, _: String) -> None:
+        await asyncio.gather(self.steer(), self.steer())
+
+
+class LockOfOneLeftBehind(LockOfAPartner):
+    """The `gather` is over, since one has failed; the other goes on."""
+
+    pause = 3.0
+
+    async def slip(self) -> None:
+        raise ValueError
+
+    async def go(self, _: String) -> None:
+        with suppress(ValueError):
+            await asyncio.gather(self.steer(), self.slip())
+        await self.wheel.acquire()
+        self.wheel.release()
+
+
 def without_source(text: str) -> type[Driver]:
     """The class `Made` of a program that is nowhere in a file, as in a notebook."""
     names: dict[str, Any] = {"Driver": Driver, "timer": timer, "__name__": "notebook"}
@@ -1266,6 +1299,8 @@ def legal(program: type[Robot]) -> Any:
             legal(FlagByAFunctionPutThere),
             legal(FlagByWhatAssigningDoes),
             legal(FlagOfAPartner),
+            legal(LockOfAPartner),
+            legal(LockOfOneLeftBehind),
             pytest.param(FlagOfAChildWithoutSource, id="FlagOfAChildWithoutSource"),
             legal(FlagOfAParentWithoutSource),
             legal(FlagOfAParameter),

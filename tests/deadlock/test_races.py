@@ -57,6 +57,8 @@ async def test_a_lost_update(graph: Graph, caplog: pytest.LogCaptureFixture) -> 
     assert f"timer quick wrote it meanwhile in test_races.py:{Lost.quick.__code__.co_firstlineno + 2}," in told
     assert f"timer slow has overwritten that in test_races.py:{first + 3}." in told
     assert told.endswith("/lost: {concurrency: {state: [slow, quick]}}")
+    record = next(r for r in caplog.records if r.getMessage() == told)
+    assert (record.pathname, record.lineno) == (__file__, first + 3)
 
 
 async def plus(self: Any) -> None:

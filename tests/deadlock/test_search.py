@@ -796,6 +796,7 @@ class Crew(Node):
         return Empty.Response()
 
 
+@slow
 @pytest.mark.parametrize("delay", [0.3, 1.0, 5.0])
 async def test_a_ring_that_grows_is_one_report(graph: Graph, caplog: Caplog, delay: float) -> None:
     """Who comes to it late says nothing new, though it would have reported the whole of it (row 29).

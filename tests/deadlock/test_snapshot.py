@@ -152,12 +152,13 @@ async def test_a_wait_that_is_over(graphflow_runner: asyncio.Runner) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wait", "service", "seen"), [("add", "/add", replace(ADD, servers=2)), ("turn", "/turn/_action/send_goal", FREE)]
+    ("wait", "service", "seen"),
+    [("add", "/add", replace(ADD, servers=2)), ("turn", "/turn/_action/send_goal", replace(TURN, servers=2))],
 )
 async def test_another_server_may_answer(
     graphflow_runner: asyncio.Runner, wait: str, service: str, seen: Condition
 ) -> None:
-    """Two servers have the same call; which of them has a goal is not known."""
+    """Two servers have the same call, and may have accepted the same goal."""
     scene = Scene()
     for zid in ("aa", "bb"):
         server = Entity(0, zid, 0, 1, Kind.SERVICE, "/", "server", service, "std_srvs/srv/Empty", "x")
@@ -211,6 +212,9 @@ class Other:
 
     def yields(self) -> None:
         """Not reached."""
+
+    def wake(self) -> None:
+        """It has nothing to run."""
 
 
 class Waiter:

@@ -160,6 +160,12 @@ def test_what_is_assigned_and_what_is_handed_on(
         ("async for _ in self.run(): pass", False),
         ("self.task = asyncio.create_task(self.run())", True),
         ("coroutine = self.run()", True),
+        ("await asyncio.gather(self.run(), other())", False),
+        ("await asyncio.gather(*(self.run() for _ in range(2)))", False),
+        ("await asyncio.gather(*[self.run() for _ in range(2)])", False),
+        ("await asyncio.gather(*(other(self.run()) for _ in range(2)))", True),
+        ("running = asyncio.gather(self.run(), other())", True),
+        ("await asyncio.shield(self.run())", True),
         ("self.plain()", False),
     ],
 )
@@ -178,6 +184,7 @@ def test_calls_that_run_on_their_own(written: Written, statement: str, is_starte
 
     [use] = [*source.uses("run"), *source.uses("plain")]
     assert (use.kind, use.is_started) == ("invoked", is_started)
+    assert source.gathered == ({"run"} if "gather(" in statement and not is_started else set())
 
 
 # What makes the source say nothing

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import graphflow
-from graphflow import names
+from graphflow import Node, Qos, names
 from graphflow.deadlock.frames import Frame, running
 from graphflow.deadlock.user_code import Pause, innermost, is_users, place_in, users_part, where
 from graphflow.errors import Place
@@ -124,6 +124,17 @@ def test_the_place_of_an_error() -> None:
     assert place_in(ValueError()) == ""
 
 
+def test_an_error_about_the_values_of_a_dataclass() -> None:
+    """Is where the user has made it, and not in the `__init__` that Python wrote, which belongs to graphflow."""
+    values: dict[str, Any] = {"depth": "10"}
+    with pytest.raises(ValueError, match="whole number") as caught:
+        Qos(**values)
+    assert place_in(caught.value) == f"{__file__}:{caught.traceback[0].lineno + 1}"
+    last = users_part(caught.value)
+    assert last is not None
+    assert (last.tb_frame.f_code.co_filename, last.tb_next) == (__file__, None)
+
+
 @pytest.mark.parametrize("library", ["/opt/lib/python3/site-packages/serial/posix.py", "numpy/random/mtrand.pyx"])
 def test_an_error_in_a_library(library: str) -> None:
     """Is the user's where it was called; an installed node's is where it was raised."""
@@ -151,7 +162,6 @@ def traceback_of(choices: Iterable[Any]) -> TracebackType | None:
     assert error.__traceback__ is not None
     error.__traceback__ = error.__traceback__.tb_next  # as where graphflow was not called by this test
     found = users_part(error)
-    assert (found is error.__traceback__) is (found is None or found.tb_frame.f_code.co_filename == names.__file__)
     return found
 
 
@@ -164,3 +174,21 @@ def test_the_users_part_of_a_traceback() -> None:
     assert alone is not None
     assert alone.tb_frame.f_code is names.did_you_mean.__code__
     assert users_part(ValueError()) is None
+
+
+def frames_of(trace: TracebackType | None) -> list[str]:
+    return [] if trace is None else [trace.tb_frame.f_code.co_name, *frames_of(trace.tb_next)]
+
+
+def test_what_graphflow_refuses() -> None:
+    """Such an error ends at the user's line; one that happens in graphflow keeps the frames in which it did."""
+    node: Any = Node("n")
+    with pytest.raises(AttributeError) as refused:
+        node.foo()
+    with pytest.raises(TypeError) as failed:
+        names.did_you_mean("word", [object()])  # type: ignore[list-item]
+    own = "test_what_graphflow_refuses"
+    assert frames_of(users_part(refused.value)) == [own]
+    first, *others = frames_of(users_part(failed.value))
+    assert first == own
+    assert others

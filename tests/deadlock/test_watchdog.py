@@ -7,9 +7,14 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import operator
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import starmap
+from queue import SimpleQueue
+from typing import Any, cast
 
 import pytest
 
@@ -95,6 +100,46 @@ async def test_the_report_of_a_blocked_loop(
     assert second.startswith("the event loop runs again after ")
 
 
+async def test_many_short_blocks(
+    graphflow_runner: asyncio.Runner,
+    watched: Watched,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """None of them is long, and each look finds one: they are told together, once for each line."""
+    monkeypatch.setattr(module, "REPORT_AFTER", LIMIT)
+
+    def told() -> list[str]:
+        return [r.message for r in caplog.records if "the event loop was blocked at 7 of 10 looks" in r.message]
+
+    watched.watchdog.longest = 1e6  # of a block before, which was told then
+    watched.watchdog.start()
+    late = 0
+    while not told():
+        watched.block(times=1)
+        while watched.watchdog.late == late:
+            await asyncio.sleep(0)
+        late = watched.watchdog.late
+        while watched.seen.acquire(blocking=False):
+            """It was told more than once that this block lasts."""
+    [text] = told()
+    assert f"mostly in {__file__}:" in text
+    assert "in block: Await what takes long" in text
+    assert "1000000.0 s" not in text
+
+
+async def test_short_blocks_with_breaks(
+    graphflow_runner: asyncio.Runner, watched: Watched, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Looks that find the loop free, or none of the user's lines, count as such."""
+    for place in ["a.py:1 in f", ""] * 20:
+        watched.watchdog._add_up(place, 0.2)
+    assert caplog.messages == []
+    for _ in range(20):
+        watched.watchdog._add_up("a.py:1 in f", 0.2)
+    assert len(caplog.messages) == 1
+
+
 async def test_what_counts_as_busy(graphflow_runner: asyncio.Runner, watched: Watched) -> None:
     """A loop whose thread is anywhere but in its selector; one that only waits is left alone."""
     is_busy = watched.watchdog._is_busy
@@ -107,6 +152,73 @@ async def test_what_counts_as_busy(graphflow_runner: asyncio.Runner, watched: Wa
     with ThreadPoolExecutor(1) as pool:
         assert pool.submit(is_busy).result(LIMIT)  # this line keeps it
     assert await asyncio.to_thread(until_it_idles) == "idle"
+
+
+class NativeLoop:
+    """A loop that is not written in Python, as uvloop's is not: it has no frames of its own."""
+
+    def __init__(self) -> None:
+        self._calls: SimpleQueue[tuple[Any, ...]] = SimpleQueue()
+        self.thread = threading.Thread(target=self.run_forever)
+
+    def run_forever(self) -> None:
+        deque(starmap(operator.call, iter(self._calls.get, ())), maxlen=0)
+
+    def is_running(self) -> bool:
+        return self.thread.is_alive()
+
+    def call_soon_threadsafe(self, callback: Callable[..., object], *args: object) -> None:
+        self._calls.put((callback, *args))
+
+    def stop(self) -> None:
+        self._calls.put(())
+
+
+@pytest.fixture
+def native() -> Iterator[tuple[NativeLoop, Watchdog]]:
+    loop = NativeLoop()
+    loop.thread.start()
+    made: Future[Watchdog] = Future()
+    loop.call_soon_threadsafe(lambda: made.set_result(Watchdog(cast(asyncio.AbstractEventLoop, loop), lambda: None)))
+    yield loop, made.result(LIMIT)
+    loop.stop()
+    loop.thread.join(LIMIT)
+
+
+def test_a_native_loop_that_idles(native: tuple[NativeLoop, Watchdog]) -> None:
+    """Once it has answered, it is known where its thread waits, and it is pinged now and then only."""
+    _, watchdog = native
+    watchdog._ring_and_wait()
+
+    assert [watchdog._is_busy() for _ in range(2 * module.RING_ANYWAY)] == 2 * [False, False, False, True]
+
+
+def test_a_native_loop_that_is_busy(native: tuple[NativeLoop, Watchdog]) -> None:
+    """It is found in any other place."""
+    loop, watchdog = native
+    watchdog._ring_and_wait()
+    is_kept, goes_on = threading.Event(), threading.Event()
+
+    def keep() -> None:
+        is_kept.set()
+        goes_on.wait(LIMIT)
+
+    loop.call_soon_threadsafe(keep)
+    assert is_kept.wait(LIMIT)
+    assert watchdog._is_busy()
+    goes_on.set()
+
+
+def test_uvloop_that_idles() -> None:
+    """It is left alone."""
+    uvloop = pytest.importorskip("uvloop", reason="the extra `fast` is not installed")
+
+    async def watch() -> list[bool]:
+        watchdog = Watchdog(asyncio.get_running_loop(), lambda: None)
+        await asyncio.to_thread(watchdog._ring_and_wait)
+        return await asyncio.to_thread(lambda: [watchdog._is_busy() for _ in range(module.RING_ANYWAY)])
+
+    assert uvloop.run(watch()).count(True) == 1
 
 
 async def test_before_it_looks(graphflow_runner: asyncio.Runner, watched: Watched) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from typing import Any
 
-from graphflow.deadlock.ways import Subtask, subtasks
+from graphflow.deadlock.ways import Subtask, gathered, subtasks
 from graphflow.testing.clock import settle
 
 
@@ -32,3 +33,32 @@ async def test_what_an_activity_waits_for(graphflow_runner: asyncio.Runner) -> N
     assert not any(one.is_bounded for one in subtasks(outer, lambda _: None))
     outer.cancel()
     await asyncio.wait([outer])
+
+
+async def test_the_parts_of_a_gather(graphflow_runner: asyncio.Runner) -> None:
+    """Those of one method; unless one has failed, and the others go on without it."""
+    failing = asyncio.get_running_loop().create_future()
+
+    async def part() -> None:
+        await asyncio.sleep(60)
+
+    async def fail() -> None:
+        await failing
+
+    async def above() -> None:
+        with suppress(ValueError):
+            await asyncio.gather(part(), part(), fail())
+        await asyncio.sleep(60)
+
+    outer, loop = asyncio.create_task(above()), asyncio.get_running_loop()
+    await settle()
+    found = gathered({"part"}, [outer], lambda _: None, loop)
+    assert found is not None
+    assert len(found) == 2
+    failing.set_exception(ValueError())
+    await settle()
+    assert gathered({"part"}, [outer], lambda _: None, loop) is None
+    outer.cancel()
+    for below in found:
+        below.task.cancel()
+    await asyncio.wait([outer, *(below.task for below in found)])

@@ -54,7 +54,8 @@ from graphflow.graph.net import NetProfile
 from graphflow.graph.resolve import load
 from graphflow.graph.source import read
 from graphflow.msgs import registry
-from graphflow.supervisor.classes import interfaces, read_interfaces
+from graphflow.supervisor.classes import interfaces
+from graphflow.supervisor.probed import read_interfaces
 from graphflow.testing import Graph
 from tests.cases import slow
 from tests.conftest import LIMIT, PROJECT, Machine, Program

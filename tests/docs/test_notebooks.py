@@ -66,6 +66,7 @@ def test_the_page(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert end == ""
 
 
+@slow
 def test_a_class_that_is_written_again(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The new one is used, and an error in a handler appears with its line; `run` says what to write in its place."""
     head = "import asyncio, graphflow\nfrom graphflow import Node, timer\n"

@@ -32,6 +32,9 @@ class Waits:
     def yields(self) -> None:
         """It has nothing to drop."""
 
+    def wake(self) -> None:
+        """It has nothing to run."""
+
 
 def full(limit: int, waiting: int) -> tuple[HandlerGroup, list[Waits]]:
     """A group without a free slot, and those who wait for one."""
@@ -79,13 +82,23 @@ async def test_another_limit(graphflow_runner: asyncio.Runner, limit: int | None
     assert group.running == 1 + more
 
 
-def test_another_limit_before_the_node_runs() -> None:
-    """Nobody waits yet, and no loop is needed."""
-    group = HandlerGroup(1)
+async def test_another_limit_for_a_handler_that_holds_all_slots(graphflow_runner: asyncio.Runner) -> None:
+    """It has no ticket for more than there were, and runs again nevertheless."""
+    group, gate = HandlerGroup(1, "motion"), asyncio.Event()
 
-    group.set_limit(2, None)
+    async def body(_: Any) -> None:
+        await gate.wait()
 
-    assert group.limit == 2
+    made, ended = runner(group, body, 1, 2, 3)
+    await settle()
+    assert len(made.active) == 1
+
+    group.set_limit(2, asyncio.get_running_loop())
+    await settle()
+    assert (len(made.active), len(made.items)) == (2, 1)
+    gate.set()
+    await settle()
+    assert ended == [None, None, None]
 
 
 # `released`

@@ -51,6 +51,113 @@ class Bench:
         return [error for _, _, error in self.ended]
 
 
+# runs
+
+
+async def test_a_run_is_used_again_only_if_nobody_has_kept_it(graphflow_runner: asyncio.Runner) -> None:
+    """What libraries keep beside a task, be it weakly, must not be met by the next message's."""
+    kept: list[Any] = []
+    numbers: list[int] = []
+
+    async def handler(item: int) -> None:
+        run: Any = asyncio.current_task()
+        assert run.item == item
+        numbers.append(run.number)
+        if item == 3:
+            kept.append(run)
+        elif item == 4:
+            kept.append(weakref.ref(run))
+
+    bench = Bench(handler)
+    bench.put(1)
+    await settle()
+    spare = id(bench.runner._spare)
+    bench.put(2)
+    await settle()
+    assert bench.runner._spare is not None
+    assert id(bench.runner._spare) == spare
+    for item in (3, 4):
+        bench.put(item)
+        await settle()
+        assert bench.runner._spare is None
+    assert kept[0].done()
+    assert kept[1]() is None
+    assert numbers == sorted(set(numbers))
+    assert bench.runner.active == set()
+
+
+async def test_a_run_that_was_asked_to_cancel_is_not_used_again(graphflow_runner: asyncio.Runner) -> None:
+    """Nor one that has waited: the next begins without a request to cancel."""
+    asked: list[int] = []
+
+    async def handler(item: int) -> None:
+        run: Any = asyncio.current_task()
+        asked.append(run.cancelling())
+        if item == 1:
+            run.cancel()
+
+    bench = Bench(handler)
+    bench.put(1, 2)
+    await settle()
+    assert asked == [0, 0]
+
+
+async def test_a_run_that_is_used_again_has_nothing_of_the_last(graphflow_runner: asyncio.Runner) -> None:
+    """Its group and its context variables are those of its own message, before and after it waits."""
+    word: ContextVar[str] = ContextVar("word", default="none")
+    first, second = HandlerGroup(1), HandlerGroup(1)
+    seen: list[tuple[bool, str, str]] = []
+
+    async def handler(item: str) -> None:
+        run: Any = asyncio.current_task()
+        before = word.get()
+        word.set(item)
+        if item == "waits":
+            await asyncio.sleep(0)
+        seen.append((run.group is second, before, word.get()))
+
+    bench = Bench(handler, first)
+    bench.put("ends")
+    await settle()
+    assert bench.runner._spare is not None
+    bench.runner.move(second)
+    bench.put("waits")
+    await settle()
+    assert seen == [(False, "none", "ends"), (True, "none", "waits")]
+
+
+def test_an_exit_in_the_first_step_ends_the_run() -> None:
+    """The program is ended by it, and the group has its slot again."""
+
+    async def handler(item: int) -> None:
+        raise SystemExit(item)
+
+    async def make() -> Bench:
+        return Bench(handler, group)
+
+    group = HandlerGroup(1)
+    with asyncio.Runner() as asyncio_runner:
+        bench = asyncio_runner.run(make())
+        bench.put(3)
+        with pytest.raises(SystemExit):
+            asyncio_runner.get_loop().run_forever()
+    assert (bench.runner.active, group.running, [type(e) for e in bench.errors]) == (set(), 0, [SystemExit])
+
+
+async def test_a_runner_may_want_to_hear_of_errors_only(graphflow_runner: asyncio.Runner) -> None:
+    """It is then not told of runs that end well."""
+    told: list[Any] = []
+
+    def handler(item: int) -> float:
+        return 1 / item
+
+    spec = RunnerSpec("bench", handler, lambda item, _, error: told.append((item, type(error))), wants_results=False)
+    runner = Runner(Ledger(asyncio.get_running_loop()), spec, deque([1, 0, 2]))
+    runner.wake()
+    assert told == [(0, ZeroDivisionError)]
+    assert (runner.runs, runner.errors) == (3, 1)
+
+
 # what asyncio offers
 
 
@@ -287,14 +394,16 @@ async def test_cancelling_twice_waits_for_the_same_end(graphflow_runner: asyncio
 
 
 @pytest.mark.parametrize("fails", [False, True])
-async def test_an_ended_run_keeps_nothing_alive(graphflow_runner: asyncio.Runner, fails: bool) -> None:
+@pytest.mark.parametrize("waits", [False, True])
+async def test_an_ended_run_keeps_nothing_alive(graphflow_runner: asyncio.Runner, waits: bool, fails: bool) -> None:
     """What a message held is free when its run has ended, without waiting for the garbage collector."""
 
     class Payload:
         pass
 
     async def handler(_: Payload) -> None:
-        await asyncio.sleep(0)
+        if waits:
+            await asyncio.sleep(0)
         if fails:
             raise ValueError("wrong")
 
@@ -347,6 +456,20 @@ async def test_an_error_does_not_stop_later_messages(
 
     assert bench.results == [0, None, 2, 3]
     assert [type(e) for e in bench.errors] == [type(None), error, type(None), type(None)]
+    assert bench.runner.errors == (error is not CancelledError)
+
+
+async def test_a_function_that_raises_stop_iteration_has_failed(graphflow_runner: asyncio.Runner) -> None:
+    """It is no coroutine, whose end that would be."""
+
+    def handler(item: int) -> None:
+        raise StopIteration(item)
+
+    bench = Bench(handler)
+    bench.put(1)
+    await settle()
+    assert bench.results == [None]
+    assert [type(e) for e in bench.errors] == [StopIteration]
 
 
 async def test_an_error_in_the_report_does_not_stop_later_messages(graphflow_runner: asyncio.Runner) -> None:

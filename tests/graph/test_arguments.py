@@ -55,13 +55,32 @@ def test_values(declared: str, given: list[str], found: dict[str, Any]) -> None:
         ("{a: {choices: [x, y]}}", "a:=z", "f.yaml:1:2: argument 'a' is 'z', but must be one of x, y"),
         ("{a: {default: 1}}", "b:=1", "command line: there is no argument 'b'; there is a"),
         ("{}", "b:=1", "command line: there is no argument 'b'; the file declares none under args:"),
-        ("{a: {}}", "a=1", "command line: 'a=1': an argument is written name:=value"),
+        ("{a: {}}", "a=1", "command line: 'a=1': an argument is written name:=value; write a:=1"),
     ],
 )
 def test_what_they_may_not_be(declared: str, given: str, problem: str) -> None:
     """Each mistake says what was expected."""
     got = values(declared, given)
     assert any(problem in text for text in got) if problem else got == {"a": 1.0}
+
+
+@pytest.mark.parametrize("words", ["a:= 1", "a := 1", "a :=1", "a: 1", "a = 1", "a=1", "a:1"])
+def test_an_argument_with_a_slip(words: str) -> None:
+    """Is answered once, with the argument to write."""
+    problems = Problems()
+    Arguments([*words.split(), "b:=2", "c:="], problems)
+    assert [str(one) for one in problems] == [
+        f"command line: {words!r}: an argument is written name:=value; write a:=1"
+    ]
+
+
+def test_words_that_are_no_argument() -> None:
+    """Are told one by one; an empty value takes nothing of the argument behind it."""
+    problems = Problems()
+    Arguments(["a:=", "b:=2", ":=1", "fast", "c:=x y"], problems)
+    assert [str(one) for one in problems] == [
+        f"command line: {word!r}: an argument is written name:=value" for word in (":=1", "fast")
+    ]
 
 
 def test_a_default_of_another_type() -> None:

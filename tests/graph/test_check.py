@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -182,9 +183,12 @@ steps:
         "{call: /hatch, request: {x: 1.0, y: 2, name: a}}",
         "{call: hatch}",
         "{call: /c/stop}",
+        "{call: /c/stop, type: std_srvs/Trigger}",
         "{call: /turtle1/set_pen, request: {anything: 1}}",
         "{call: /else/where, type: std_srvs/srv/Trigger}",
         "{call: /else/where, type: std_srvs/Trigger}",
+        "{call: /c/list_parameters}",
+        "{call: /c/get_type_description, request: {type_name: std_msgs/msg/String}}",
     ],
 )
 def test_steps_that_can_be(step: str) -> None:
@@ -210,6 +214,27 @@ def test_steps_that_can_be(step: str) -> None:
             ],
         ),
         (
+            "{call: /c/list_parameter}",
+            [
+                "5:13: no node of this graph offers the service /c/list_parameter; did you mean '/c/list_parameters'?"
+                " (for one outside the graph add type: package/srv/Name)"
+            ],
+        ),
+        (
+            "{call: /c/list_parameters, request: {dept: 1}}",
+            ["5:43: rcl_interfaces/srv/ListParameters_Request has no field 'dept'; did you mean 'depth'?"],
+        ),
+        (
+            "{goal: /hatch}",
+            ["5:13: no node of this graph offers the action /hatch; it is a service: call: /hatch"],
+        ),
+        ("{call: /goal}", ["5:13: no node of this graph offers the service /goal; it is a topic"]),
+        ("{call: /sim}", ["5:13: no node of this graph offers the service /sim; it is a node"]),
+        (
+            "{call: /hatch, type: turtlesim/Kill}",
+            ["5:13: /hatch is of type turtlesim/srv/Spawn, not turtlesim/Kill; leave out type:"],
+        ),
+        (
             "{call: /x, type: turtlesim/srv/Spwan}",
             ["5:13: package 'turtlesim' has no interface 'Spwan'; did you mean 'Spawn'?"],
         ),
@@ -222,7 +247,7 @@ def test_steps_that_can_be(step: str) -> None:
             [
                 "9:7: Spawn_Request.y: expected float32, got 'far'",
                 "10:7: turtlesim/srv/Spawn_Request has no field 'z'; there is name, theta, x, y",
-                "11:7: Spawn_Request.name: expected string, got 7",
+                "11:7: Spawn_Request.name: expected string, got 7; write '7'",
             ],
         ),
     ],
@@ -230,6 +255,13 @@ def test_steps_that_can_be(step: str) -> None:
 def test_steps_that_cannot_be(step: str, found: list[str]) -> None:
     """An unknown service, an unknown type, and every wrong field of a request, each at its own place."""
     assert problems(STEP.format(step)) == found
+
+
+def test_services_of_lifecycle_nodes() -> None:
+    """Are offered by these only."""
+    text = "nodes:\n  s: {class: a.b:Sim}\nsteps:\n  a: {call: /s/change_state, request: {transition: {id: 1}}}\n"
+    assert problems(text, {"a.b:Sim": replace(SIM, is_managed=True)}) == []
+    assert problems(text, {"a.b:Sim": SIM})[0].startswith("4:13: no node of this graph offers the service /s/change_st")
 
 
 def test_a_service_may_be_of_a_class_that_is_not_known() -> None:
@@ -288,3 +320,17 @@ def test_types_that_the_source_does_not_show() -> None:
     )
     text = "nodes:\n  /v: {class: a.b:Vague}\n  /c: {class: a.b:Clear}\nsteps:\n  go: {call: /reset}\n"
     assert problems(text, {i.class_path: i for i in (vague, clear)}) == []
+
+
+@pytest.mark.parametrize(
+    ("program", "end"),
+    [
+        ("sh -c 'sleep 1'", "each word stands by itself: command: [sh, -c, sleep 1]"),
+        ("sh 'a: b", 'each word stands by itself: command: [sh, "\'a:", b]'),
+        ("no_such_program -a", "it is not on the PATH"),
+    ],
+)
+def test_a_program_is_one_word(program: str, end: str) -> None:
+    """A command line in one text is told with its words."""
+    (found,) = check(plan(f'nodes:\n  /p: {{command: ["{program}"]}}\n'), {})
+    assert found.message.endswith(f" cannot be started: {end}")

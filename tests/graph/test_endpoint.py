@@ -13,8 +13,15 @@ def test_endpoints(text: str) -> None:
     assert endpoint(text) == text
 
 
-@pytest.mark.parametrize("text", ["", "robot", "robot:7447", "udp/robot:7447", "tcp/:7447", "tcp/robot:0", "tcp/r:x"])
+@pytest.mark.parametrize("text", ["", "robot", "robot:7447", "udp/robot:7447", "tcp/:7447", "tcp/r:x"])
 def test_what_is_no_endpoint(text: str) -> None:
     """Anything else is told how to write one."""
     with pytest.raises(ValueError, match="write tcp/HOST:7447"):
         endpoint(text)
+
+
+@pytest.mark.parametrize("port", ["0", "65536", "99999"])
+def test_what_is_no_port(port: str) -> None:
+    """Is told as that."""
+    with pytest.raises(ValueError, match=f"a port is 1 to 65535, not {port}"):
+        endpoint(f"tcp/robot:{port}")

@@ -314,16 +314,39 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
         ("for: {var: i, nodes: {}}", "2:1: the key 'in' is missing"),
         ("for: {vr: i, in: [1]}", "2:7: unknown key 'vr'; did you mean 'var'?"),
         ("for: {var: a-b, in: [1]}", "2:12: var: expected a name for the loop's values, got 'a-b'"),
+        ("for: {var: i, in: 3..1, nodes: {b: {class: x:Y}}}", "2:19: in: 3..1 is empty, as a span counts up; write 1."),
+        ("for: {var: i, in: [a, b, a], nodes: {b: {class: x:Y}}}", "2:26: in: 'a' is in the list twice; remove one"),
+        ("for: {var: i, in: 1..2}", "2:1: the loop has no nodes; indent nodes: below it"),
+        ("group: {namespace: lab}", "2:1: the group has no nodes; indent nodes: below it"),
+        (
+            "group: {lab: {nodes: {b: {class: x:Y}}}}",
+            "2:9: unknown key 'lab'; a group is named by its namespace: group: ",
+        ),
+        ("for i in 1..3:\n  nodes: {}", "2:1: unknown key 'for i in 1..3'; write for: {var: i, in: 1..3, nodes: ...}"),
+        ("include: sub.yaml r:=2 s:=b", "2:10: arguments stand apart: include: {file: sub.yaml, args: {r: 2, s: b}}"),
+        (
+            "steps: {s: {publish: /x}}",
+            "2:13: unknown key 'publish'; no step publishes: let a node do it, or graphflow t",
+        ),
+        (
+            "group: {nodes: {b: {class: x:Y, params: {rate=2.0}}}}",
+            "2:42: parameter 'rate=2.0' has no value; write rate: 2",
+        ),
         ("for: {var: i, in: x}", "2:19: in: expected a list or a span such as 1..10, got 'x'"),
         ("for: {var: i, in: [1, 2], nodes: {b: {class: x:Y}}}", "2:35: every round of the loop has the same node /b;"),
         ("for: {var: i, in: [1, 2], nodes: {$(var j): {class: x:Y}}}", "2:35: there is no argument 'j'; there is i"),
         ("for: {var: i, in: [{n: 1}], nodes: {b$(var i.m): {class: x:Y}}}", "2:37: $(var i.m): 'i' has no 'm'"),
         (
-            "group: {if: perhaps}",
+            "group: {if: perhaps, nodes: {b: {class: x:Y}}}",
             "2:13: if: expected true or false, got 'perhaps'; compare with $(eval ",
         ),
-        ("group: {if: $(eval x ==)}", "2:13: $(eval x ==): not an expression"),
+        ("group: {if: $(eval x ==), nodes: {b: {class: x:Y}}}", "2:13: $(eval x ==): not an expression"),
+        ("group: {if: 'Yes', nodes: {b: {class: x:Y}}}", "2:13: if: expected true or false, got 'Yes'; write 'true'"),
         ("group: {nodes: {b: {template: t}}}", "2:31: there is no template 't'; the file has none under templates:"),
+        (
+            "templates: {t: {class: x:Y, template: u}}\ngroup: {nodes: {b: {template: t}}}",
+            "2:29: a template cannot use a template; write here what it has",
+        ),
         ("templates: {t: {clas: x}}\nsteps: {s: {call: /x}}\ngroup: {nodes: {b: {template: t}}}", "2:17: unknown key"),
         (
             "templates: {t: 3}\ngroup: {nodes: {b: {template: t}}}",
@@ -387,3 +410,20 @@ def test_variables_of_groups_are_seen_in_them() -> None:
     [node] = plan(text).nodes
     assert (node.env["A"], node.params["a"].value) == ("1:2", "1:2 adas")
     assert problems("{nodes: {n: {class: x:Y, params: {a: $(env A)}}}, group: {env: {A: 1}, nodes: {}}}\n")
+
+
+def test_a_loop_may_be_empty_by_its_arguments() -> None:
+    """A span whose end an argument says may have no values; so may a list."""
+    text = HEAD + "args: {n: {default: 0}}\nfor: {var: i, in: 1..$(var n), nodes: {b$(var i): {class: x:Y}}}"
+    assert names(plan(text)) == ["/a"]
+    assert names(plan(text, "n:=2")) == ["/a", "/b1", "/b2"]
+
+
+def test_a_variable_of_another_language_is_remarked() -> None:
+    """An argument's name as a shell or a template has it stays as it is; in a program's words it may be meant."""
+    text = (
+        "args: {rate: {default: 2}}\nnodes:\n"
+        "  a: {class: x:Y, params: {p: '${rate} $HOME'}}\n"
+        "  b: {command: [sh, -c, 'echo $rate']}\n"
+    )
+    assert plan(text).remarks == ("f.yaml:3:31: ${rate} stays as it is; for the value of 'rate' write $(var rate)",)

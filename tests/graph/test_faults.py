@@ -8,8 +8,8 @@ import pytest
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
-from graphflow.graph.faults import _IN_A_NAMESPACE, Problems, example, validated
-from graphflow.graph.model import GraphFile
+from graphflow.graph.faults import _IN_A_NAMESPACE, Problems, example, unknown_key, validated
+from graphflow.graph.model import GraphFile, StepSpec, keys_of
 from graphflow.graph.resolve import resolve
 
 HERE, THERE = Place("f.yaml", 1, 1), Place("f.yaml", 2, 1)
@@ -48,6 +48,8 @@ NODE = "nodes:\n  a: {class: x:Y, concurrency: "
             "nodes:\n  a: {class: x:Y, after: [3]}",
             "2:26: after: expected a name, a list of names, or NAME: ready|",
         ),
+        ("nodes:\n  a: {command: []}", "2:16: command: is empty; write the program and its words: command: [rviz2"),
+        ("nodes:\n  a: {pkg: p, exec: ''}", "2:6: an executable has both: pkg: PACKAGE and exec: NAME"),
         ("nodes:\n  a: {class: x:Y}\ncall_timeout: -1", "3:15: call_timeout: expected seconds, or never, got -1"),
     ],
 )
@@ -86,7 +88,15 @@ def test_a_key_with_a_typo_is_not_missing_too() -> None:
             ["pkg: is for nodes, and this is a program; write pkg: and exec:, or command:, not both"],
         ),
         ("{pkg: p, exec: e, process: x}", ["process: is for nodes, and this is a program; remove it"]),
-        ("{class: x:Y, args: [a]}", ["args: goes with pkg: and exec:, and this is a node with a class; remove it"]),
+        (
+            "{class: x:Y, args: [a]}",
+            ["args: is for programs, and this is the class x:Y, which takes params: and remap:; remove it"],
+        ),
+        (
+            "{class: x:Y, delay: 2.0}",
+            ["unknown key 'delay'; a step waits: steps: {soon: {delay: 2.0}}, and after: soon at the node"],
+        ),
+        ("class:x:Y", ["a: write a space after 'class:'"]),
     ],
 )
 def test_words_of_ros_launch_files(node: str, said: list[str]) -> None:
@@ -124,3 +134,34 @@ def test_examples_fit_where_they_are_given() -> None:
     assert example("nodes", "anything", "after") == ", for example after: /talker"
     assert example("nodes", "a", "concurrency", "motion").startswith(", for example motion: [control], or ")
     assert example("nodes", "a", "class") == ""
+
+
+BELONGS = "{}: belongs to a node; indent it below the node's name, beside class:{}"
+SEVERAL = ", or for several nodes into a group: with its nodes:"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("nodes:\n  /a: {class: x:Y}\n  /params: {rate: 2.0}\n", [f"3:3: {BELONGS.format('params', SEVERAL)}"]),
+        ("nodes:\n  /a: {class: x:Y}\n  /process: main\n", [f"3:3: {BELONGS.format('process', '')}"]),
+        ("nodes:\n  /a: {class: x:Y}\nparams: {rate: 2.0}\n", [f"3:1: {BELONGS.format('params', SEVERAL)}"]),
+        ("nodes:\n  /a: {class: x:Y}\nremap: {a: b}\n", [f"3:1: {BELONGS.format('remap', SEVERAL)}"]),
+        (
+            "nodes:\n  /a: {class: x:Y, rate: 2.0}\n",
+            ["2:20: unknown key 'rate'; a parameter is written under params:, as in params: {rate: 2.0}"],
+        ),
+        ("nodes:\n  /a: {class: x:Y, critcal: true}\n", ["2:20: unknown key 'critcal'; did you mean 'critical'?"]),
+        ("nodes:\n  /params: {class: x:Y}\n", []),
+    ],
+)
+def test_keys_of_nodes_at_a_wrong_place(text: str, said: list[str]) -> None:
+    """Are told where they belong, and nothing else is said of them."""
+    assert faults(text) == said
+
+
+@pytest.mark.parametrize("key", ["args", "data", "values"])
+def test_values_of_a_step(key: str) -> None:
+    """Are under `request:`, of a call and of a goal."""
+    expected = f"unknown key {key!r}; the values of a call or a goal are written under request:"
+    assert unknown_key(key, keys_of(StepSpec), {"x": 1}) == expected

@@ -12,7 +12,8 @@ from graphflow.errors import UsageFault
 from graphflow.graph import installed
 from graphflow.graph.executables import all_executables, command_of, find
 from graphflow.graph.project import project_root
-from graphflow.graph.workspace import EntryPoint, Workspace
+from graphflow.graph.setup_file import EntryPoint
+from graphflow.graph.workspace import Workspace
 from tests.conftest import Machine
 
 BLINKER = "from graphflow import Node\nclass Blinker(Node): ...\n"

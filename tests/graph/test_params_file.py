@@ -94,8 +94,23 @@ def test_the_later_section_counts(tmp_path: Path) -> None:
         ("{}", "p.yaml:1:1: the file has no section; write NODE: {ros__parameters: {rate: 2.0}}"),
         ("a: 1", "p.yaml:1:1: 'a': put parameters below NODE and ros__parameters"),
         ("a:\n  rate: 1", "p.yaml:2:3: 'rate': put parameters below NODE and ros__parameters"),
+        ("a:\nros__parameters:\n  x: 1", "p.yaml:2:1: 'ros__parameters' belongs below 'a': indent it and what follows"),
+        ("a:\n  ros__parameters:\n  x: 1", "p.yaml:3:3: 'x' belongs below 'ros__parameters': indent it and what"),
+        ("ros__parameters: {x: 1}", "p.yaml:1:1: ros__parameters belongs below a node: write NODE: above, and"),
+        ("a:\n  ros__parameters:\n    x=150", "p.yaml:2:3: ros__parameters is a mapping; write x: 150"),
         ("a: {ros__parameters: 3}", "p.yaml:1:5: ros__parameters is a mapping, for example {rate: 2.0}"),
+        (
+            "a: {ros__parameters: {'x.y: 2.0': }}",
+            "p.yaml:1:23: parameter 'x.y: 2.0' has no value; as a whole it is read as a name: write "
+            "x.y: 2.0, without quotes",
+        ),
+        ("a: {ros__parameters: {'x:=2.0': }}", "p.yaml:1:23: parameter 'x:=2.0' has no value; write x: 2.0"),
+        ("a: {ros__parameters: {x=: }}", "p.yaml:1:23: parameter 'x=' has no value; an empty string is ''"),
         ("a: {ros__parameters: {x: }}", "p.yaml:1:23: parameter 'x' has no value; an empty string is ''"),
+        (
+            "a: {ros__parameters: {x: 2,0}}",
+            "p.yaml:1:28: parameter '0' has no value; a number is written with a point, as 2.5",
+        ),
         (
             "a:\n  ros__parameters:\n    x.y: 1\n    x: {y: 2}",
             "p.yaml:4:12: parameter 'x.y' is given twice, first on line 3; remove one",
@@ -209,6 +224,7 @@ def test_a_wildcard_must_mean_somebody(tmp_path: Path) -> None:
     [
         ("/c: {ros__parameters: {x: 1}}", "p.yaml has nothing for /a"),
         ("/a: {ros__parameters: {x: 1}}\n/ab: {ros__parameters: {x: 1}}", "there is no node /ab; did you mean '/a'?"),
+        ("/a: {ros_parameters: {x: 1}}", "'ros_parameters': did you mean 'ros__parameters', with two _ in a row?"),
         ("/a: {x: 1}", "'x': put parameters below NODE and ros__parameters"),
     ],
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.graph import project
-from graphflow.graph.project import bundled_graphs, demos_root, project_root, shown
+from graphflow.graph.project import bundled_graphs, demos_root, module_of, project_root, shown
 
 
 @pytest.fixture
@@ -81,3 +81,16 @@ def test_graphs_beside_nodes(folder: Path) -> None:
     assert project_root(folder / "a/graphs/g.yaml") == folder / "a"
     (folder / "a/nodes").rmdir()
     assert project_root(folder / "a/graphs/g.yaml") == folder / "a/graphs"
+
+
+def test_a_file_is_imported_from_its_project(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The working directory counts for a file without one: above a project it is not what its modules are named by."""
+    (folder / "a/nodes/n.py").touch()
+    (folder / "b/nodes").mkdir()
+    (folder / "b/nodes/n.py").touch()
+    monkeypatch.chdir(folder)
+    assert module_of(Path("a/nodes/n.py")) == (folder / "a", "nodes.n")
+    assert module_of(Path("b/nodes/n.py")) == (folder, "b.nodes.n")
+    monkeypatch.chdir(folder / "b")
+    assert module_of(Path("nodes/n.py")) == (folder / "b", "nodes.n")
+    assert module_of(folder / "a/nodes/n.py") == (folder / "a", "nodes.n")

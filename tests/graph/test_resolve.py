@@ -169,7 +169,12 @@ def test_arguments(given: Sequence[str], values: dict[str, Any]) -> None:
     [
         (["mode:=2", "gian:=1"], "command line: there is no argument 'gian'; did you mean 'gain'?"),
         (["mode:=2", "gain"], "command line: 'gain': an argument is written name:=value"),
-        (["mode:=2", "gain=1"], "command line: 'gain=1': an argument is written name:=value"),
+        (["mode:=2", "gain=1"], "command line: 'gain=1': an argument is written name:=value; write gain:=1"),
+        (
+            ["mode:=2", "b.yaml"],
+            "command line: 'b.yaml': an argument is written name:=value; to start b.yaml, too, have a third file with "
+            "include: [FILE, FILE]",
+        ),
         (["mode:=2", ":=1"], "command line: ':=1': an argument is written name:=value"),
         (["mode:=slow"], "4:3: argument 'mode' is 'slow', but must be one of fast, 2"),
         (["mode:=2", "name:=8"], "3:3: argument 'name' is '8', but must be one of 7, turtle2"),
@@ -213,6 +218,7 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ("nodes:\n  a: x:Y\n", "2:6: /a: expected a mapping, got 'x:Y', for example {class: nodes.talker:Talker}"),
         ("nodes:\n  a: {clas: x:Y}\n", "2:7: unknown key 'clas'; did you mean 'class'?"),
         ("nodes:\n  a: {class:x:Y}\n", "2:7: unknown key 'class:x:Y'; write a space after 'class:'"),
+        ("nodes:\n  /a {class: x:Y}\n", "2:14: a colon is missing after '/a'"),
         ("nodes:\n  a:{class: x:Y}\n", "2:13: the name 'a:{class' has a colon in it; write a space after the colon"),
         ("nodes:\n  a: {class: x.Y}\n", "2:14: 'x.Y' is not a class; write package.module:Class, for example"),
         ("nodes:\n  a: {class: 3}\n", "2:14: class: expected text, got 3"),
@@ -382,13 +388,14 @@ steps:
   t: {call: /x, after: [s, ss]}
 """.replace("5,", "'5',")
     ) == [
-        "2:3: '/a-b' is not a node name: 'a-b' may have only letters, digits and _, and may not begin with a digit",
+        "2:3: '/a-b' is not a node name: 'a-b' may have only letters, digits and _, and may not begin with a digit; "
+        "did you mean 'a_b'?",
         "3:28: parameter 'p' has no value; an empty string is ''",
         "3:37: parameter 'q.r' has no value; an empty string is ''",
         "4:30: '/5' is not a namespace: '5' may have only letters, digits and _, and may not begin with a digit",
         "5:3: there are two nodes /c; the other is on line 3",
         "7:13: 'x y' is not a topic or service name: 'x y' may have only letters, digits and _, and may not begin with "
-        "a digit",
+        "a digit; did you mean 'x_y'?",
         "8:28: after: there is no node or step 'ss'; did you mean 's'?",
     ]
 
@@ -552,7 +559,7 @@ def lamps(tmp_path: Path) -> Path:
     (folder / "package.xml").write_text("<package><name>lamp</name></package>")
     (folder / "setup.py").write_text("setup(entry_points={'console_scripts': ['shine = lamp.a:main', 'b = lamp.b:f']})")
     (folder / "CMakeLists.txt").write_text("add_executable(glow src/glow.cpp)")
-    (folder / "lamp" / "a.py").write_text("import rclpy\n")
+    (folder / "lamp" / "a.py").write_text("import rclpy\ndef main(): ...\n")
     (folder / "scripts" / "blink.py").write_text("import rclpy\n")
     (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {level: 2}}\n")
     return tmp_path
@@ -616,7 +623,7 @@ def test_programs_that_keep_their_names(lamps: Path) -> None:
         ("{pkg: lamp, exec: shin}", "the package 'lamp' has no executable 'shin'; did you mean 'shine'?"),
         ("{pkg: lmp, exec: shine}", "there is no package 'lmp' in WORKSPACE, and no ROS 2 is sourced; did you mean"),
         ("{pkg: lamp, exec: glow}", "glow of the package 'lamp' is C++, which only colcon builds; graphflow runs Pyth"),
-        ("{pkg: lamp, exec: b}", "WORKSPACE/src/lamp/setup.py: b is lamp.b:f, and there is no WORKSPACE/src/lamp/"),
+        ("{pkg: lamp, exec: b}", "WORKSPACE/src/lamp/setup.py:1: b is lamp.b:f, and there is no WORKSPACE/src/lamp/"),
         (
             "{pkg: turtlesim, exec: turtlesim_nod}",
             "the package 'turtlesim' has no executable 'turtlesim_nod' here; did you mean 'turtlesim_node'?",
@@ -649,6 +656,19 @@ def test_packages_that_only_ros_may_have(lamps: Path, monkeypatch: pytest.Monkey
     [problem] = check(planned(lamps, "nodes: {a: {pkg: nav2, exec: planner}}"), {})
     said = "there is no package 'nav2' in the workspace, and no ROS 2 is sourced"
     assert (problem.message, str(problem.place)) == (said, "f.yaml:1:18")
+
+
+def test_ros2_as_a_program(lamps: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is there whether or not a ROS 2 is sourced, since graphflow takes its place."""
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert check(planned(lamps, "nodes: {a: {command: [ros2, bag, record, -a]}}"), {}) == []
+
+
+def test_a_class_and_an_executable(lamps: Path) -> None:
+    """One of the two was meant, also where the executable is a class that is here."""
+    for text in ("pkg: demo_nodes_py, exec: talker", "pkg: lamp, exec: shine"):
+        with pytest.raises(GraphFileError, match="write class:, or pkg: and exec:, not both"):
+            planned(lamps, f"nodes: {{a: {{class: 'x:Y', {text}}}}}")
 
 
 def test_words_before_a_program(lamps: Path) -> None:

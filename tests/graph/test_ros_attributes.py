@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from graphflow.graph import source
-from graphflow.graph.ros_attributes import children, items, says, words
+from graphflow.graph.ros_attributes import children, items, output_fault, says, words
 from graphflow.graph.tree import Item, tree
 
 
@@ -51,3 +51,15 @@ def test_says(value: Any, holds: bool) -> None:
     item = read(f"{{a: {value}}}\n")
     assert says(item, "a", "true", "1") is holds
     assert not says(item, "b", "true")
+
+
+@pytest.mark.parametrize("output", ["screen", "own_log", "$(var x)", {"stdout": "screen"}, None])
+def test_outputs(output: object) -> None:
+    """Of a program, as launch takes them."""
+    assert output_fault(output) is None
+
+
+def test_an_output_that_is_none() -> None:
+    """Is told with the one that is meant, or with all."""
+    assert output_fault("scren") == "output: 'scren' is none of launch's; did you mean 'screen'?"
+    assert output_fault("x") == "output: 'x' is none of launch's; there is both, full, log, own_log, screen"

@@ -59,6 +59,15 @@ def test_a_condition_holds_for_all() -> None:
     assert [one["if"] for one in found] == ["$(var x)", "$(var x)"]
 
 
+def test_a_condition_of_its_own() -> None:
+    """A node has it as well as that of the container."""
+    own = f"{TALKER[:-1]}, unless: $(var y)}}"
+    found, _ = made(f"{{name: c, if: $(var x), composable_node: [{own}]}}\n")
+    assert found[0]["if"] == "$(all $(var x) $(not $(var y)))"
+    found, _ = made(f"{{name: c, composable_node: [{own}]}}\n")
+    assert found[0]["unless"] == "$(var y)"
+
+
 def test_an_empty_container() -> None:
     """Is nothing."""
     assert made("{name: c}\n") == ([], [])

@@ -253,6 +253,11 @@ def test_lifecycle_nodes() -> None:
     [
         ("nod: {pkg: a}", "f.yaml:1:11: the action 'nod' has no words in a graph file; did you mean 'node'?"),
         ("node: {pkg: a, exe: b}", "f.yaml:1:26: node: unknown attribute 'exe'; did you mean 'exec'?"),
+        ("node: {pkg: a, type: b}", "f.yaml:1:26: node: unknown attribute 'type'; it is called 'exec' here"),
+        (
+            "node: {pkg: a, exec: b, param: {rate: 2.0}}",
+            "f.yaml:1:42: param: expected a list of names and values, such as - {name: rate, value: 1}",
+        ),
         ("node: {pkg: a}", "f.yaml:1:11: node: the attributes 'pkg' and 'exec' are needed"),
         ("node: 3", "f.yaml:1:17: node: expected a mapping of its attributes, got 3"),
         (
@@ -275,6 +280,18 @@ def test_lifecycle_nodes() -> None:
         ("executable: {}", "f.yaml:1:11: executable: the attribute 'cmd' is missing"),
         ('executable: {cmd: "a \'b"}', "f.yaml:1:29: cmd: No closing quotation"),
         ("executable: {cmd: 'ros2 service call /a b/srv/C {d'}", "f.yaml:1:29: the request '{d'"),
+        (
+            "executable: {cmd: a, output: scren}",
+            "f.yaml:1:40: executable: output: 'scren' is none of launch's; did you",
+        ),
+        (
+            "node: {pkg: turtlesim, exec: mimic, remap: {from: a, to: b}}",
+            "f.yaml:1:54: node: remap is a list: write [ ] around { }",
+        ),
+        (
+            "include: {file: a.launch.py, arg:\n      {name: a, value: b}}",
+            "f.yaml:2:7: include: arg is a list: put '- ' before 'name:'",
+        ),
         ("timer: {children: []}", "f.yaml:1:11: timer: the attribute 'period' is missing"),
     ],
 )
@@ -382,14 +399,17 @@ def test_a_program_without_a_name(tmp_path: Path) -> None:
 
 
 def test_a_group_without_a_scope() -> None:
-    """What it sets holds for what comes after it, too; with a condition that has no words."""
+    """What it sets holds for what comes after it, too; a parameter with a condition has no words."""
     inner = "children: [{push_ros_namespace: {namespace: a}}]"
     made, complaints, _ = native(f"launch: [{{{TURTLE}}}, {{group: {{scoped: 'false', {inner}}}}}, {{{TURTLE}}}]\n")
     turtle = {"nodes": {"turtlesim": {"class": "nodes.turtlesim:TurtleSim"}}}
     assert (made, complaints) == ({**turtle, "group": {"namespace": "a", **turtle}}, [])
+    made, complaints, _ = native(f"launch: [{{group: {{scoped: False, if: $(var x), {inner}}}}}, {{{TURTLE}}}]\n")
+    assert (made, complaints) == ({"group": {"namespace": "$(if $(var x) a '')", **turtle}}, [])
+    inner = "children: [{set_parameter: {name: a, value: 1}}]"
     _, complaints, _ = native(f"launch: [{{group: {{scoped: False, if: 'true', {inner}}}}}, {{{TURTLE}}}]\n")
     assert complaints == [
-        "f.yaml:1:58: push_ros_namespace: a condition here has no words in a graph file; put it on a group"
+        "f.yaml:1:58: set_parameter: a condition here has no words in a graph file; put it on a group"
     ]
 
 
@@ -400,12 +420,17 @@ def test_variables_that_are_set_under_conditions(tmp_path: Path) -> None:
     - let: {name: way, value: it's a walk, unless: $(var fast)}
     - let: {name: way, value: a run, if: $(var fast)}
     - group: {scoped: false, unless: $(var fast), children: [{let: {name: why, value: none}}]}
-    - executable: {cmd: [echo, $(var way), $(var why)]}
+    - group:
+        scoped: false
+        unless: $(var fast)
+        children: [{let: {name: how, value: slowly, if: 'yes'}}, {group: [{log: {message: slow}}]}]
+    - executable: {cmd: [echo, $(var way), $(var why), $(var how)]}
     """
     (tmp_path / "a.launch.yaml").write_text(f"launch:{text}")
-    for fast, said in (("true", ("a run", "")), ("false", ("it's a walk", "none"))):
-        [echo] = load(tmp_path / "a.launch.yaml", [f"fast:={fast}"], {}).nodes
-        assert echo.command == ("echo", *said)
+    for fast, said in (("true", ("a run", "", "")), ("false", ("it's a walk", "none", "slowly"))):
+        plan = load(tmp_path / "a.launch.yaml", [f"fast:={fast}"], {})
+        assert plan.nodes[0].command == ("echo", *said)
+        assert len(plan.steps) == (fast == "false")
 
 
 def test_what_is_delayed_as_a_whole(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ def complained(place: Place, text: str) -> None:
     ("name", "said", "expected"),
     [
         ("push_ros_namespace", {"namespace": "lab"}, ("namespace", "lab")),
+        ("push_ros_namespace", {"namespace": "lab", "unless": "$(var x)"}, ("namespace", "$(if $(var x) '' lab)")),
         ("set_parameter", {"name": "rate", "value": "2"}, ("params", {"rate": 2})),
         ("set_use_sim_time", {"value": "true"}, ("params", {"use_sim_time": True})),
         ("set_remap", {"from": "a", "to": "b"}, ("remap", {"a": "b"})),
@@ -38,7 +39,15 @@ def test_a_missing_attribute_is_told() -> None:
     """With its name, and where."""
     told: list[str] = []
     found = pair(located({"value": "1"}, HERE), "name", "value", lambda place, text: told.append(f"{place}: {text}"))
-    assert (found.plain(), told) == ({}, ["f.yaml:1:1: the attribute 'name' is missing"])
+    assert (found.plain(), told) == (
+        {},
+        ["f.yaml:1:1: the attribute 'name' is missing; one is written name: ..., value: ..."],
+    )
+    told.clear()
+    found = pair(
+        located({"from": "a", "too": "b"}, HERE), "from", "to", lambda place, text: told.append(f"{place}: {text}")
+    )
+    assert (found.plain(), told) == ({}, ["f.yaml:1:1: unknown attribute 'too'; did you mean 'to'?"])
 
 
 def test_parameters_and_files_of_them() -> None:
@@ -102,3 +111,11 @@ def test_words_for_ros() -> None:
         "log_level": "debug",
     }
     assert noted == ["args: the node here does not know --fast; it is left out"]
+
+
+def test_a_file_with_substitutions() -> None:
+    """They are made where that is asked for."""
+    entries: dict[str, Item] = {}
+    files = [{"from": "$(dirname)/a b.yaml", "allow_substs": True}, {"from": "c.yaml", "allow_substs": "false"}]
+    params(located({"param": files}, HERE), entries, complained)
+    assert entries["params_file"].plain() == ["$(substituted '$(dirname)/a b.yaml')", "c.yaml"]

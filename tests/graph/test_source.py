@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from contextlib import suppress
 from pathlib import Path
@@ -162,6 +163,10 @@ NESTED = 900
         ("x:\n  true: a", "2:3: the key true is not text; write it in quotes: 'true'"),
         ("~: a", "1:1: the key ~ is not text; write it in quotes: '~'"),
         ("1.5: a", "1:1: the key 1.5 is not text; write it in quotes: '1.5'"),
+        ("{255, 0, 0}", "1:2: values have names: {name: 255, ...}"),
+        ("{x: 2,0}", "1:7: a number is written with a point: 2.0, not 2,0"),
+        ("{x: [1], 2: 3}", "1:10: the key 2 is not text; write it in quotes: '2'"),
+        ("{x: a1,2: 3}", "1:8: the key 2 is not text; write it in quotes: '2'"),
         ("? [a]\n: 1", "1:3: a key must be a word, not a list or mapping"),
         ("{a: 1}: 1", "1:1: a key must be a word, not a list or mapping"),
         (f"a: {'9' * 5000}", f"1:4: {'9' * 20}... has too many digits for a number; put text in quotes"),
@@ -193,6 +198,8 @@ def test_what_is_nested_deeper_than_libyaml_takes() -> None:
         ("x: 1\na: {b: c: d}", "2:9", "(the { in line 2, column 4 is not closed, or a text after it needs quotes)"),
         ('a: "b', "1:6", "(the quote in line 1, column 4 is not closed)"),
         ("a: b: c", "1:5", "(quote a text that has ': ' in it; indent more below a key)"),
+        ("a: 'it's me'", "1:8", "(an apostrophe in quotes is written twice: 'it''s')"),
+        ("x: 1\na: {b: 'it's'}", "2:12", "(an apostrophe in quotes is written twice: 'it''s')"),
         ("a: @b", "1:4", "(quote a text that begins with @)"),
         ("a: 50\nb: %", "2:4", "(quote a text that begins with %)"),
         ("a: {b: ${var x}}", "1:9", "(a substitution is written with parentheses, as in $(var x))"),
@@ -245,6 +252,16 @@ def test_files_are_utf8_text(tmp_path: Path) -> None:
         read_file(tmp_path / "none.yaml", "none.yaml")
     with pytest.raises(GraphFileError, match="cannot be read: Is a directory"):
         read_file(tmp_path, "folder")
+
+
+def test_files_of_other_kinds(tmp_path: Path) -> None:
+    """A FIFO without a writer keeps nobody waiting; a file without an end is left."""
+    os.mkfifo(tmp_path / "fifo.yaml")
+    with pytest.raises(GraphFileError, match=r"p\.yaml: cannot be read: it is not a regular file"):
+        read_file(tmp_path / "fifo.yaml", "p.yaml")
+    (tmp_path / "long.yaml").write_bytes(b"#" * (MAX_BYTES + 1))
+    with pytest.raises(GraphFileError, match=r"cannot be read: it has more than 1,000,000 bytes"):
+        read_file(tmp_path / "long.yaml", "p.yaml")
 
 
 @pytest.mark.parametrize(
@@ -318,3 +335,17 @@ def test_both_parsers_agree(text: str) -> None:
         slow = outcome()
     # libyaml takes a few texts that PyYAML refuses; what both take is the same.
     assert "refused" in (fast, slow) or repr(fast) == repr(slow)
+
+
+def test_keys_that_are_no_text_can_be_told_together(tmp_path: Path) -> None:
+    """With somebody to tell, they are left out with what is below them, and the rest of the file is read."""
+    (tmp_path / "f.yaml").write_text("a: {x: 2,0, y: 1}\n3: {z: [4]}\n")
+    told: list[str] = []
+
+    found = read_file(tmp_path / "f.yaml", "f.yaml", complain=lambda place, text: told.append(f"{place}: {text}"))
+
+    assert found.data == {"a": {"x": 2, "y": 1}}
+    assert told == [
+        "f.yaml:1:10: a number is written with a point: 2.0, not 2,0",
+        "f.yaml:2:1: the key 3 is not text; write it in quotes: '3'",
+    ]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graphflow.graph.substitution_words import UnclosedError, Word, as_word, quoted, spans, words
+from graphflow.graph.substitution_words import UnclosedError, Word, as_word, misspelt, quoted, spans, words
 from tests.cases import count
 
 
@@ -64,3 +64,16 @@ def test_a_quoted_text_is_read_back(text: str) -> None:
     assert "".join(part for part, _ in spans(word.text, is_word=True)) == text
     assert words(f"a {quoted(text)} b")[1] == word
     assert isinstance(word, Word)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("${rate} Hz", [("${rate}", "rate")]),
+        ("$rate,{{ who }}", [("$rate", "rate"), ("{{ who }}", "who")]),
+        ("$(var rate) $rates ${HOME} rate {who}", []),
+    ],
+)
+def test_variables_of_other_languages(text: str, found: list[tuple[str, str]]) -> None:
+    """Are told if they are names that are known here."""
+    assert list(misspelt(text, ["rate", "who"])) == found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import graphflow
-from graphflow.graph.substitutions import MAX_DEPTH, Outside, SubstitutionError, Substitutions
+from graphflow.graph.substitutions import MAX_DEPTH, Outside, SubstitutionError, Substitutions, truth
 from tests.cases import count
 
 ARGS: dict[str, Any] = {
@@ -165,6 +166,9 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
         ("$(if true)", "write $(if CONDITION A B)"),
         ("$(if maybe a b)", "expected true or false, got 'maybe'"),
         ("$(all on 2)", "expected true or false, got '2'"),
+        ("$(any true maybe)", "expected"),
+        ("$(or true maybe)", "expected"),
+        ("$(and false maybe)", "expected"),
         ("$(any 'true)", "is not closed, or no space follows it"),
         ("$(env 'HO'ME)", """the quote in "'HO'ME" is not closed, or no space follows it"""),
         ("$(find-pkg-prefix nowhere_to_be)", "no package of that name is installed"),
@@ -181,6 +185,7 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
         ("$(find-pkg-share nowhere_to_be)", "no package of that name is installed"),
         ("$(find-pkg-share ../x)", "no package of that name is installed"),
         ("$(find-pkg-share __main__)", "no package of that name is installed"),
+        ("$(name)", "$(name): unknown substitution 'name'; write $(var name)"),
         ("$(vra name)", "$(vra name): unknown substitution 'vra'; did you mean 'var'?"),
         ("$(find-pkg-shar x)", "unknown substitution 'find-pkg-shar'; did you mean 'find-pkg-share'?"),
         ("$()", "unknown substitution ''"),
@@ -227,3 +232,65 @@ def test_all(words: str, word: str) -> None:
     assert apply(f"is $(all {words})") == f"is {word}"
     assert apply(f"is $(any {words} false)") == "is true"
     assert apply("$(any false 0)") is False
+
+
+def test_a_copy_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its substitutions have been made, but for those in comments, and its lines stay; one without any is itself."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    file = tmp_path / "p.yaml"
+    file.write_text("# of $(var nobody)\na:\n  rate: $(var gain)\n  who: '$(env USER)'\n")
+    copies = [Substitutions(ARGS, tmp_path / "lab.yaml", Outside(ENV)).apply("$(substituted p.yaml)") for _ in range(2)]
+    assert copies[0] == copies[1]
+    assert Path(copies[0]).name == "p.yaml"
+    assert Path(copies[0]).read_text() == "\na:\n  rate: 2.5\n  who: 'ada'\n"
+    file.write_text("a: 1\n")
+    assert apply(f"$(substituted {file})") == str(file)
+
+
+@pytest.mark.parametrize("word", ["file-content", "substituted"])
+def test_files_of_other_kinds(word: str, tmp_path: Path) -> None:
+    """A FIFO without a writer keeps nobody waiting."""
+    os.mkfifo(tmp_path / "fifo")
+    with pytest.raises(SubstitutionError, match="it is not a regular file"):
+        apply(f"$({word} {tmp_path / 'fifo'})")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("a: $(var nobody)", "there is no argument 'nobody'"),
+        ("a: $(substituted p.yaml)", "the file has a substitution of this kind itself"),
+        (None, "No such file"),
+    ],
+)
+def test_a_file_that_cannot_be_copied(tmp_path: Path, content: str | None, message: str) -> None:
+    """It is told why."""
+    if content is not None:
+        (tmp_path / "p.yaml").write_text(content)
+    with pytest.raises(SubstitutionError, match=message):
+        apply(f"$(substituted {tmp_path / 'p.yaml'})")
+
+
+def test_no_place_for_a_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """That is told as well."""
+    (tmp_path / "state").touch()
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    (tmp_path / "p.yaml").write_text("a: $(var gain)")
+    with pytest.raises(SubstitutionError, match="Not a directory"):
+        apply(f"$(substituted {tmp_path / 'p.yaml'})")
+
+
+@pytest.mark.parametrize(
+    ("value", "file", "way"),
+    [
+        ("on", "a.yaml", "write 'true'"),
+        ("NO", "a.launch.py", "write 'false'"),
+        ("fast", "a.yaml", "compare with $(eval NAME == 'text')"),
+        ("fast", "a.launch.py", "compare with EqualsSubstitution(..., 'text')"),
+    ],
+)
+def test_a_condition_that_is_none(value: str, file: str, way: str) -> None:
+    """Is answered in the language of its file."""
+    with pytest.raises(SubstitutionError) as caught:
+        truth(value, file)
+    assert str(caught.value) == f"expected true or false, got {value!r}; {way}"

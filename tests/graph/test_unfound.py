@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.graph.unfound import no_packages, outer_workspace, owners, why_no_package
+from graphflow.graph.unfound import launching, no_packages, outer_workspace, owners, why_no_package
 from graphflow.graph.workspace import Workspace, find_workspace
 
 SETUP = "from setuptools import setup\nsetup(entry_points={'console_scripts': ['shine = lamp.node:main']})\n"
@@ -33,6 +33,8 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
     (source / "dark" / "resource" / "dark").touch()
     write(source / "vendored", setup_py="")
     write(source / "cut", package_xml="<package")
+    write(source / "open", package_xml="<package><name>open<name></package>")
+    write(source / "nameless", package_xml="<package></package>")
     write(source / "folder", package_xml=manifest("other"))
     write(source / "ignored", package_xml=manifest("ignored"), setup_py=SETUP)
     (source / "ignored" / "COLCON_IGNORE").touch()
@@ -42,12 +44,25 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
     return find_workspace(tmp_path / "ws")
 
 
+def test_launch_files_of_packages(workspace: Workspace) -> None:
+    """Are started by their package, however deep they lie in its `launch/`."""
+    file = workspace.packages["lamp"].folder / "launch" / "robot" / "lamp.launch.py"
+    file.parent.mkdir(parents=True)
+    file.touch()
+    told = "; to start it: graphflow launch lamp lamp.launch.py"
+    assert launching("lamp.launch.py", workspace.packages.values()) == told
+    assert launching("src/lamp.launch.py", workspace.packages.values()) == told
+    assert launching("other.launch.py", workspace.packages.values()) == ""
+
+
 @pytest.mark.parametrize(
     ("name", "why"),
     [
         ("dark", "src/dark has setup.py but no package.xml; to make it a package, write in it: <package"),
         ("vendored", "src/vendored has setup.py but no package.xml"),
-        ("cut", "src/cut/package.xml has no <name>"),
+        ("cut", "src/cut/package.xml:1: it is no valid XML: unclosed token; is a tag not closed by </...>?"),
+        ("open", "src/open/package.xml:1: it is no valid XML: mismatched tag; is a tag not closed by </...>?"),
+        ("nameless", "src/nameless/package.xml has no <name>; to make it a package, write in it: <package"),
         ("folder", "src/folder is the package 'other', by the name in its package.xml"),
         ("ignored", "src/ignored is left out of the workspace, as it has a file COLCON_IGNORE"),
         ("project", "src/project is a project of graphflow's, not a package of ROS 2's; to use it: cd src/project"),
@@ -66,6 +81,13 @@ def test_the_folder_that_the_user_is_in(tmp_path: Path, monkeypatch: pytest.Monk
     (tmp_path / "dark" / "setup.py").touch()
     monkeypatch.chdir(inner)
     assert "has setup.py but no package.xml" in str(why_no_package("dark", find_workspace(inner)))
+
+
+def test_a_package_beside_the_others(workspace: Workspace) -> None:
+    """It is told where it belongs."""
+    write(workspace.root / "new", package_xml=manifest("new"))
+    said = why_no_package("new", workspace)
+    assert said == "new lies beside src, where packages are looked for: mv new src"
 
 
 def test_nothing_of_that_name(workspace: Workspace) -> None:
@@ -89,7 +111,13 @@ def test_a_workspace_in_a_workspace(workspace: Workspace) -> None:
 
 def test_folders_that_were_meant(workspace: Workspace) -> None:
     """A `package.xml` or the marker of ament says so; other code may have a `setup.py`, too."""
-    assert [said.split()[0] for said in no_packages(workspace)] == ["src/cut/package.xml", "src/dark"]
+    told = [said.split()[0].rstrip(":1") for said in no_packages(workspace)]
+    assert sorted(told) == [
+        "src/cut/package.xml",
+        "src/dark",
+        "src/nameless/package.xml",
+        "src/open/package.xml",
+    ]
 
 
 def test_an_executable(workspace: Workspace) -> None:

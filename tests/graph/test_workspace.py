@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from graphflow.graph.executables import package_folder
+from graphflow.graph.setup_file import EntryPoint
 from graphflow.graph.share import share_folder
-from graphflow.graph.workspace import EntryPoint, find_workspace, uses_ros
+from graphflow.graph.workspace import find_workspace, uses_ros
 
 
 def package(folder: Path, name: str, **files: str) -> Path:
@@ -183,10 +184,54 @@ def test_modules_that_cmake_installs_from_elsewhere(tmp_path: Path) -> None:
 def test_modules_below_a_folder_of_their_own(tmp_path: Path) -> None:
     """As `setup.py` says."""
     setup = "src = 'src'\nsetup(package_dir={'': src}, entry_points={'console_scripts': ['go = a_lib.go:main']})"
-    folder = package(tmp_path / "a", "a", setup_dot_py=setup, src__a_lib__go_dot_py="")
+    folder = package(tmp_path / "a", "a", setup_dot_py=setup, src__a_lib__go_dot_py="def main(): ...")
     found = find_workspace(folder).packages["a"]
     assert found.file_of(found.entry_points["go"]) == folder / "src" / "a_lib" / "go.py"
     assert (found.faults, found.import_roots) == ([], [folder / "src"])
+
+
+@pytest.mark.parametrize(
+    ("text", "executables", "told"),
+    [
+        ("[options.entry_points]\nconsole_scripts =\n  go = a.go:main\n", ["go"], None),
+        (
+            "[options.entry_points]\nconsole_scripts =\n  go = a.go:main\n  ho = a.go.main\n",
+            ["go"],
+            "setup.cfg:4: 'ho = a.go.main' names no function; write 'NAME = PACKAGE.MODULE:FUNCTION'",
+        ),
+        ("[metadata]\nname = a\noptions.entry_points]\n", [], "setup.cfg:3: it is no [section] and no KEY = VALUE, so"),
+        ("name = a\n", [], "setup.cfg:1: it is no [section] and no KEY = VALUE, so that it has no exec"),
+        ("[a]\n[a]\n", [], "setup.cfg: While reading from "),
+    ],
+)
+def test_lines_of_setup_cfg(text: str, executables: list[str], told: str | None, tmp_path: Path) -> None:
+    """Those that name no executable are told, as the lines that nobody can read are."""
+    folder = package(tmp_path / "a", "a", setup_dot_cfg=text, a__go_dot_py="def main(): ...")
+    found = find_workspace(folder).packages["a"]
+    assert found.executables == executables
+    assert found.faults == [] if told is None else found.faults[-1].startswith(f"{folder}/{told}")
+    assert (told is None) == (found.why_no_executable == "")
+
+
+@pytest.mark.parametrize(
+    ("entry", "folders", "told"),
+    [
+        ("b.go:main", "", None),
+        ("timeit:main", "", None),
+        ("nowhere.go:main", "", "there is no {folder}/nowhere/go.py; did you mean a.go:main?"),
+        ("a.go:main [camera]", "", None),
+        ("a.other:main", "{'a': 'lib'}", "package_dir has a in lib, which cannot be run from source; call it a"),
+        ("a.deep:main", "{'a': 'src/a'}", None),
+    ],
+)
+def test_modules_that_are_elsewhere(entry: str, folders: str, told: str | None, tmp_path: Path) -> None:
+    """Those of other packages, and of what is installed, are left to the import."""
+    setup = f"setup(package_dir={folders or None}, entry_points={{'console_scripts': ['go = {entry}']}})"
+    files = {"a__go_dot_py": "def main(): ...", "src__a__deep_dot_py": "def main(): ..."}
+    folder = package(tmp_path / "a", "a", setup_dot_py=setup, **files)
+    package(tmp_path / "b", "b")
+    fault = find_workspace(tmp_path).packages["a"].fault_of("go")
+    assert fault is None if told is None else fault is not None and fault.endswith(told.format(folder=folder))
 
 
 def test_variables_of_cmake(tmp_path: Path) -> None:
@@ -224,11 +269,26 @@ def test_packages_beside_the_ones_around_a_file(tmp_path: Path, monkeypatch: pyt
 def test_names_that_setup_py_computes(tmp_path: Path) -> None:
     """Are not known, since it is only read; that is told, and what stands there plainly is known."""
     made = "entry_points={'console_scripts': [f'{n} = a.{n}:main' for n in names] + ['plain = a.plain:main']}"
-    folder = package(tmp_path / "a", "a", setup_dot_py=f"names = ['x']\nsetup({made})\n", a__plain_dot_py="")
+    folder = package(
+        tmp_path / "a", "a", setup_dot_py=f"names = ['x']\nsetup({made})\n", a__plain_dot_py="def main(): ..."
+    )
     [found] = find_workspace(tmp_path).packages.values()
     assert found.executables == ["plain"]
     [fault] = found.faults
     assert fault.startswith(f"{folder / 'setup.py'}: it computes some executables")
+
+
+def test_definitions_in_folders_of_other_names(tmp_path: Path) -> None:
+    """Are told, as nothing reads them; folders of other files are not."""
+    files = dict.fromkeys(("msgs__Light_dot_msg", "Srv__Get_dot_srv", "msg__Go_dot_action", "test__A_dot_msg"), "")
+    folder = package(tmp_path / "ws/src/lamp", "lamp", **files)
+    workspace = find_workspace(tmp_path / "ws")
+    assert workspace.packages["lamp"].faults == [
+        f"{folder}/msgs/Light.msg must be {folder}/msg/Light.msg",
+        f"{folder}/Srv/Get.srv must be {folder}/srv/Get.srv",
+        f"{folder}/msg/Go.action must be {folder}/action/Go.action",
+    ]
+    assert [*workspace.interfaces] == ["lamp"]
 
 
 def test_definitions_in_folders_of_their_own(tmp_path: Path) -> None:
@@ -258,3 +318,58 @@ def test_files_that_are_none(tmp_path: Path, name: str) -> None:
             assert share_folder(one)
         assert package_folder("other", root) == root / "src" / "other"
         assert not uses_ros(lamp / name)
+
+
+def test_a_folder_that_a_build_would_leave_out(tmp_path: Path) -> None:
+    """`find_packages` sees no folder without `__init__.py`; a list of packages names it all the same."""
+    groups = "entry_points={'console_scripts': ['go = a.inner.go:main']}"
+    folder = package(tmp_path / "a", "a", setup_dot_py=f"setup(packages=find_packages(), {groups})")
+    (folder / "a" / "inner").mkdir(parents=True)
+    (folder / "a" / "inner" / "go.py").write_text("def main(): ...")
+    outer, inner = find_workspace(tmp_path).packages["a"].faults
+    assert outer.startswith(f"{folder / 'a'} has no __init__.py: find_packages() in {folder / 'setup.py'}:1 leaves")
+    assert inner.endswith(f"make an empty one: touch {folder / 'a' / 'inner' / '__init__.py'}")
+    (folder / "a" / "__init__.py").touch()
+    (folder / "a" / "inner" / "__init__.py").touch()
+    assert find_workspace(tmp_path).packages["a"].faults == []
+    (folder / "a" / "__init__.py").unlink()
+    (folder / "setup.py").write_text(f"setup(packages=['a', 'a.inner'], {groups})")
+    assert find_workspace(tmp_path).packages["a"].faults == []
+
+
+def test_a_package_without_setup_py(tmp_path: Path) -> None:
+    """Has modules, and nothing that says which of them is run."""
+    folder = package(
+        tmp_path / "ws/src/lamp", "lamp", lamp__node_dot_py="", setup_dot_cfg="[develop]\nscript_dir = lib"
+    )
+    lamp = find_workspace(tmp_path / "ws").packages["lamp"]
+    assert lamp.faults == [f"{folder} has no setup.py, whose console_scripts name the executables"]
+    assert lamp.why_no_executable == f"; {lamp.faults[0]}"
+    (folder / "CMakeLists.txt").touch()
+    assert find_workspace(tmp_path / "ws").packages["lamp"].faults == []
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        ("lamp.node:main", ""),
+        ("lamp.sub:main", ""),
+        ("node:main", "there is no {}/node.py; did you mean lamp.node:main?"),
+        ("lamp.ndoe:main", "there is no {}/lamp/ndoe.py; did you mean lamp.node:main?"),
+        ("quite.other:main", "there is no {}/quite/other.py; write that module, or name another one there"),
+        ("lamp.node:mian", "{}/lamp/node.py has no function 'mian'; did you mean 'main'?"),
+        ("lamp.node:Lamp", "Lamp is a class: name a function that makes one and spins it, such as main"),
+        ("lamp.native:Lamp", ""),
+    ],
+)
+def test_entry_points_that_start_nothing(tmp_path: Path, entry: str, told: str) -> None:
+    """Are told with what may be meant; classes are right where a module is graphflow's."""
+    module = "import rclpy\nclass Lamp: ...\ndef main(): ...\n"
+    native = "from graphflow import Node\nclass Lamp(Node): ...\n"
+    setup = f"setup(entry_points={{'console_scripts': ['go = {entry}']}})"
+    files = {"lamp__node_dot_py": module, "lamp__native_dot_py": native}
+    folder = package(tmp_path / "ws/src/lamp", "lamp", setup_dot_py=setup, **files)
+    (folder / "lamp" / "sub").mkdir()
+    (folder / "lamp" / "sub" / "__init__.py").write_text(module)
+    fault = find_workspace(tmp_path / "ws").packages["lamp"].fault_of("go")
+    assert fault == (f"{folder}/setup.py:1: go is {entry}, and {told.format(folder)}" if told else None)

@@ -64,13 +64,17 @@ def test_values_of_parameters(tmp_path: Path, attributes: str, value: object) ->
     [
         ("<launch>", "f.xml:1:9: not valid XML: no element found"),
         ("", "f.xml:1:1: not valid XML: no element found"),
-        ("<launch><a></b></launch>", "f.xml:1:14: not valid XML: mismatched tag"),
+        ("<launch><a></b></launch>", "f.xml:1:14: not valid XML: mismatched tag; <a> of line 1 is not closed: end it"),
+        (
+            "<launch>\n<node pkg=a />\n</launch>",
+            'not well-formed (invalid token); write quotes: pkg="a"',
+        ),
         ("<robot/>", "f.xml:1:1: a launch file's outermost element is <launch>, not <robot>"),
         ("<launch>\n hello</launch>", "'hello': text between elements means nothing; use an attribute"),
         ("<launch>" + "<group>" * 50, "nested more than 40 deep"),
         (BOMB, "<!DOCTYPE> is not used here; remove it"),
         ('<launch a="&undefined;"/>', "not valid XML: undefined entity"),
-        ("x" * 1_000_001, "f.xml: the file is larger than 1,000,000 bytes"),
+        ("x" * 1_000_001, "f.xml: cannot be read: it has more than 1,000,000 bytes"),
     ],
 )
 def test_what_is_refused(tmp_path: Path, text: str, said: str) -> None:

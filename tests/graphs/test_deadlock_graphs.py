@@ -232,3 +232,33 @@ def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     assert "nothing wrong" in machine.look("doctor")
     assert "did you mean 'enable'?" in machine.look("groups", "move", "/turtle1/follower", "enabl", "x", code=2)
     assert up.end() == 0
+
+
+@slow
+@pytest.mark.real
+def test_a_larger_limit_ends_a_deadlock(machine: Machine) -> None:
+    """`groups limit` sets it in the running node; what is no limit, or no group, is refused by name."""
+    up = machine.start("up", str(FOLDER / "classic_broken.yaml"))
+    up.wait_for("DEADLOCK: timer tick of /asker")
+    told = machine.look("groups", "limit", "/asker", "everything", "2")
+    assert "everything  (limit 2)" in told
+    assert "  /asker: {concurrency: {everything: {limit: 2}}}" in told
+    up.wait_for("has cleared")
+    assert "'0' is not a limit" in machine.look("groups", "limit", "/asker", "everything", "0", code=2)
+    assert "did you mean 'everything'?" in machine.look("groups", "limit", "/asker", "everythin", "3", code=2)
+    assert up.end() == 0
+
+
+@slow
+@pytest.mark.real
+def test_a_handler_is_put_in_a_thread(machine: Machine) -> None:
+    """`groups thread` starts the node again, whose loop is blocked, and then it runs."""
+    up = machine.start("up", str(FOLDER / "blocked_loop_broken.yaml"))
+    up.wait_for("DEADLOCK: timer tick of /blocker")
+    assert "has no handler 'tock'; did you mean 'tick'?" in machine.look("groups", "thread", "/blocker", "tock", code=2)
+    assert "add of /blocker is async" in machine.look("groups", "thread", "/blocker", "add", code=2)
+    assert "did you mean 'thread'?" in machine.look("groups", "thrad", "/blocker", "tick", code=2).lower()
+    assert "/blocker runs again" in machine.look("groups", "thread", "/blocker", "tick")
+    up.wait_for("1 + 2 = 3")
+    assert "blocking  (limit 1, in threads)\n    tick  timer" in machine.look("groups", "/blocker")
+    assert up.end() == 0

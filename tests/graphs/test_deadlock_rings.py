@@ -163,6 +163,7 @@ def close_and_open(lab: Lab, programs: list[Program]) -> None:
     lab.machine.look("groups", "move", "/b", "answer", "answers")
     for program, name in zip(programs, "ab", strict=True):
         wait_for_all(program, answered(name))
+    for program in programs:  # one that ends earlier begins no answer to the other any more
         assert program.end() == 0
     assert len(reports(*(program.text for program in programs))) == 1
 

@@ -35,7 +35,7 @@ def test_gaps() -> None:
         curve.add(float(i), LaserScan(ranges=ranges))
     assert curve.shown() == ([0.0, 4.0], [1.0, 5.0])
     assert curve.shown(0.5) == ([4.0], [5.0])
-    assert curve.legend == "ranges[1] 5"
+    assert curve.legend == "ranges[1] 5 m"
 
 
 def test_what_is_old_is_forgotten() -> None:

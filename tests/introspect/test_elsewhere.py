@@ -14,7 +14,7 @@ class Seen:
     tokens_: list[str] = []  # noqa: RUF012
 
     def tokens(self, key: str) -> list[str]:
-        assert key == "@ros2_lv/**"
+        assert key == "@ros2_lv/*/*/*/*/NN/**"
         return self.tokens_
 
     def close(self) -> None:
@@ -32,6 +32,10 @@ class Seen:
         (
             ["9/a", "7/b", "7/c"],
             "there are 2 nodes in domain 7, 1 node in domain 9: graphflow --domain 7 ...",
+        ),
+        (
+            ["9/a"],
+            "there is 1 node in domain 9: graphflow --domain 9 ...",
         ),
     ],
 )

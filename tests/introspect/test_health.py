@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 import json
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from graphflow.introspect import health
-from graphflow.introspect.health import Look, examine, read
+from graphflow.introspect.health import Look, examine, needs_second, read
+from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind
@@ -56,6 +57,15 @@ def test_two_nodes_of_one_name() -> None:
     assert found(seen, [], []).faults == ["2 nodes are called /a (process 7, among others): rename all but one"]
 
 
+def test_two_nodes_that_offer_a_service() -> None:
+    """Calls reach both; the services that every node has are told by its name."""
+    seen = Seen(*(entity_token(node, kind=SERVICE, name=name) for node in ("/b", "/a") for name in ("/spawn", "/_in")))
+    assert found(seen, [], []).faults == [
+        "/spawn is offered by /a and /b: each call reaches all of them; remap one: --ros-args -r spawn:=NAME, or -r "
+        "__ns:=/NAMESPACE"
+    ]
+
+
 @pytest.mark.parametrize(("rate", "is_told"), [(100, True), (1, False)])
 def test_a_node_that_hears_itself(rate: int, is_told: bool) -> None:
     """Where messages really go round; everybody's topics do not count."""
@@ -89,6 +99,31 @@ def test_a_flood_in_a_log() -> None:
     assert found(Seen(), now, now).faults == []
 
 
+def test_a_flood_that_is_told() -> None:
+    """Nodes know how much they have logged a second; then one look tells all."""
+    one = look(a={"log": {"lines": 25, "gathered": 300, "rate": 160.0}}, b={"log": {"lines": 9000, "rate": 2.0}})
+    only = Look(one, 0, 0, 5.0)
+    assert not needs_second(cast(View, Seen()), only)
+    assert examine(cast(View, Seen()), only, only).faults == [
+        "/a logs 160 lines a second: say throttle=1.0 where it does"
+    ]
+
+
+def test_when_a_second_look_is_needed() -> None:
+    """Where a node does not tell what it logs a second, or listens to what it publishes."""
+    told, untold = look(a={"log": {"lines": 5, "rate": 1.0}}), look(a={"log": {"lines": 5, "gathered": 0}})
+    loop = Seen(entity_token("/a", kind=PUB, name="/loop"), entity_token("/a", kind=SUB, name="/loop"))
+    apart = Seen(entity_token("/a", kind=PUB, name="/loop"), entity_token("/b", kind=SUB, name="/loop"))
+    clock = Seen(entity_token("/a", kind=PUB, name="/rosout"), entity_token("/a", kind=SUB, name="/rosout"))
+    for seen, replies, is_needed in (
+        (loop, told, True),
+        (apart, told, False),
+        (clock, told, False),
+        (apart, untold, True),
+    ):
+        assert needs_second(cast(View, seen), Look(replies, 0, 0, 5.0)) is is_needed
+
+
 def test_announcements_that_were_refused() -> None:
     """They are counted."""
     [fault] = found(Seen("@ros2_lv/0/nonsense"), [], []).faults
@@ -102,6 +137,7 @@ def test_where_nobody_speaks() -> None:
         entity_token("/sim", kind=PUB, name="/turtle1/pose"),
         entity_token("/sim", kind=SUB, name="/turtle1/cmd_vel"),
         entity_token("/two", kind=SUB, name="/scan2"),
+        entity_token("/too", kind=SUB, name="/scan2"),
         entity_token("/sim", kind=PUB, name="/scan1"),
         entity_token("/goto", kind=CLIENT, name="/spwan"),
         entity_token("/sim", kind=SERVICE, name="/spawn"),
@@ -112,7 +148,7 @@ def test_where_nobody_speaks() -> None:
         "/goto calls /spwan, which nobody offers; did you mean /spawn?",
     ]
     assert told.hints == [
-        "/two listens to /scan2, which nobody publishes; of that type there is /scan1",
+        "/too and /two listen to /scan2, which nobody publishes; of that type there is /scan1",
         "/sim listens to /turtle1/cmd_vel, which nobody publishes; of that type there is /turtle1/pose",
     ]
 

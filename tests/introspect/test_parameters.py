@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from graphflow.errors import CallError, ParameterError
-from graphflow.introspect.parameters import RemoteParameters
+from graphflow.introspect.parameters import STARTING, RemoteParameters
 from graphflow.introspect.view import View
 from graphflow.msgs.rcl_interfaces.msg import ListParametersResult, ParameterDescriptor, ParameterValue
 from graphflow.msgs.rcl_interfaces.msg import SetParametersResult as Result
@@ -28,10 +28,10 @@ class Robot(View):
         self.values = {"speed": 3, "gain": 5}
         self.calls: list[str] = []
 
-    def service_types(self, name: str) -> list[str]:
+    def wait_for_service(self, name: str, timeout: float) -> None:
+        assert timeout == STARTING
         if not name.startswith("/robot/"):
             raise CallError(f"no node offers the service {name}")
-        return [""]
 
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         self.calls.append(name)

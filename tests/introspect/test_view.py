@@ -16,7 +16,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.transport.base import Answer
 from graphflow.wire import net, process
-from graphflow.wire.liveliness import Entity, Kind, watch_key
+from graphflow.wire.liveliness import NODES, Entity, Kind, watch_key
 
 ADD, TYPE = "/office/clerk/add", "example_interfaces/srv/AddTwoInts"
 HASH = registry.hash_of(TYPE)
@@ -38,12 +38,15 @@ class Client:
         self.asked: list[tuple[str, bytes]] = []
         self.is_closed = False
         self.profiles: list[str] = []
+        self.elsewhere: list[Entity] = []
 
     def tokens(self, key: str) -> list[str]:
         if key == watch_key(7):
             return [entity.token for entity in self.entities]
         if key == net.watch_key(7):
             return self.profiles
+        if key == NODES:
+            return [entity.token for entity in self.entities + self.elsewhere]
         assert key == process.watch_key(7)
         return [process.token(7, "z1"), "@graphflow/7/proc/z2/0/12/elsewhere", "@graphflow/7/proc/nonsense"]
 
@@ -102,6 +105,12 @@ def test_a_node_that_is_not_there(view: View, client: Client) -> None:
     view.refresh()
     with pytest.raises(CallError, match=r"^there is no node /_tol; domain 7 has no nodes$"):
         view.node("/_tol")
+    client.elsewhere = [ROS._replace(domain=9)]
+    alone = r"; this domain, 7, has no other nodes; domain 9 has 1: graphflow --domain 9 \.\.\.$"
+    with pytest.raises(CallError, match=f"^there is no node /ros{alone}"):
+        view.node("/ros")
+    with pytest.raises(ServiceUnavailable, match=f"^no node offers the service /spawn{alone}"):
+        view.service_types("/spawn")
 
 
 def test_the_type_of_a_service(view: View) -> None:

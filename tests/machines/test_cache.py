@@ -167,6 +167,42 @@ def test_actions_are_told_by_their_feedback() -> None:
     assert cache.topics() == {"/chatter": [STRING]}
 
 
+def test_a_name_of_another_kind() -> None:
+    """What it is instead is told, else the nearest of the known names; actions that nobody serves are not served."""
+    feedback = "example_interfaces/action/Fibonacci_FeedbackMessage"
+    cache = cache_of(
+        *GRAPH,
+        endpoint(LISTENER, 3, Kind.PUBLISHER, "/go/_action/feedback", feedback),
+        endpoint(TALKER, 2, Kind.SUBSCRIPTION, "/goo/_action/feedback", feedback),
+    )
+    assert cache.served_actions() == ["/go"]
+    assert cache.instead("/add", []) == f"; it is a service, of type {ADD}"
+    assert cache.instead("/chatter", []) == f"; it is a topic, of type {STRING}"
+    assert cache.instead("/go", []) == "; it is an action, of type example_interfaces/action/Fibonacci"
+    assert cache.instead("/talker", []) == "; it is a node"
+    assert cache.instead("/chater", ["/chatter"]) == "; did you mean '/chatter'?"
+
+
+def test_topics_that_nobody_publishes() -> None:
+    """One that somebody waits for is called as it should be; else the nearest that is published may be meant."""
+    cache = GraphCache()
+    for entity in (TALKER, CHATTER, LISTENER, endpoint(LISTENER, 3, Kind.SUBSCRIPTION, "/cmd_vel")):
+        cache.apply(entity.token, alive=True)
+    assert cache.unpublished("/cmd_vel") == "topic [/cmd_vel] has subscriptions, and no publisher yet"
+    assert cache.unpublished("/talker") == "topic [/talker] does not appear to be published yet; it is a node"
+    near = "; did you mean '/chatter'?"
+    assert cache.unpublished("/chattr") == f"topic [/chattr] does not appear to be published yet{near}"
+
+
+def test_calls_of_which_nobody_tells() -> None:
+    """A service has to have introspection; a name that none has is answered with the nearest, or with what it is."""
+    cache = cache_of(*GRAPH)
+    text = "/add does not tell of its calls yet; its node must call configure_intro"
+    assert cache.without_events("/add").startswith(text)
+    assert cache.without_events("/ad") == "no node offers the service /ad; did you mean '/add'?"
+    assert cache.without_events("/chatter") == f"no node offers the service /chatter; it is a topic, of type {STRING}"
+
+
 def test_repr_counts() -> None:
     """What is printed says how much there is."""
     assert repr(cache_of(*GRAPH)) == "<GraphCache 2 nodes, 5 tokens>"

@@ -213,8 +213,44 @@ def test_the_oldest_results_go_when_there_are_many() -> None:
 
 def test_the_list_of_states_tells_of_ends_for_a_while() -> None:
     """It does not grow with everything that ever was."""
-    assert [goal_id for goal_id, _ in book().shown(140)] == [A, B, C]
-    assert [goal_id for goal_id, _ in book().shown(141)] == [B, C]
+    told = book()
+    assert told.hide(140) == []
+    assert told.hide(141) == [A]
+    assert told.hide(10**9) == []
+    told.step(C, GoalEvent.UNWOUND, 10**9)
+    told.step(B, GoalEvent.RETURNED, 10**9 + 50)
+    assert told.hide(10**9 + 101) == [C]
+    assert told.hide(10**9 + 151) == [B]
+    both = book()
+    both.step(C, GoalEvent.UNWOUND, 60)
+    assert both.hide(161) == [A, C]
+
+
+def test_a_rejected_goal_is_in_no_list() -> None:
+    """Its id is good for another goal, and nothing has ended."""
+    kept = book()
+    kept.ask(bytes([4]) * 16, B)
+    assert kept.active() == 2
+    kept.step(bytes([4]) * 16, GoalEvent.REFUSED, 41)
+    assert (kept.active(), kept.hide(10**9), kept.expire(10**9)) == (2, [A], [A])
+
+
+def test_a_newer_goal_preempts_what_runs() -> None:
+    """What is over has been preempted by none."""
+    kept = book()
+    for goal_id in (A, B):
+        kept.step(goal_id, GoalEvent.NEWER, 60)
+    assert [kept.goals[goal_id].is_preempted for goal_id in (A, B)] == [False, True]
+
+
+def test_a_goal_that_is_forgotten_is_told_of_no_more() -> None:
+    """However short the time since its end: as many as end at once must not fill the list."""
+    kept = book()
+    kept.step(C, GoalEvent.UNWOUND, 41)
+    kept.step(B, GoalEvent.RETURNED, 42)
+    assert kept.hide(43) == []
+    assert kept.expire(43) == [A]
+    assert kept.hide(43) == [A]
 
 
 def test_an_id_is_good_for_one_goal() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.machines.matching import Verdict, verdict
+from graphflow.machines.matching import Verdict, shared, verdict
 from graphflow.qos import Durability, Qos, Reliability
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -86,5 +86,20 @@ def test_policies_that_dds_refuses_are_named_and_messages_pass() -> None:
         assert judged.policies == ("reliability", "durability")
         assert judged.complaint == (
             "/t: the publisher of /there offers less than the subscription of /here asks for: reliability, "
-            "durability. Over Zenoh messages pass; over DDS none would"
+            "durability. Over Zenoh messages pass; over DDS none would: have the subscription ask for "
+            "reliability BEST_EFFORT, durability VOLATILE"
         )
+
+
+def test_services_of_several_nodes() -> None:
+    """Are told together where the nodes are the same; nodes of one name, and hidden services, are another matter."""
+    names = ("/go/_action/send_goal", "/go/_action/get_result", "/_hidden")
+    servers = [endpoint(Kind.SERVICE, node, name=name) for node in "abcc" for name in names]
+    told = "offered by /a, /b and /c: each call reaches all of them;"
+    assert shared(servers) == [
+        f"/go is {told} remap one: --ros-args -r go:=NAME, or -r __ns:=/NAMESPACE",
+    ]
+    servers += [endpoint(Kind.SERVICE, node, name=f"/s{number}") for node in "abc" for number in range(5)]
+    assert shared(servers) == [f"/go, /s0, /s1, /s2 and 2 more are {told} move one: --ros-args -r __ns:=/NAMESPACE"]
+    assert shared(endpoint(Kind.SERVICE, "c", name="/s") for _ in range(2)) == []
+    assert shared(endpoint(Kind.CLIENT, node, name="/s") for node in "ab") == []

@@ -194,3 +194,10 @@ def test_stopping_reverses_any_order(data: st.DataObject) -> None:
     place = {name: i for i, layer in enumerate(layers) for name in layer}
     assert sorted(name for layer in layers for name in layer) == sorted(names)
     assert all(place[name] < place[needed] for name in names for needed in after[name])
+
+
+def test_what_is_lacking() -> None:
+    """Is told in words: an end as one, and nothing that is met."""
+    order = Order({"c": frozenset({Need("a"), Need("b", "done"), Need("step s", "done")})})
+    assert order.lacking("c", set()) == "a, the end of b, the end of step s"
+    assert order.lacking("c", {Need("a"), Need("b", "done")}) == "the end of step s"

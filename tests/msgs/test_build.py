@@ -119,7 +119,7 @@ def test_defaults_are_not_shared() -> None:
 def test_fields_are_given_by_keyword() -> None:
     """Positional values, which a change of the definition would shuffle, are refused."""
     cls: Any = registry.interface_class("geometry_msgs/msg/Point")
-    with pytest.raises(TypeError, match="takes its fields by name: Point"):
+    with pytest.raises(TypeError):
         cls(1.0)
 
 

@@ -80,6 +80,14 @@ def test_a_misspelt_class_is_helped() -> None:
         _ = module("std_msgs.msg").Strin
 
 
+def test_a_class_without_its_kind() -> None:
+    """The import to write is told, of whichever kind it is."""
+    with pytest.raises(ImportError, match=r"^write from graphflow\.msgs\.std_msgs\.msg import String$"):
+        from graphflow.msgs.std_msgs import String  # type: ignore[attr-defined]  # noqa: F401
+    with pytest.raises(ImportError, match=r"^write from graphflow\.msgs\.std_srvs\.srv import SetBool$"):
+        from graphflow.msgs.std_srvs import SetBool  # type: ignore[attr-defined]  # noqa: F401
+
+
 def test_a_wrong_definition_is_told_on_import(save: Save) -> None:
     """Importing a definition with a mistake tells file, line and rule."""
     file = save("find_wrong/msg/Thing", "float64 X")

@@ -85,14 +85,33 @@ def test_short_names_become_full_ones(text: str, name: str) -> None:
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("String", "'String' is not an interface name; write package/msg/Name"),
+        ("Quaternion", "'Quaternion' is not an interface name; did you mean 'geometry_msgs/msg/Quaternion'?"),
+        ("Nothing", "'Nothing' is not an interface name; write package/msg/Name"),
+        ("AddTwoInt", "did you mean 'example_interfaces/srv/AddTwoInts'?"),
+        (
+            "AddTwoInts.srv",
+            "'AddTwoInts.srv' is not an interface name; did you mean 'example_interfaces/srv/AddTwoInts'?",
+        ),
+        ("std_srvs/SetBool.srv", "did you mean 'std_srvs/srv/SetBool'?"),
+        ("std_srvs/srv/SetBool.srv", "did you mean 'std_srvs/srv/SetBool'?"),
+        ("./srv/SetBool.srv", "did you mean 'example_interfaces/srv/SetBool' or 'std_srvs/srv/SetBool'?"),
+        ("srv/AddTwoInts", "did you mean 'example_interfaces/srv/AddTwoInts'?"),
+        ("my_pkg/srv/X.srv", "'my_pkg/srv/X.srv' is not an interface name; write package/srv/X"),
+        ("srv", "'srv' is not an interface name; write package/msg/Name"),
+        ("std_msgs.msg", "package 'std_msgs' has no interface 'msg'"),
+        ("/turtle1/pose", "'/turtle1/pose' is not an interface name; write package/msg/Name"),
+        ("turtlesim/msg/Spawn", "there is no turtlesim/msg/Spawn; Spawn is a service: turtlesim/srv/Spawn"),
+        ("turtlesim/srv/RotateAbsolute", "RotateAbsolute is an action: turtlesim/action/RotateAbsolute"),
+        ("geometry_msgs/msgs/Twist", "there is no geometry_msgs/msgs/Twist; write geometry_msgs/msg/Twist"),
+        ("std_srvs/msg/Quaternion", "no interface 'Quaternion'; did you mean geometry_msgs/msg/Quaternion?"),
+        ("std_srvs/msg/Float32", "did you mean float32 (of a field) or example_interfaces/msg/Float32 or std_msgs/msg"),
         ("a/b/c/D", "is not an interface name"),
         ("", "is not an interface name"),
         ("std_msg/String", "there is no interface package 'std_msg'; did you mean 'std_msgs'"),
         ("std_msgs/Strin", "package 'std_msgs' has no interface 'Strin'; did you mean 'String'"),
         ("std_msgs/msg/Strin", "package 'std_msgs' has no interface 'Strin'; did you mean 'String'"),
-        ("std_msgs/srv/String", "package 'std_msgs' has no interface 'String'"),
-        ("std_msgs/idl/String", "package 'std_msgs' has no interface 'String'"),
+        ("std_msgs/srv/String", "there is no std_msgs/srv/String; String is a message: std_msgs/msg/String"),
+        ("std_msgs/idl/String", "there is no std_msgs/idl/String; write std_msgs/msg/String"),
         ("std_msgs/msg/../String", "is not an interface name"),
         ("../msg/String", "is not an interface name"),
         ("odd_shapes/SameName", "is a msg and a srv; write odd_shapes/msg/SameName"),
@@ -260,3 +279,22 @@ def test_a_definition_that_is_no_file(save: Save) -> None:
     os.mkfifo(file)
     with pytest.raises(InterfaceError, match=r"Thing\.msg: it is not a regular file"):
         registry.definition("fifo_msgs/msg/Thing")
+
+
+def test_a_folder_with_a_dash(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Is no package; what its name has to be is told."""
+    monkeypatch.setattr(registry, "_roots", [tmp_path])
+    (tmp_path / "rover-msgs" / "msg").mkdir(parents=True)
+    assert registry.no_kinds("rover_msgs") == f"; rename {tmp_path / 'rover-msgs'} to rover_msgs"
+    assert registry.no_kinds("lamp_msgs") == ""
+
+
+def test_definitions_in_a_folder_of_another_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make no package; where they have to be is told."""
+    (tmp_path / "msgs").mkdir()
+    (tmp_path / "msgs" / "Light.msg").write_text("int8 level\n")
+    monkeypatch.setattr(registry, "_packages", {"reg_moved": tmp_path})
+    assert "reg_moved" not in registry.packages()
+    right = tmp_path / "msg" / "Light.msg"
+    with pytest.raises(UnknownInterface, match=f"'reg_moved'; {tmp_path}/msgs/Light.msg must be {right}$"):
+        registry.full_name("reg_moved/msg/Light")

@@ -10,6 +10,7 @@ from typing import TextIO
 
 import pytest
 
+from graphflow import GraphflowError
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.testing import Graph
 from nodes.turtle_teleop import TurtleTeleop
@@ -80,11 +81,12 @@ async def test_stopping_it_gives_the_terminal_back(press: Callable[[bytes], int]
 async def test_without_a_terminal_it_says_what_to_do(
     graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """And ends."""
+    """And fails, so that the process ends with 1."""
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     node = TurtleTeleop()
     await graph.start(node)
-    await node.wait_ended()
+    with pytest.raises(GraphflowError, match="no arrow keys here"):
+        await node.wait_ended()
 
     assert node.name == "teleop_turtle"
     assert any("run teleop_turtle in one of its own" in m for m in caplog.messages)

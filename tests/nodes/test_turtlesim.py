@@ -72,13 +72,13 @@ def test_it_is_called_turtlesim_and_says_what_it_makes_at_run_time() -> None:
         ("~/snapshot", "std_srvs/srv/Trigger"),
     }
     assert interface.dynamic_names == (
-        "*/cmd_vel",
-        "*/pose",
-        "*/color_sensor",
-        "*/set_pen",
-        "*/teleport_absolute",
-        "*/teleport_relative",
-        "*/rotate_absolute",
+        "*/?*/cmd_vel",
+        "*/?*/pose",
+        "*/?*/color_sensor",
+        "*/?*/set_pen",
+        "*/?*/teleport_absolute",
+        "*/?*/teleport_relative",
+        "*/?*/rotate_absolute",
     )
 
 

@@ -436,6 +436,21 @@ class FixedWaitsForAService(WaitsForAService):
     group = MutuallyExclusiveCallbackGroup
 
 
+class PollsForAService(WaitsForAService):
+    """The same by hand."""
+
+    def tick(self) -> None:
+        client = self.create_client(Trigger, "opened")
+        while not client.service_is_ready():
+            time.sleep(0.01)  # stuck: PollsForAService
+        self.done.set()
+
+
+class FixedPollsForAService(PollsForAService):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
 class TriesForAnAction(Waits):
     """A second at a time, and it offers that itself when it has got it."""
 
@@ -814,6 +829,7 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (ServesByCalling, FixedServesByCalling, "make on_second async def, and await client.call_async(request),"),
     (WaitsForEvent, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (WaitsInAGroup, FixedWaitsInAGroup, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (PollsForAService, FixedPollsForAService, "return from fire instead of waiting for service /opened in planted.py:"),
     (WaitsForAService, FixedWaitsForAService, "return from fire instead of waiting for service /opened in planted.py:"),
     (TriesForAnAction, FixedTriesForAnAction, "make action /opened before planted.py:"),
     (LooksUpATransform, FixedLooksUpATransform, "spin with MultiThreadedExecutor(num_threads=2)"),

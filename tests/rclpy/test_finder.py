@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.rclpy import finder, messages
+from graphflow.runtime import hiding
 
 
 def test_bundled_packages_are_found() -> None:
@@ -66,6 +67,20 @@ def test_a_package_with_code_that_python_finds_is_left_to_it(tmp_path: Path, mon
     monkeypatch.syspath_prepend(str(tmp_path))
     assert importlib.import_module("shape_msgs").WHOSE == "ROS"
     forget("shape_msgs")
+
+
+@pytest.mark.parametrize("name", ["shape_msgs", "rclpy"])
+def test_a_file_that_hides_a_package(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is told once: what imports it may fail with an error about something else, or do nothing."""
+    monkeypatch.setattr(hiding, "_told", set())
+    (tmp_path / f"{name}.py").touch()
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert [finder.MessagePackages().find_spec(name, None) for _ in range(2)] == [None, None]
+    assert capsys.readouterr().err == (
+        f"note: {tmp_path}/{name}.py hides the package {name}: rename it, as in my_{name}.py\n"
+    )
 
 
 @pytest.mark.parametrize(("name", "module"), [("LaserScan", "laser_scan"), ("Imu", "imu"), ("MD5Sum", "md5_sum")])

@@ -98,10 +98,22 @@ def test_what_a_package_has_not_is_told(workspace: Path) -> None:
     """With what it has; and what it says it has."""
     with pytest.raises(UsageFault, match="'lamp' has no executable 'lmap'; did you mean 'lamp'"):
         find_program("lamp", ["lmap"], workspace)
+    (workspace / "src" / "lamp" / "lamp" / "listener.py").touch()
+    line = r"listener\.py is there: add 'listener = lamp\.listener:main' to the console_scripts of .*/lamp/setup\.py"
+    with pytest.raises(UsageFault, match=line):
+        find_program("lamp", ["listener"], workspace)
+    (workspace / "src" / "lamp" / "launch").mkdir()
+    (workspace / "src" / "lamp" / "launch" / "lamp.launch.py").touch()
+    with pytest.raises(UsageFault, match=r"'lamp.launch.py'; to start it: graphflow launch lamp lamp\.launch\.py$"):
+        find_program("lamp", ["lamp.launch.py"], workspace)
     with pytest.raises(UsageFault, match="name an executable of the package 'lamp': lamp, none, ours"):
         find_program("lamp", [], workspace)
     with pytest.raises(UsageFault, match=r"none is lamp\.no:main, and there is no"):
         find_program("lamp", ["none"], workspace)
+    setup = workspace / "src/lamp/setup.py"
+    setup.write_text(SETUP.replace("]", " 'ours = lamp.ours:main']"))
+    with pytest.raises(UsageFault, match=r"no executable 'ours'.*setup\.py:2: .* a comma is missing"):
+        find_program("lamp", ["ours"], workspace)
 
 
 def start(workspace: Path, *words: str) -> subprocess.Popen[str]:
@@ -110,6 +122,38 @@ def start(workspace: Path, *words: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
         command, cwd=workspace, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
+
+
+@pytest.mark.real
+def test_a_main_that_nothing_calls(workspace: Path) -> None:
+    """Is told at the end of the program, once."""
+    node = workspace / "src/lamp/lamp/node.py"
+    node.write_text(NODE.partition("if __name__")[0])
+    process = start(workspace, str(node))
+    try:
+        assert process.communicate(timeout=20)[0].endswith(
+            "node.py:23: main() is defined and never called; add as the last line: if __name__ == '__main__': main()\n"
+        )
+    finally:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.real
+def test_a_module_that_a_build_would_leave_out(workspace: Path) -> None:
+    """Runs, and is told."""
+    lamp = workspace / "src/lamp"
+    (lamp / "lamp/__init__.py").unlink()
+    (lamp / "lamp/node.py").write_text("def main():\n    print('ran')\n")
+    (lamp / "setup.py").write_text(SETUP.replace("setup(", "setup(packages=find_packages(), "))
+    process = start(workspace, "lamp", "lamp")
+    try:
+        told, ran = process.communicate(timeout=20)[0].splitlines()
+        assert told.startswith(f"note: {lamp / 'lamp'} has no __init__.py: find_packages() in")
+        assert ran == "ran"
+    finally:
+        process.kill()
+        process.wait()
 
 
 @pytest.mark.real
@@ -255,6 +299,33 @@ def test_modules_of_rclpy_are_there_with_it(workspace: Path) -> None:
 
 
 @pytest.mark.real
+def test_a_package_of_a_name_of_ros(workspace: Path) -> None:
+    """It hides the other, which is told in place of what it lacks."""
+    own = workspace / "src" / "std_msgs"
+    (own / "std_msgs").mkdir(parents=True)
+    (own / "package.xml").write_text("<package><name>std_msgs</name></package>")
+    (own / "std_msgs" / "__init__.py").touch()
+    (workspace / "src" / "lamp" / "lamp" / "late.py").write_text(
+        "import rclpy\nfrom std_msgs.msg import String\ndef main(): ...\n"
+    )
+    (workspace / "src" / "lamp" / "setup.py").write_text(SETUP.replace("lamp.no:main", "lamp.late:main"))
+    said, _ = start(workspace, "lamp", "none").communicate(timeout=20)
+    assert said.endswith(
+        f"note: your package {own} hides ROS 2's std_msgs; call yours otherwise, there and in its files\n"
+    )
+
+
+@pytest.mark.real
+def test_a_file_of_a_name_of_ros(workspace: Path) -> None:
+    """It is named before it runs, and where the error is shown."""
+    (workspace / "std_msgs.py").write_text("import rclpy\nfrom std_msgs.msg import String\n")
+    told = start(workspace, "std_msgs.py").communicate(timeout=30)[0]
+    note = f"note: {workspace}/std_msgs.py hides the package std_msgs: rename it, as in my_std_msgs.py"
+    first, *_, last = told.splitlines()
+    assert (first, last) == (note, note)
+
+
+@pytest.mark.real
 def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
     """And a sentence."""
     for words, code, text in (
@@ -293,7 +364,7 @@ def test_an_error_is_shown_from_the_programs_own_code_on(
     workspace: Path, line: str, told: list[str], note: str
 ) -> None:
     """With what may help, and none of what has started it."""
-    (workspace / "src" / "lamp" / "lamp" / "late.py").write_text(f"import rclpy\n{line}\n")
+    (workspace / "src" / "lamp" / "lamp" / "late.py").write_text(f"import rclpy\n{line}\ndef main(): ...\n")
     (workspace / "src" / "lamp" / "lamp" / "later.py").touch()
     (workspace / "src" / "lamp" / "setup.py").write_text(SETUP.replace("lamp.no:main", "lamp.late:main"))
     run = start(workspace, "lamp", "none")
@@ -338,3 +409,22 @@ def test_a_daemon_that_spins_can_be_waited_for_at_the_end(order: str) -> None:
         [sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=30, check=False
     )
     assert (ended.stdout, ended.returncode) == ("False\n", 0), ended.stderr
+
+
+def test_a_thread_that_spins_outlives_the_main_thread() -> None:
+    """Its callbacks run until a signal ends it; the network is left then."""
+    code = (
+        "from graphflow.rclpy import enabling; enabling.here()\n"
+        "import os, signal, threading, rclpy; from rclpy.node import Node\n"
+        "def tick():\n"
+        "    if not threading.main_thread().is_alive():\n"
+        "        print('alone', rclpy.ok(), flush=True); timer.cancel(); os.kill(os.getpid(), signal.SIGINT)\n"
+        "rclpy.init(); node = Node('left'); timer = node.create_timer(0.05, tick)\n"
+        "threading.Thread(target=rclpy.spin, args=(node,), name='spinner').start()\n"
+    )
+    env = {**os.environ, "GRAPHFLOW_RENDEZVOUS": free_endpoint()}
+    ended = subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=30, check=False
+    )
+    last = "Exception in thread spinner:\nrclpy.executors.ExternalShutdownException\n"
+    assert (ended.stdout, ended.stderr, ended.returncode) == ("alone True\n", last, 0)

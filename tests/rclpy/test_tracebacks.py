@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from std_msgs.msg import String
 
 import rclpy
 from graphflow.rclpy import tracebacks
@@ -44,12 +45,29 @@ def test_the_place_of_an_error_stays(node: Node) -> None:
     """An error of Python's kinds is shown with the place where it was raised, and without what lies between."""
 
     def tick() -> None:
-        node.declare_parameter(1.0)  # type: ignore[arg-type]
+        node.declare_parameters("", 1)  # type: ignore[arg-type]
 
     node.create_timer(0.0, tick)
     found = functions(raised(lambda: rclpy.spin(node)))
-    assert found[:4] == ["raised", "<lambda>", "tick", "declare_parameter"]
+    assert found[:4] == ["raised", "<lambda>", "tick", "declare_parameters"]
     assert "spin" not in found
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda node: node.declare_parameter(1.0),
+        lambda node: node.create_publisher(String, "chat", "10"),
+        lambda node: node.create_publisher(String, "chat", 10, 11),
+        lambda node: node.create_publisher(String, "chat", 10).publish("hello"),
+        lambda node: String(data=1),
+        lambda node: node.create_rate("1"),
+        lambda node: node.set_parameters(1),
+    ],
+)
+def test_arguments_that_are_refused(node: Node, wrong: Callable[[Node], object]) -> None:
+    """The text says it all: the last line shown is the caller's."""
+    assert functions(raised(lambda: wrong(node))) == ["raised", "<lambda>", "<lambda>"]
 
 
 def test_errors_that_led_to_an_error(node: Node) -> None:
@@ -111,3 +129,13 @@ def test_hooks(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[st
     monkeypatch.setattr(sys, "excepthook", others)
     tracebacks.install()
     assert sys.excepthook is others
+
+
+def test_the_hook_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Is there from `rclpy.init` on."""
+    monkeypatch.setattr(threading, "excepthook", threading.__excepthook__)
+    rclpy.init()
+    assert threading.excepthook is not threading.__excepthook__
+    monkeypatch.setattr(threading, "excepthook", print)
+    tracebacks.install_in_threads()
+    assert threading.excepthook is print

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from graphflow import (
     ActionClient,
     Client,
+    Context,
     DeclarationError,
     Group,
     Node,
@@ -34,6 +36,7 @@ from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.action_client import ClientGoalHandle
+from graphflow.runtime.core import core_of
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.testing import Graph
 
@@ -298,3 +301,16 @@ def refusal_of(make: Callable[[], object]) -> str:
     place = f"{make.__code__.co_filename}:{make.__code__.co_firstlineno}: "
     assert str(caught.value).startswith(place)
     return str(caught.value).removeprefix(place)
+
+
+@asynccontextmanager
+async def running_in(graph: Graph, domain: int) -> AsyncIterator[None]:
+    """Run a node of a graph's network in another domain."""
+    context = Context(graph.network.session(asyncio.get_running_loop()), domain=domain, clock=graph.clock)
+    node = Node("elsewhere")
+    await core_of(node).start(context)
+    try:
+        yield
+    finally:
+        await core_of(node).stop()
+        await context.close()

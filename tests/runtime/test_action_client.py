@@ -19,13 +19,16 @@ from graphflow import (
     action,
     task,
 )
-from graphflow.errors import EncodeError
+from graphflow.errors import EncodeError, GoalRejected
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.runtime import action_client
+from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
 from graphflow.runtime.reasons import Reasons
+from graphflow.runtime.serialized import UNKNOWN
 from graphflow.testing import Graph
+from graphflow.wire.goal_status import GoalStates
 from tests.runtime.cast import Asker, Log, Server, pair
 
 
@@ -105,6 +108,8 @@ async def test_no_server_and_another_type(graph: Graph) -> None:
 
     with pytest.raises(ServiceUnavailable, match=r"no node offers the action /fibonacci .*did you mean '/fibonaci'"):
         await sending
+    assert not asker.fibonacci._goals
+    assert not asker.fibonacci._running
     with pytest.raises(EncodeError, match=r"takes .*Fibonacci_Goal, not"):
         await asker.fibonacci.send_goal(Fibonacci.Result())  # type: ignore[arg-type]
 
@@ -140,6 +145,56 @@ async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.
 
     with pytest.raises(GoalLost, match="result is not available, last known as EXECUTING"):
         await goal.result()
+
+
+async def test_a_result_that_was_lost_is_asked_for_again(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once, soon after the server has told of the end; one that comes by itself is not."""
+    asked, get_result = Log(), ActionServer._get_result
+
+    async def lost(server: Any, request: Any, client: bytes) -> Any:
+        asked(request)
+        if len(asked) == 2:
+            await asyncio.Event().wait()
+        return await get_result(server, request, client)
+
+    monkeypatch.setattr(ActionServer, "_get_result", lost)
+    _, asker = await pair(graph)
+    goal = await asker.order(3)
+    await graph.clock.advance(3.0)
+    assert (goal.done, len(asked)) == (True, 1)
+
+    goal = await asker.order(3)
+    await graph.clock.advance(1.0)
+    for _ in range(2):
+        asker.fibonacci._told(status(goal, GoalStatus.SUCCEEDED), UNKNOWN)
+    assert (goal.done, len(asker.fibonacci._followers)) == (False, 2)
+    await graph.clock.advance(action_client.LOST_GRACE)
+    assert (goal.done, len(asked)) == (True, 3)
+
+
+def status(goal: ClientGoalHandle[Any, Any, Any], state: int) -> bytes:
+    """Tell of a goal as its server does."""
+    states = GoalStates()
+    states.add(goal.goal_id, 0)
+    states.put(goal.goal_id, state)
+    return states.to_bytes()
+
+
+async def test_states_that_say_nothing(graph: Graph) -> None:
+    """Those that ROS does not have, those of a goal that is over, and malformed ones, which are counted."""
+    server, asker = await pair(graph)
+    client, goal = asker.fibonacci, await asker.order(50)
+    await graph.settle()
+    for state in (7, 255, GoalStatus.ACCEPTED):
+        client._told(status(goal, state), UNKNOWN)
+        assert goal.status is GoalStatus.EXECUTING
+    client._told(b"", UNKNOWN)
+    assert client._status.malformed == 1
+    for endpoint in core_of(server).parts[-1].endpoints:
+        endpoint.close()
+    await graph.clock.advance(1.0)
+    client._told(status(goal, GoalStatus.EXECUTING), UNKNOWN)
+    assert goal.status is GoalStatus.LOST
 
 
 REASONS = [
@@ -252,3 +307,47 @@ async def test_a_goal_that_nobody_offers_can_be_given_up(graph: Graph) -> None:
     sending.cancel()
     await graph.settle()
     assert sending.cancelled()
+
+
+async def test_what_decides_on_goals_without_being_a_method(graph: Graph) -> None:
+    """A lambda, or a function from elsewhere, is called as one."""
+
+    def odd(self: Node, goal: Any) -> bool:
+        return bool(goal.order % 2)
+
+    class Picks(Node):
+        @action(Fibonacci, "small", accept=lambda self, goal: goal.order < 3)
+        async def small(self, goal: Any) -> Fibonacci.Result:
+            return Fibonacci.Result()
+
+        @action(Fibonacci, "odd", accept=odd)
+        async def counted(self, goal: Any) -> Fibonacci.Result:
+            return Fibonacci.Result()
+
+    await graph.start(Picks())
+    await graph.settle()
+    for name in ("/small", "/odd"):
+        client = graph.action_client(Fibonacci, name)
+        await client.send_goal(Fibonacci.Goal(order=1))
+        with pytest.raises(GoalRejected):
+            await client.send_goal(Fibonacci.Goal(order=4))
+
+
+async def test_goals_that_are_rejected_are_not_remembered(graph: Graph) -> None:
+    """Also by a server that never tells of any goal."""
+
+    class Refuses(Node):
+        def never(self, goal: Any) -> str:
+            return "not today"
+
+        @action(Fibonacci, "fibonacci", accept=never)
+        async def fibonacci(self, goal: Any) -> Fibonacci.Result:
+            raise AssertionError
+
+    await graph.start(Refuses())
+    client = graph.action_client(Fibonacci, "/fibonacci")
+    await graph.settle()
+    for _ in range(3):
+        with pytest.raises(GoalRejected, match="not today"):
+            await client.send_goal(Fibonacci.Goal())
+    assert (client._goals, client._running) == ({}, set())

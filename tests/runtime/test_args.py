@@ -95,8 +95,17 @@ def test_values_for_one_node() -> None:
         (["--log-level"], "--log-level needs a value after it"),
         (["-p", "rate=2"], "-p 'rate=2': write name:=value, for example rate:=2.0"),
         (["-p", ":=2"], "-p ':=2': write name:=value"),
+        (["--params-file", "-r", "a:=b"], "--params-file needs a value after it, such as params.yaml"),
+        (["-p", "x:=", "100"], "-p 'x:=': the value is missing; write it behind := without a space"),
+        (["-p", "a:=1 b:=2"], "-p 'a:=1 b:=2': write one -p each: -p a:=1 -p b:=2"),
         (["-r", "nothing"], "'nothing' is not a remap rule; write it as from:=to"),
-        (["-r", "__nod:=x"], "'__nod' is not a remap key; did you mean '__node'?; use --ros-args -r __ns:=/turtle1"),
+        (["-r", "__nod:=x"], "'__nod' is not a remap key; did you mean '__node:=x'?"),
+        (["-r", "__node=x"], "'__node=x' is not a remap rule; write it as from:=to: __node:=x"),
+        (
+            ["--ros-args", "-r", "__node:=my", "turtle"],
+            "'turtle' is not a ROS argument; a value with a space in it goes",
+        ),
+        (["--ros-args", "-p", "a:=b", "c"], "in it goes into quotes: -p 'a:=b c'"),
         (["--ros-args", "--remp", "a:=b"], "'--remp' is not a ROS argument; did you mean '--remap'?"),
     ],
 )
@@ -113,6 +122,7 @@ def test_a_dash_too_few(word: str) -> None:
     for words in ([word, "a.yaml"], ["--ros-args", word, "a.yaml"]):
         with pytest.raises(GraphflowError, match=f"is not a ROS argument; write --{word[1:]}$"):
             parse_ros_args(words)
+    assert meant("--rosargs") == meant("--ros_args") == "; write --ros-args"
     assert parse_ros_args(["ros-args", "--rate"]).rest == ["ros-args", "--rate"]
 
 
@@ -146,6 +156,7 @@ def test_words_that_miss_ros(line: str, text: str) -> None:
 def test_how_an_unknown_word_is_written() -> None:
     """A rule with its option, an option with its dashes, and the nearest of all."""
     assert meant("___node:=a") == "; write --ros-args -r __node:=a"
+    assert meant("--log-level=DEBUG") == "; write --log-level DEBUG, without ="
     assert meant("-params-file") == "; write --params-file"
     assert meant("--remp") == "; did you mean '--remap'?"
     assert meant("what") == ""

@@ -9,6 +9,7 @@ import pytest
 from graphflow import DeclarationError, Node, Param, ParameterError, subscription, timer
 from graphflow.msgs.rcl_interfaces.srv import SetParameters
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime import binding
 from graphflow.testing import Graph
 from tests.runtime.cast import Child, Everything, Parent, message
 
@@ -70,6 +71,24 @@ async def test_a_check_of_the_class_can_refuse(graph: Graph) -> None:
     (result,) = (await graph.call(SetParameters, "/follower/set_parameters", request)).results
     assert (result.successful, result.reason) == (False, "parameter 'rate' = 12.0: the listener is only human")
     assert (node.rate, node.told) == (1.0, [])
+
+
+def test_a_check_that_returns_something() -> None:
+    """It is no answer, and the value is not set: a False would pass unseen."""
+
+    class Sceptic(Node):
+        rate = Param(1.0)
+
+        @rate.check
+        def never(self, rate: float) -> bool:
+            return rate > 5.0
+
+    node = Sceptic()
+    with pytest.raises(ParameterError, match=r"'rate' is not set: never returned False; a check refuses by raising"):
+        node.rate = 2.0
+    assert node.rate == 1.0
+    node.rate = 6.0  # as in `return self.fits(rate)`: it can mean nothing else
+    assert node.rate == 6.0
 
 
 async def test_methods_follow_a_parameter(graph: Graph) -> None:
@@ -202,3 +221,68 @@ async def test_nodes_of_a_class_share_nothing(graph: Graph) -> None:
     assert two.rate == 2.0
     assert one.out is not two.out
     assert one.frozen is not two.frozen
+
+
+async def test_followers_that_set_what_they_follow(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Come to an end and are told, by themselves or in a circle, at once or later; one change more is no circle."""
+
+    class Circle(Node):
+        rate = Param(1.0)
+        slow = Param(1.0)
+        left = Param(1)
+        right = Param(1)
+
+        @rate.on_change
+        def changed(self, old: float, new: float) -> None:
+            self.rate = new + 1.0
+
+        @slow.on_change
+        async def later(self, old: float, new: float) -> None:
+            if new > 2.0:
+                self.slow = 2.0
+
+        @left.on_change
+        async def to_the_right(self, old: int, new: int) -> None:
+            self.right = new
+
+        @right.on_change
+        async def to_the_left(self, old: int, new: int) -> None:
+            self.left = new
+
+    node = Circle()
+    await graph.start(node)
+    node.slow = 5.0
+    await graph.settle()
+    assert (node.slow, caplog.messages) == (2.0, [])
+    node.rate = 2.0
+    await graph.settle()
+    assert node.rate == 2.0 + binding.CHAIN
+    node.left = 2
+    await graph.settle()
+    told = [message.partition(", ")[0] for message in caplog.messages]
+    assert told == ["changed follows 'rate'", "to_the_right follows 'left'"]
+
+
+async def test_a_follower_may_change_its_parameter_as_time_goes_by(
+    graph: Graph, caplog: pytest.LogCaptureFixture
+) -> None:
+    """What is slow, or set by a timer that a follower has armed, has no end and needs none."""
+
+    class Slow(Node):
+        rate = Param(20.0)
+        level = Param(0)
+
+        @timer(hz=rate)
+        async def tick(self) -> None:
+            self.level += 1
+
+        @level.on_change
+        async def rise(self, old: int, new: int) -> None:
+            self.rate = 20.0
+            await self.clock.sleep(0.04)
+
+    node = Slow()
+    await graph.start(node)
+    await graph.clock.advance(10.0)
+    assert node.level > 150
+    assert caplog.messages == []

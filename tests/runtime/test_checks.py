@@ -49,6 +49,10 @@ def test_one_profile_comes_of_qos_and_depth(qos: Qos | int, depth: int | None, p
 
 
 WRONG: list[tuple[Any, str]] = [
+    (
+        lambda: checks.check_type("std_msgs/msg/String", base.Message, "Publisher", HERE),
+        "not 'std_msgs/msg/String'; write from graphflow.msgs.std_msgs.msg import String, and then String without",
+    ),
     (lambda: checks.check_type(AddTwoInts, base.Message, "Publisher", HERE), "Publisher needs a message class, not <c"),
     (lambda: checks.check_type(String(), base.Message, "Publisher", HERE), "Publisher needs a message class, not std_"),
     (lambda: checks.check_type("chatter", base.Message, "X", HERE), "not 'chatter'; the type comes first, then the na"),

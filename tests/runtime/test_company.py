@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
-from graphflow import Context, GraphflowError, Node, task
+from graphflow import Context, GraphflowError, Node, task, timer
 from graphflow.runtime.company import Company
-from graphflow.testing import Graph
+from graphflow.runtime.ending import StopRequest
+from graphflow.testing import Graph, ManualClock
 
 
 class Quiet(Node):
@@ -33,9 +36,26 @@ class Wrong(Node):
         raise GraphflowError("no camera")
 
 
-def company(graph: Graph) -> tuple[Company, asyncio.Event]:
-    stop = asyncio.Event()
-    context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
+class LateClock(ManualClock):
+    """Its alarms are always due, as on a loop that handlers block for longer than their periods."""
+
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> Any:
+        return asyncio.get_running_loop().call_soon(callback)
+
+
+class Ticking(Node):
+    """Ticks in each turn of the loop."""
+
+    ticks = 0
+
+    @timer(1.0)
+    def tick(self) -> None:
+        self.ticks += 1
+
+
+def company(graph: Graph, clock: ManualClock | None = None) -> tuple[Company, StopRequest]:
+    stop = StopRequest()
+    context = Context(graph.network.session(asyncio.get_running_loop()), clock=clock or graph.clock)
     return Company(context, stop), stop
 
 
@@ -59,6 +79,35 @@ async def test_nodes_that_join_are_stopped_with_the_others(graph: Graph) -> None
     assert not first.is_running
     assert not second.is_running
     assert order == ["second", "first"]
+
+
+async def test_no_tick_begins_after_a_request_to_stop(graph: Graph) -> None:
+    """However many turns of the loop it takes to heed it."""
+    made, stop = company(graph, LateClock())
+    node = Ticking()
+    running = asyncio.create_task(made.run([node]))
+    while node.ticks < 2:
+        await asyncio.sleep(0)
+    stop.set()
+    ticks = node.ticks
+    await running
+    assert node.ticks == ticks
+
+
+async def test_no_tick_begins_after_a_request_to_stop_once_another_has_ended(graph: Graph) -> None:
+    """Of the nodes that still run one is stopped first."""
+    made, stop = company(graph, LateClock())
+    node, other = Ticking(), Node("other")
+    running = asyncio.create_task(made.run([node, other]))
+    while other not in made._ends or node not in made._ends:
+        await asyncio.sleep(0)
+    other.shutdown()
+    while other in made._ends:
+        await asyncio.sleep(0)
+    stop.set()
+    ticks = node.ticks
+    await running
+    assert node.ticks == ticks
 
 
 async def test_a_node_that_leaves(graph: Graph) -> None:

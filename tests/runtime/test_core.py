@@ -32,6 +32,7 @@ from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.runtime import core
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.run import serve
 from graphflow.testing import Graph
 from graphflow.transport.memory import MemorySession
@@ -236,7 +237,7 @@ async def test_a_goodbye_has_a_limit(
 
 async def test_a_node_that_prepares_can_be_stopped(graph: Graph) -> None:
     """A request to stop does not wait for on_start."""
-    robot, stop = Robot(), asyncio.Event()
+    robot, stop = Robot(), StopRequest()
     anchor = Node("anchor")
     await graph.start(anchor)
     serving = asyncio.ensure_future(serve([robot], anchor.context, stop))

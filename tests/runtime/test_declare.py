@@ -38,7 +38,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: Client(anything(AddTwoInts.Request), "x"), "give the service's class, as in AddTwoInts, not its Request"),
     (lambda: Client(AddTwoInts, "1x"), "Client: '1x' is not a topic or service name"),
     (lambda: Param(anything(None)), "None cannot be a parameter: use a bool, int, float, str, bytes, or a list of one"),
-    (lambda: Param(anything([])), "[] cannot be a parameter"),
+    (lambda: Param(anything([])), "an empty list has no type"),
     (lambda: Param(anything([1, "a"])), "[1, 'a'] cannot be a parameter"),
     (lambda: Param(5, le=4), "the default = 5 is out of range: at most 4"),
     (lambda: Param(5, le=4, name="speed"), "parameter 'speed' = 5 is out of range: at most 4"),

@@ -9,11 +9,12 @@ from typing import Any
 
 import pytest
 
-from graphflow import DeclarationError, Group, Node, Param, Publisher, QosEvent, action, subscription, timer
+from graphflow import DeclarationError, Group, Node, Param, Publisher, QosEvent, action, service, subscription, timer
 from graphflow.errors import Place
 from graphflow.interface import GroupInfo, Interface
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.msgs.std_srvs.srv import Empty, SetBool
 from graphflow.runtime.declared import default_name, handlers, hooks, param_hooks, snake_case
 from tests.runtime import cast
 from tests.runtime.cast import Child, Everything, Parent, names_of
@@ -59,6 +60,13 @@ def test_names_that_a_node_needs_itself() -> None:
                 """Stand still."""
 
     assert str(caught.value).startswith(f"{__file__}:{line_of('hides what starts tasks')}: every node has 'spawn'")
+
+    with pytest.raises(DeclarationError, match=r"every node has 'name'; .* write node_name = 'talker'"):
+        type("Hiding", (Node,), {"name": "talker"})
+    hidden: list[Any] = [[], staticmethod(of_self_copy())]
+    for hiding in hidden:
+        with pytest.raises(DeclarationError, match="every node has 'log'; choose another name"):
+            type("Hiding", (Node,), {"log": hiding})
 
     class Careful(Node):
         default_group = Group(1)
@@ -254,3 +262,30 @@ def test_the_name_of_a_node_that_is_given_none() -> None:
     assert default_name(Robot) == "robot"
     named: Any = type("Robot", (Node,), {"node_name": "bob"})
     assert default_name(named) == "bob"
+
+
+def test_two_services_of_one_name() -> None:
+    """A client would reach one of the two; an action likewise. Topics may be listened to twice."""
+    with pytest.raises(DeclarationError, match=r"two offers the service 'x', which one \(.*:\d+\) offers already"):
+
+        class Twice(Node):
+            @service(Empty, "x")
+            async def one(self, request: Empty.Request) -> Empty.Response: ...  # type: ignore[empty-body]
+
+            @service(Empty, "x")
+            async def two(self, request: Empty.Request) -> Empty.Response: ...  # type: ignore[empty-body]
+
+
+def test_the_annotated_results_of_handlers() -> None:
+    """Must be those that they return: the class, or nothing at all."""
+
+    async def text(self: Any, request: Empty.Request) -> str: ...  # type: ignore[empty-body]
+
+    async def other(self: Any, request: Empty.Request) -> SetBool.Response: ...  # type: ignore[empty-body]
+
+    async def own(self: Any, request: Empty.Request) -> Empty.Response | None: ...
+
+    for fn, told in ((text, "str"), (other, "SetBool.Response")):
+        with pytest.raises(DeclarationError, match=f"returns Empty.Response, and is annotated to return {told}$"):
+            service(Empty, "x")(fn)
+    service(Empty, "x")(own)

@@ -6,8 +6,11 @@ import asyncio
 import os
 import signal
 import threading
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -86,7 +89,7 @@ async def test_who_takes_a_signal_is_named(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Once: nodes that do not hear of their end cannot stop in order."""
-    monkeypatch.setattr(ending, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(ending, "LOOK_AFTER", 0.0)
     restore = catch_signals(asyncio.Event())
     try:
         signal.signal(signal.SIGTERM, vendors_handler)
@@ -104,12 +107,31 @@ async def test_handlers_that_stay_are_no_news(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Whoever looks finds ours."""
-    monkeypatch.setattr(ending, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(ending, "LOOK_AFTER", 0.0)
     restore = catch_signals(asyncio.Event())
     for _ in range(5):
         await asyncio.sleep(0)
     restore()
     assert caplog.records == []
+
+
+def test_looks_become_rare(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each comes after twice as long as the one before, up to a minute: a process that idles is not woken for them."""
+    waits: list[float] = []
+    looks: list[Callable[[], None]] = []
+
+    def call_later(wait: float, look: Callable[..., None], *args: object) -> SimpleNamespace:
+        waits.append(wait)
+        looks.append(partial(look, *args))
+        return SimpleNamespace(cancel=lambda: None)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(asyncio, "get_running_loop", lambda: SimpleNamespace(call_later=call_later))
+        restore = catch_signals(asyncio.Event())
+    for _ in range(8):
+        looks.pop()()
+    restore()
+    assert waits == [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0]
 
 
 def test_a_thread_that_works_is_named() -> None:

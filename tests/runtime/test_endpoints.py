@@ -201,3 +201,13 @@ async def test_a_counterpart_that_comes_and_goes_is_complained_of_now_and_then(
     mouth.create_publisher(Int32, "/words", 10)
     await graph.settle()
     assert sum("nothing passes" in r.getMessage() for r in caplog.records if r.name.endswith("ear")) == 2
+
+
+async def test_two_ends_of_one_node_that_do_not_fit(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """The node's log has it once, from the subscription."""
+    node = Node("both")
+    node.create_subscription(String, "/words", lambda _: None, 10)
+    node.create_publisher(Int32, "/words", 10)
+    await graph.start(node)
+    [text] = [message for message in caplog.messages if "nothing passes" in message]
+    assert "the publisher of /both, of type std_msgs/msg/Int32, and the subscription here" in text

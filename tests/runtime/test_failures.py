@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 
 import pytest
@@ -10,6 +11,7 @@ from graphflow import ErrorBudget, Node, timer
 from graphflow.errors import DeadlockError, TooManyErrors
 from graphflow.interface import OnError
 from graphflow.runtime.core import core_of
+from graphflow.runtime.failures import report
 from graphflow.testing import Graph
 
 
@@ -30,6 +32,17 @@ async def test_a_storm_of_errors_is_not_a_storm_of_lines(graph: Graph, caplog: p
     ]
     assert node.is_running
     assert node.statistics()["timer failing"] == {"runs": 20, "errors": 20, "skipped": 0}
+
+
+@pytest.mark.parametrize("error", [SystemExit(3), KeyboardInterrupt()])
+def test_a_handler_that_ends_the_process(caplog: pytest.LogCaptureFixture, error: BaseException) -> None:
+    """It is no error, and told with its line and without a traceback."""
+    with pytest.raises(type(error)) as caught:
+        raise error
+    report(logging.getLogger("graphflow"), "tick", caught.value)
+    [record] = caplog.records
+    assert record.message.startswith(f"tick: ends the process by {type(error).__name__} ({__file__}:")
+    assert record.exc_info is None
 
 
 async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None:

@@ -19,6 +19,7 @@ import pytest
 
 from graphflow.errors import GraphflowError
 from graphflow.runtime import unawaited
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.supervisor.classes import import_class
 from graphflow.testing import Graph
@@ -26,10 +27,13 @@ from tests.conftest import PROJECT
 
 PAGE = PROJECT / "docs" / "mistakes.md"
 HEAD = """\
-from graphflow import ActionClient, Client, Node, Param, Publisher, action, service, subscription, timer
+import asyncio
+import time
+from graphflow import ActionClient, Client, Group, Node, Param, Publisher, Qos, Subscription, Time, Timer
+from graphflow import action, service, subscription, task, timer
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
-from graphflow.msgs.std_msgs.msg import String
+from graphflow.msgs.std_msgs.msg import Header, String
 """
 
 
@@ -54,6 +58,7 @@ def ticking(line: str) -> Mistake:
     """A line of a timer."""
     held = "goals = ActionClient(Fibonacci, 'fibonaci')\nadder = Client(AddTwoInts, 'ad')\n"
     held += "words = Publisher(String, 'words')\nrate = Param(1.0, gt=0.0)\n"
+    held += "heard = Subscription(String, 'words')\n"
     served = "@service(AddTwoInts, 'add')\ndef add(self, request):\n    return True\n"
     return Mistake(f"{held}{served}@timer(0.1)\nasync def tick(self):\n    {line}", line)
 
@@ -69,6 +74,20 @@ MISTAKES = {
         imported("from graphflow.msgs.std_msg.msg import String"),
         imported("from graphflow.msgs.std_msgs.msg import Strin"),
         imported("from graphflow import GoalResponse"),
+        imported("from graphflow import node"),
+        imported("from graphflow import subscriber"),
+        imported("from graphflow import Rate"),
+        imported("from graphflow.node import Node"),
+        imported("from graphflow.msg.std_msgs.msg import String"),
+        body("def on_start(self): ..."),
+        body("rate = Param(1.0)\n@timer(hz=self.rate)\ndef tick(self): ...", "@timer(hz=self.rate)"),
+        body("rate = Param(1.0)\n@rate.setter\ndef set_rate(self, value): ...", "@rate.setter"),
+        body("rate = Param(1.0)\n@rate.on_change()\ndef changed(self, old, new): ...", "@rate.on_change()"),
+        body('words = Publisher(String, "words", Qos(deadline=0.1))'),
+        body(
+            'def fits(self): ...\n@action(Fibonacci, "count", accept=fits)\nasync def count(self, goal): ...',
+            "def fits(self): ..., then accept=fits",
+        ),
         body("@timer\ndef tick(self): ...", "@timer"),
         body("@timer(0)\ndef tick(self): ...", "@timer(0)"),
         body("@timer(hz='fast')\ndef tick(self): ...", "@timer(hz='fast')"),
@@ -84,11 +103,55 @@ MISTAKES = {
         body("rate = Param(1.0, min=0.0)"),
         body("@timer(1.0, thread=True)\nasync def tick(self): ...", "@timer(1.0, thread=True)"),
         body("@timer(1.0, group=2)\ndef tick(self): ...", "@timer(1.0, group=2)"),
+        body("rate = Param(ge=0.0)"),
+        body("rate = Param(1.0, range=(0.0, 5.0))"),
+        body("rate = Param(1.0, ge=5.0, le=2.0)"),
+        body("rates = Param([])"),
+        body("words = Publisher(String)"),
+        body("words = Publisher(AddTwoInts, 'words')"),
+        body("words = Subscription(String, 'words', lambda message: None)"),
+        body(
+            "@subscription(String, 'words', queue_size=10)\ndef heard(self, m): ...",
+            "@subscription(..., queue_size=10)",
+        ),
+        body("@subscription(String, 'words', '10')\ndef heard(self, m): ...", "@subscription(String, 'words', '10')"),
+        body(
+            "@subscription(String, 'words', 'best_effort')\ndef heard(self, m): ...",
+            "@subscription(..., 'best_effort')",
+        ),
+        body("@Subscription(String, 'words')\ndef heard(self, m): ...", "@Subscription(String, 'words')"),
+        body("@Timer(0.5)\ndef tick(self): ...", "@Timer(0.5)"),
+        imported("from graphflow import Service"),
+        body("@task()\nasync def work(self): ...", "@task()"),
+        body("@service(AddTwoInts)\ndef add(self, request): ...", "@service(AddTwoInts)"),
         body("words = Publisher(String, 'my words')"),
         body("rate = Param(0.0, gt=0.0)"),
         body("clock = Param(1.0)"),
+        body('name = "talker"'),
+        body("log = []"),
         body("def offload(self): ..."),
         body('dynamic_names = ("output",)'),
+        body("words = Publisher('std_msgs/msg/String', 'words')"),
+        body(
+            "rate = Param(1.0)\n@rate.check\ndef rate(self, value): ...\n@timer(hz=rate)\ndef tick(self): ...",
+            "@rate.check def rate(self, value): ..., then @timer(hz=rate)",
+        ),
+        body('words = Publisher(String, "words"),'),
+        body('words: Publisher(String, "words")'),
+        body('outs = [Publisher(String, f"out{i}") for i in range(3)]'),
+        body("@staticmethod\n@timer(1.0)\ndef tick(self): ...", "@staticmethod above @timer(1.0)"),
+        body(
+            "def noisy(fn): return lambda *args: fn(*args)\n@noisy\n@timer(1.0)\ndef tick(self): ...",
+            "@noisy above @timer(1.0)",
+        ),
+        body('words = Publisher(String, "words", Qos(durability="transient_local"))'),
+        body('words = Publisher(String, "words", Qos(deadline_ns=0.1))'),
+        body('@service(AddTwoInts, "add")\ndef add(self, request) -> int: ...', "def add(self, request) -> int: ..."),
+        body(
+            '@service(AddTwoInts, "add")\ndef one(self, request): ...\n'
+            '@service(AddTwoInts, "add")\ndef two(self, request): ...',
+            '@service(AddTwoInts, "add"), twice',
+        ),
         body("enable = False\n@service(AddTwoInts, 'enable')\ndef enable(self, request): ...", "enable = False"),
     ],
     "when the node is made": [
@@ -112,11 +175,60 @@ MISTAKES = {
         ticking("await self.adder.call_async(AddTwoInts.Request())"),
         ticking("self.adder.wait_for_service(1.0)"),
         ticking('self.log.info("error", 0.5)'),
+        body("async def on_strat(self): ...", "async def on_strat(self): ..."),
+        body("async def on_configure(self): ..."),
+        body(
+            "motion = Group(1)\n@timer(0.1)\nasync def tick(self):\n    with self.motion: ...", "with self.motion: ..."
+        ),
+        ticking("Header(stamp=1700000000.5).to_bytes()"),
+        ticking("async with self.goals.send_goal(Fibonacci.Goal()): ..."),
+        ticking("Time(1.5)"),
+        body(
+            'words = Publisher(String, "words")\nheard = Subscription(String, "words")\n@timer(0.01)\n'
+            "async def tick(self):\n    for n in range(100): self.words.publish(String())",
+            'heard = Subscription(String, "words"), which nothing reads',
+        ),
+        ticking("self.spawn(self.tick())"),
+        ticking("self.spawn(self.tick, n=3)"),
+        ticking("await self.offload(self.tick)"),
+        ticking("self.words.publish(String)"),
+        ticking("self.clock.now() + 5.0"),
+        ticking("self.clock.now() - self.clock.now() > 0.1"),
+        ticking("self.clock.now().to_msg()"),
+        ticking("async with asyncio.timeout(0.0): await self.clock.sleep(1.0)"),
+        ticking("async for n in self.clock.every: ..."),
+        ticking("await self.goals.send_goal(Fibonacci.Goal(), feedback_callback=print)"),
+        ticking("await self.offload(time.sleep(0.01))"),
         ticking('self.get_logger().info("hello")'),
         ticking("self.words.publish(String(data=5))"),
+        ticking('self.publish("words", String())'),
+        ticking("for n in self.clock.every(1.0): pass"),
+        ticking('await self.clock.sleep("1")'),
+        ticking("for message in self.heard: pass"),
+        ticking("self.heard.data"),
+        ticking("print(self.rate.value)"),
+        ticking("self.log('hello')"),
+        ticking("print(self.rate())"),
+        ticking('self.parameters["rate"]'),
+        ticking("self.parameters.rate"),
+        ticking('self.parameters.set("rate", 2.0)'),
+        ticking("await self.adder.call(a=1, b=2)"),
+        ticking("(self.adder.call(AddTwoInts.Request())).sum"),
+        ticking("asyncio.create_task(self.tick)"),
         ticking('self.words.publish("hello")'),
         ticking('self.rate = "fast"'),
         ticking("self.rate = -1.0"),
+        body(
+            "tags = Param(['a'])\n@timer(0.1)\nasync def tick(self):\n    self.tags.append('b')",
+            "self.tags.append('b')",
+        ),
+        body(
+            "rate = Param(1.0)\n@rate.on_change\ndef changed(self, old, new):\n    self.rate = new + 1.0\n"
+            "async def on_start(self):\n    self.spawn(self.begin)\nasync def begin(self):\n    self.rate = 2.0",
+            "@rate.on_change def changed(self, old, new): self.rate = new + 1.0",
+        ),
+        ticking("await self.adder.call(AddTwoInts.Request(), timeout=-1)"),
+        ticking("self.goals.send(Fibonacci.Goal())"),
         ticking("Fibonacci(order=3)"),
         ticking("Fibonacci.Goal(ordr=3)"),
         ticking("Fibonacci.Goal(3)"),
@@ -154,6 +266,7 @@ async def what_is_said(mistake: Mistake, file: Path, graph: Graph, caplog: pytes
         cls.interface()  # as every command does
         node = make_within(cls, Surroundings(), "slide")
     except (GraphflowError, AttributeError) as error:
+        explain(error)  # as whoever reports it does
         return str(error)
     caplog.clear()
     await graph.start(node)
@@ -170,6 +283,7 @@ def cleaned(text: str, file: Path) -> str:
     """The first line, without what differs from machine to machine, as a cell of a table."""
     text = text.replace(str(file), "slide.py").replace(file.stem, "slide").split("\n")[0]
     text = re.sub(r" at 0x[0-9a-f]+", "", text)
+    text = re.sub(r"(argument '\w+')\. Did you mean '\w+'\?", r"\1", text)  # Python 3.13's own
     return re.sub(r"(there is )/\w+/\w+.*", r"\1...", text).replace("|", "\\|").replace("*", "\\*")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
 from graphflow import Node
@@ -10,7 +12,7 @@ from graphflow.executor.sim_time import SimClock
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.qos import CLOCK
 from graphflow.runtime.core import core_of
-from graphflow.runtime.node_clock import NodeClock
+from graphflow.runtime.node_clock import TIMELESS, NodeClock
 from graphflow.testing import Graph
 from graphflow.times import Time, to_ns
 
@@ -45,12 +47,50 @@ def test_before_the_node_runs() -> None:
         _ = NodeClock(core, str, core.add).current
 
 
-async def test_time_that_does_not_begin(graph: Graph) -> None:
-    """Is something to complain about, until it begins."""
+async def test_time_that_does_not_begin(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Is something to complain about, until it begins, and told once in the node's log."""
     node = Node("n", use_sim_time=True)
     await graph.start(node)
     [text] = core_of(node).complaints()
     assert "nothing has come on /clock: its timers stand still" in text
+    await graph.clock.advance(2.9)
+    assert TIMELESS not in caplog.messages
+    await graph.clock.advance(10.0)
+    assert caplog.messages.count(TIMELESS) == 1
     graph.publisher(Clock, "/clock", CLOCK).publish(Clock(clock=Time(to_ns(7.0))))
     await graph.settle()
     assert core_of(node).complaints() == []
+
+
+async def test_time_that_begins_or_is_not_wanted(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Nothing is told."""
+    begun, left, ended = (Node(name, use_sim_time=True) for name in ("begun", "left", "ended"))
+    for node in (begun, left, ended):
+        await graph.start(node)
+    left.parameters.set({"use_sim_time": False})
+    await graph.stop(ended)
+    graph.publisher(Clock, "/clock", CLOCK).publish(Clock(clock=Time(to_ns(7.0))))
+    await graph.settle()
+    await graph.clock.advance(10.0)
+    assert TIMELESS not in caplog.messages
+
+
+async def test_time_that_is_wanted_again(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """It has its seconds from then on; what waited on the clock that was left waits out the rest."""
+    node = Node("n", use_sim_time=True)
+    await graph.start(node)
+    sleeping = asyncio.ensure_future(node.clock.sleep(1.0))
+    await graph.settle()
+    await graph.clock.advance(2.0)
+    node.parameters.set({"use_sim_time": False})
+    assert not sleeping.done()
+    await graph.clock.advance(0.9)
+    node.parameters.set({"use_sim_time": True})
+    await graph.clock.advance(2.0)
+    assert caplog.messages.count(TIMELESS) == 0
+    await graph.clock.advance(2.0)
+    assert caplog.messages.count(TIMELESS) == 1
+    node.parameters.set({"use_sim_time": False})
+    await graph.clock.advance(0.2)
+    await graph.settle()
+    assert sleeping.done()

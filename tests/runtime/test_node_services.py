@@ -7,15 +7,18 @@ from typing import Any
 
 import pytest
 
-from graphflow import Node
+from graphflow import LifecycleNode, Node
+from graphflow.interface import COMMON_SERVICES, LIFECYCLE_SERVICES
 from graphflow.msgs import registry
 from graphflow.msgs.geometry_msgs.msg import PoseStamped
 from graphflow.msgs.rcl_interfaces.msg import LoggerLevel
 from graphflow.msgs.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from graphflow.msgs.type_description_interfaces.msg import TypeDescription
 from graphflow.msgs.type_description_interfaces.srv import GetTypeDescription
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.wire import typehash
+from graphflow.wire.liveliness import Kind
 from tests.runtime.cast import Adder
 
 
@@ -97,3 +100,11 @@ async def test_logger_levels_are_read_and_set(graph: Graph) -> None:
     finally:
         for logger in (node.log, node.log.getChild("hand")):
             logger.setLevel(logging.NOTSET)
+
+
+async def test_the_services_that_every_node_has_are_known(graph: Graph) -> None:
+    """As the tables have them by which graph files are checked."""
+    for made, known in ((Node("plain"), COMMON_SERVICES), (LifecycleNode("led"), COMMON_SERVICES | LIFECYCLE_SERVICES)):
+        await graph.start(made)
+        services = [e for e in core_of(made).endpoints if e.kind == Kind.SERVICE]
+        assert {e.name: e.type_name for e in services} == {f"{made.full_name}/{n}": t for n, t in known.items()}

@@ -42,11 +42,15 @@ async def test_any_thread_may_publish(graph: Graph) -> None:
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1e-6)
     try:
-        await asyncio.gather(*(in_a_thread(publish) for _ in range(4)))
+        publish()
+        threads = [asyncio.ensure_future(in_a_thread(publish)) for _ in range(4)]
+        await asyncio.sleep(0)
+        publish()
+        await asyncio.gather(*threads)
     finally:
         sys.setswitchinterval(interval)
     await graph.settle()
-    assert numbers == list(range(1, 2001))
+    assert numbers == list(range(1, 3001))
 
 
 async def test_any_thread_may_ask_the_loop(graph: Graph) -> None:

@@ -121,3 +121,13 @@ def test_unused_overrides() -> None:
     made = parameters(RATE, TITLE, rat=5, title="x")
 
     assert made.unused_overrides() == ["there is no parameter 'rat' (from graph.yaml:3); did you mean 'rate'?"]
+
+
+def test_an_override_of_a_plain_attribute() -> None:
+    """Is answered with how it becomes a parameter."""
+    owner = type("Lamp", (), {"speed": 2.0, "log": print})
+    made = Parameters({"speed": (3.0, "command line"), "log": (1, "command line")})
+    assert made.unused_overrides(owner) == [
+        "there is no parameter 'speed' (from command line); write speed = Param(2.0)",
+        "there is no parameter 'log' (from command line)",
+    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from graphflow import EncodeError
 from graphflow.errors import ClosedError
 from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.runtime import publishers
 from graphflow.testing import Graph
 from tests.runtime.cast import Speaker
 
@@ -78,3 +80,23 @@ async def test_a_publisher_that_is_paused_sends_nothing(graph: Graph) -> None:
     await graph.settle()
     assert [message.data for message in heard] == ["day"]
     assert speaker.chatter.published == 1
+
+
+def test_a_second_thread_waits_for_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once; from then on both take the lock."""
+    order = publishers._Order()
+    order.look_who_publishes()
+    order.is_sending = True
+    waited: list[float] = []
+
+    def sleep(seconds: float) -> None:
+        waited.append(seconds)
+        order.is_sending = len(waited) < 3
+
+    monkeypatch.setattr(publishers, "sleep", sleep)
+    with ThreadPoolExecutor(1) as other:
+        other.submit(order.look_who_publishes).result(10.0)
+    assert (order.is_shared, len(waited)) == (True, 3)
+    order.is_sending = True
+    order.look_who_publishes()
+    assert len(waited) == 3

@@ -10,7 +10,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.qos import BEST_AVAILABLE, DEFAULT, Durability, Qos
 from graphflow.runtime import raw
-from graphflow.runtime.raw import RawPublisher, RawSubscription
+from graphflow.runtime.serialized import RawPublisher, RawSubscription
 from graphflow.testing import Graph
 from graphflow.wire.attachment import MessageInfo
 

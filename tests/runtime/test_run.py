@@ -8,12 +8,26 @@ from unittest.mock import AsyncMock
 
 import pytest
 
-from graphflow import Client, Context, GraphflowError, Node, Param, Publisher, Subscription, service, task, timer
+from graphflow import (
+    Client,
+    Context,
+    ErrorBudget,
+    GraphflowError,
+    Node,
+    Param,
+    Publisher,
+    Subscription,
+    service,
+    subscription,
+    task,
+    timer,
+)
 from graphflow.errors import ClosedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.company import Company
+from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.run import make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
@@ -32,6 +46,14 @@ class Failing(Node):
     @task
     async def work(self) -> None:
         await self.clock.sleep(1.0)
+        raise ValueError("broken")
+
+
+class Breaking(Node):
+    """Ends with an error at once."""
+
+    @task
+    async def work(self) -> None:
         raise ValueError("broken")
 
 
@@ -251,8 +273,8 @@ async def test_without_a_context_one_is_opened_and_closed(
 # serve
 
 
-async def serving(*nodes: Node, clock: ManualClock) -> tuple[asyncio.Task[None], asyncio.Event]:
-    stop = asyncio.Event()
+async def serving(*nodes: Node, clock: ManualClock) -> tuple[asyncio.Task[None], StopRequest]:
+    stop = StopRequest()
     task = asyncio.create_task(serve(nodes, context_of(clock), stop))
     await settle()
     return task, stop
@@ -297,7 +319,7 @@ async def test_serve_says_who_is_ready(graphflow_runner: asyncio.Runner) -> None
     ready: list[Node] = []
     first, wrong = Talker("first"), Talker("wrong", rat=1)
     with pytest.raises(GraphflowError, match="no parameter 'rat'"):
-        await Company(context_of(), asyncio.Event(), ready.append).run([first, wrong])
+        await Company(context_of(), StopRequest(), ready.append).run([first, wrong])
 
     assert ready == [first]
     assert not first.is_running
@@ -305,13 +327,13 @@ async def test_serve_says_who_is_ready(graphflow_runner: asyncio.Runner) -> None
 
 async def test_serve_nobody(graphflow_runner: asyncio.Runner) -> None:
     """Without nodes there is nothing to wait for."""
-    await serve([], context_of(), asyncio.Event())
+    await serve([], context_of(), StopRequest())
 
 
 async def test_serve_two_that_cannot_start(graphflow_runner: asyncio.Runner) -> None:
     """The error of one comes out, and that of the other is not left for the garbage collector to complain of."""
     with pytest.raises(GraphflowError, match="parameter 'rat"):
-        await serve([Talker("one", rat=1), Talker("two", rate="x")], context_of(), asyncio.Event())
+        await serve([Talker("one", rat=1), Talker("two", rate="x")], context_of(), StopRequest())
 
 
 # make
@@ -345,3 +367,43 @@ def test_run_says_what_is_wrong_with_its_words(
 
     assert caught.value.code == code
     assert text in capsys.readouterr().err
+
+
+class Storming(Node):
+    """Fails at each word that it hears, which are two."""
+
+    error_budget = ErrorBudget(1, per=10.0)
+    out = Publisher(String, "words")
+
+    @subscription(String, "words")
+    async def heard(self, message: String) -> None:
+        raise ValueError("bad")
+
+    @task
+    async def speak(self) -> None:
+        for _ in range(2):
+            self.out.publish(String())
+
+
+@pytest.mark.parametrize(
+    ("cls", "last"),
+    [
+        (Storming, "error: 2 handler errors within 10 s, the last in heard: ValueError: bad. The node ends; on_error="),
+        (Breaking, ""),
+    ],
+)
+def test_run_says_why_a_node_has_ended(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], cls: type[Node], last: str
+) -> None:
+    """Errors of handlers have been logged one by one, and that there were too many is told at the end."""
+
+    async def opened() -> Context:
+        return context_of()
+
+    monkeypatch.setattr(Context, "open", opened)
+    with pytest.raises(SystemExit) as caught:
+        run(cls, args=[])
+
+    assert caught.value.code == 1
+    said = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error: ")]
+    assert [line[: len(last)] for line in said] == [last] * bool(last)

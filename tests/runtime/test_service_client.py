@@ -240,6 +240,15 @@ async def test_a_call_with_a_wrong_request(graph: Graph) -> None:
     assert server.asked == []
 
 
+async def test_a_call_with_a_negative_timeout(graph: Graph) -> None:
+    """It is a slip, and no call that cannot be answered in time."""
+    node = Node("n")
+    client = node.create_client(AddTwoInts, "add")
+    await graph.start(node)
+    with pytest.raises(ValueError, match="is in seconds, and cannot be -1; None waits for ever"):
+        await client.call(AddTwoInts.Request(), timeout=-1)
+
+
 async def test_a_call_needs_a_running_node(graph: Graph) -> None:
     """Before the start there is nothing to call with."""
     client = Node("n").create_client(AddTwoInts, "add")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import re
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ from graphflow import Node, RemoteError, ServerBusy, ServerLost, service
 from graphflow.errors import ClosedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
-from graphflow.runtime import services
+from graphflow.runtime import direct, services
 from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer
@@ -47,8 +48,8 @@ async def test_an_empty_response_may_be_none(graph: Graph) -> None:
     [
         ("raises", "ValueError", "^7 is too much$"),
         ("raises_plainly", "KeyError", "^'lost'$"),
-        ("wrong_type", "TypeError", r"the handler of /wrong_type returned std_srvs.*not .*AddTwoInts.*Response"),
-        ("returns_nothing", "TypeError", "the handler of /returns_nothing returned None, not .*AddTwoInts.*Response"),
+        ("wrong_type", "TypeError", r"it returned std_srvs.*not .*AddTwoInts.*Response"),
+        ("returns_nothing", "TypeError", "it returned None, not AddTwoInts.Response"),
         ("wrong_field", "EncodeError", "sum"),
         ("cancelled_inside", "CancelledError", ""),
     ],
@@ -178,6 +179,42 @@ async def test_a_full_service_refuses_the_newest(graph: Graph, monkeypatch: pyte
     assert "2 requests waiting" in str(results[-1])
 
 
+async def test_a_service_bounds_the_bytes_that_wait(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it does their number; the request that waits alone may have any size."""
+    monkeypatch.setattr(services, "BYTES_BOUND", 8)
+    gate, caller = Gate(), Node("caller")
+    client = caller.create_client(Trigger, "pass")
+    await graph.start(gate, caller)
+    calls = [asyncio.ensure_future(client.call(Trigger.Request())) for _ in range(4)]
+    await graph.settle()
+
+    gate.open.set()
+    await graph.settle()
+    results = await asyncio.gather(*calls, return_exceptions=True)
+
+    assert [type(r) for r in results] == [Trigger.Response] * 2 + [ServerBusy] * 2
+    assert "MB of requests waiting" in str(results[-1])
+
+
+async def test_a_flood_while_the_loop_is_blocked(
+    graph: Graph, way: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Is refused before it fills the memory; each call ends at once, and a warning tells how many."""
+    monkeypatch.setitem(direct._DEPTH, "ask", 3)
+    monkeypatch.setattr(services, "REQUESTS_BOUND", 3)
+    caller = Node("caller")
+    client = caller.create_client(AddTwoInts, "add")
+    server = Adder()
+    await graph.start(server, caller)
+    await graph.settle()
+    calls = [asyncio.ensure_future(client.call(AddTwoInts.Request(a=1, b=1))) for _ in range(10)]
+    results = await asyncio.gather(*calls, return_exceptions=True)
+
+    refused = ServerBusy if way == "direct" else ServerLost
+    assert [type(r) for r in results] == [AddTwoInts.Response] * 3 + [refused] * 7
+    assert any("were refused so far, since 3 of them" in r.getMessage() for r in caplog.records)
+
+
 async def test_a_closed_client_ends_its_calls(graph: Graph) -> None:
     """Nobody waits for an answer that has nowhere to go to."""
     caller = Node("caller")
@@ -190,3 +227,24 @@ async def test_a_closed_client_ends_its_calls(graph: Graph) -> None:
 
     with pytest.raises(ClosedError, match="the client of /pass was closed"):
         await call
+
+
+async def test_two_servers_of_one_node(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """They are told with both handlers; one that was closed does not count."""
+    node = Node("clerk")
+
+    async def add(request: Any) -> Any: ...
+
+    async def add_too(request: Any) -> Any: ...
+
+    await graph.start(node)
+    node.create_service(AddTwoInts, "add", add).close()
+    node.create_service(AddTwoInts, "add", add)
+    node.create_service(AddTwoInts, "other", add)
+    node.create_service(AddTwoInts, "/add", add_too)
+    [text] = [record.getMessage() for record in caplog.records if "twice" in record.getMessage()]
+    first, second = (f"{__file__}:{fn.__code__.co_firstlineno}" for fn in (add, add_too))
+    assert text == (
+        f"/add is offered twice by this node, by service add ({first}) and service add_too ({second}): "
+        "each call reaches both; keep one"
+    )

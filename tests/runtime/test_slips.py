@@ -55,8 +55,31 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ("async def heard(self, message: String) -> None: ...", LOOKS.format("heard", SUBSCRIPTION)),
         ("def add(self, request: AddTwoInts.Request): ...", LOOKS.format("add", SERVICE)),
         ("def on_pose(self, message): ...", LOOKS.format("on_pose", SUBSCRIPTION)),
+        ("def on_strat(self): ...", "nothing calls Robot.on_strat; did you mean on_start?"),
+        ("def on_stop(self): ...", "nothing calls Robot.on_stop; did you mean on_shutdown?"),
+        (
+            "async def on_configure(self): ...",
+            "nothing calls Robot.on_configure; derive Robot from LifecycleNode, whose nodes are configured",
+        ),
         ("def timer_callback(self): ...", LOOKS.format("timer_callback", "@timer(1.0)")),
+        (
+            "def work(self):\n    self.shutdown",
+            "self.shutdown without parentheses calls nothing; write: self.shutdown()",
+        ),
+        (
+            "tags = Param(['a'])\ndef work(self):\n    self.tags.append('b')",
+            "self.tags.append('b') changes the list of a parameter unseen by its checks and by every tool; "
+            "set a new one, as in self.tags = [*self.tags, ...]",
+        ),
+        (
+            "tags = Param(['a'])\ndef work(self):\n    self.tags[0] = 'b'",
+            "self.tags[0] changes the list of a parameter unseen by its checks",
+        ),
         ("def work(self):\n    self.rat = 2.0", "self.rat is set and never read; did you mean self.rate?"),
+        *(
+            (f"def work(self):\n    {owner}.rate = 2.0", f"{owner}.rate replaces what the class declares")
+            for owner in ("Robot", "type(self)")
+        ),
         ("def work(self):\n    m = String()\n    m.dat = 'x'", "String has no field 'dat'; did you mean 'data'?"),
         (
             "@subscription(String, 't')\ndef heard(self, m: String) -> None:\n    m.dat = 'x'",
@@ -85,6 +108,7 @@ def test_slips(robot: object, body: str, told: str) -> None:
         "def on_pose(self, m: String) -> None: ...\nasync def on_start(self) -> None:\n    self.use(self.on_pose)",
         "def work(self):\n    self.rats = 2.0\n    return self.rats",
         "def work(self):\n    self.position = 2.0",
+        "def work(self, other):\n    Robot.times = 2\n    other.rate = 2.0\n    self.rate = 2.0",
         "def work(self, m):\n    m.dat = 'x'",
         "def work(self):\n    m = String()\n    m.data = 'x'",
         "def work(self):\n    m = String()\n    m = object()\n    m.dat = 'x'",

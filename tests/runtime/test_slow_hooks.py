@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 
 import pytest
 
 from graphflow import LifecycleNode, Node
+from graphflow.runtime import slow_hooks
 from graphflow.runtime.core import core_of
 from graphflow.runtime.slow_hooks import when_slow
+from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.testing import Graph
 
 
@@ -42,3 +45,31 @@ async def test_a_hook_that_has_returned(graph: Graph, caplog: pytest.LogCaptureF
     await node.trigger_configure()
     await graph.clock.advance(6.0)
     assert "has not returned" not in caplog.text
+
+
+def test_an_init_that_does_not_return(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told with the line where it is; one that has returned is not."""
+    monkeypatch.setattr(slow_hooks, "SLOW_INIT", 0.01)
+    told, texts = threading.Event(), list[str]()
+
+    def warning(text: str, *args: object) -> None:
+        texts.append(text % args)
+        told.set()
+
+    monkeypatch.setattr(slow_hooks.logger, "warning", warning)
+
+    class Slow(Node):
+        def __init__(self) -> None:
+            super().__init__()
+            assert told.wait(30.0)
+
+    make_within(Slow, Surroundings(), "slow")
+    [text] = texts
+    assert text.startswith("Slow.__init__ has not returned for 0 s, now in test_slow_hooks.py:")
+    assert "in __init__, and the node starts when it has" in text
+
+
+async def test_an_init_on_an_event_loop(graphflow_runner: asyncio.Runner) -> None:
+    """It is left to the watch over the loop."""
+    with slow_hooks.telling_slow_init(Node):
+        assert not any(isinstance(thread, threading.Timer) for thread in threading.enumerate())

@@ -7,6 +7,7 @@ import itertools
 import logging
 import threading
 from collections.abc import Callable
+from random import Random
 from typing import Any
 
 import pytest
@@ -20,10 +21,12 @@ from graphflow.errors import ClosedError
 from graphflow.executor.runner import BURST
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.qos import Durability, History
-from graphflow.runtime.subscriptions import TopicSubscription
+from graphflow.qos import INFINITE_NS, Durability, History
+from graphflow.runtime.core import core_of
+from graphflow.runtime.subscriptions import TopicSubscription, _Source
 from graphflow.testing import Graph
 from graphflow.transport import base
+from graphflow.wire import attachment
 from tests.runtime.cast import Log, Speaker, nothing
 
 
@@ -257,6 +260,24 @@ async def test_a_busy_handler_drops_the_oldest_and_counts(graph: Graph) -> None:
     assert (subscribed.received, subscribed.dropped) == (6, 3)
 
 
+async def test_a_subscription_that_nobody_reads_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """It is not slow; one that is read is not told so, however late its reader is."""
+    node = Node("n")
+    node.create_subscription(Int32, "x", None, 1)
+    late = node.create_subscription(Int32, "x", None, 1)
+    await graph.start(node)
+    publisher = graph.publisher(Int32, "/x")
+    publisher.publish(Int32())
+    await graph.settle()
+    await anext(late)
+    for n in range(150):
+        publisher.publish(Int32(data=n))
+        await graph.settle()
+    first, second = sorted(caplog.messages)
+    assert first.startswith("nothing has read /x yet, and its messages are lost, 100 so far: write `async for")
+    assert "most messages are lost" in second
+
+
 async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """KEEP_ALL is not without end: beyond its bound messages are lost and counted."""
     monkeypatch.setattr(base, "KEEP_ALL_BOUND", 50)
@@ -269,6 +290,31 @@ async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.
     await graph.settle()
 
     assert (subscribed.received, subscribed.dropped) == (60, 10)
+
+
+@pytest.mark.parametrize(("depth", "text"), [(10, "most messages are lost"), (200, "its queue was full")])
+async def test_a_handler_that_never_returns_is_told(
+    graph: Graph, caplog: pytest.LogCaptureFixture, depth: int, text: str
+) -> None:
+    """Once, though nothing is ever taken from its queue again; also after many messages that it has handled."""
+    node, gate = Node("n"), asyncio.Event()
+    gate.set()
+
+    async def stuck(message: Int32) -> None:
+        await gate.wait()
+
+    node.create_subscription(Int32, "x", stuck, depth)
+    await graph.start(node)
+    publisher = graph.publisher(Int32, "/x")
+    for n in range(1000):
+        publisher.publish(Int32(data=n))
+        await graph.settle()
+        if n == 299:
+            assert not caplog.records
+            gate.clear()
+
+    [told] = [r.getMessage() for r in caplog.records if text in r.getMessage()]
+    assert "graphflow waits says where it is now" in told
 
 
 async def test_a_deep_queue_that_is_full_is_told(
@@ -325,6 +371,45 @@ async def test_malformed_payloads_are_dropped(graph: Graph, caplog: pytest.LogCa
     assert subscribed.malformed == 3
     [record] = caplog.records
     assert record.getMessage().startswith("/x: dropped a malformed message (1 so far): ")
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("lifespan_ns", [INFINITE_NS, 1_000_000])
+@pytest.mark.parametrize("takes_info", [False, True])
+async def test_the_short_way_of_a_message_is_the_general_one(
+    graph: Graph, seed: int, lifespan_ns: int, takes_info: bool
+) -> None:
+    """Whatever arrives: gaps, repetitions, strangers, old messages, foreign attachments, other payloads."""
+    random, now = Random(seed), graph.clock.time_ns()
+    logs: list[list[Any]] = [[], []]
+    node = Node("n")
+    qos = Qos(10, lifespan_ns=lifespan_ns)
+    short, general = (
+        TopicSubscription(
+            core_of(node), String, "/x", qos, lambda *given, log=log: log.append(given), takes_info=takes_info
+        )
+        for log in logs
+    )
+    await graph.start(node)
+    for each in (short, general):
+        each._read = lambda arrival: arrival
+    gids = [bytes([i]) * 16 for i in range(3)]
+    for each in (short, general):
+        each._sources[gids[0]] = _Source(lifespan_ns)
+    invoke = short._invoker()
+    sequences = dict.fromkeys(gids, 0)
+    for _ in range(60):
+        gid = random.choice(gids)
+        sequences[gid] = max(0, sequences[gid] + random.choice([1, 1, 1, 1, 0, 3, -2]))
+        whole = attachment.pack(sequences[gid], now - random.choice([0, 0, 10_000_000]), gid)
+        beside = random.choice([whole] * 8 + [whole[:20], whole.replace(b"\x10", b"\x11"), None])
+        payload = String(data=str(_)).to_bytes()
+        arrival = (random.choice([payload] * 6 + [payload[:6]]), beside)
+        assert invoke(arrival) == general._invoke(arrival)
+    assert logs[0] == logs[1]
+    assert short.statistics() == general.statistics()
+    known = [{gid: source.sequence for gid, source in each._sources.items()} for each in (short, general)]
+    assert known[0] == known[1]
 
 
 async def test_a_decode_error_of_the_handlers_own_is_an_error(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:

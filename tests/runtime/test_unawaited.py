@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import _thread
 import inspect
 import sys
 import warnings
 from collections.abc import Iterator
+from queue import Queue
+from typing import Any
 
 import pytest
 
@@ -41,7 +44,7 @@ def test_the_line_that_lacks_it(caplog: pytest.LogCaptureFixture) -> None:
     line = inspect.getsourcelines(forgets)[1] + 1
     [message] = caplog.messages
     assert message.startswith(f"{__file__}:{line}: `go()")
-    assert message.endswith("does nothing, since go is a coroutine; write await before the call")
+    assert message.endswith("does nothing, since go is a coroutine; write await before it, in an async def")
 
 
 def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
@@ -52,3 +55,29 @@ def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
     ]
     keeps()
     assert f"{__file__}:{inspect.getsourcelines(keeps)[1] + 1}: `kept = go()` does nothing" in caplog.messages[1]
+
+
+def test_a_coroutine_that_ends_where_no_python_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As at the end of Python, or of a foreign thread: there is no line to tell, and no error about that."""
+    told: Queue[str] = Queue()
+    monkeypatch.setattr(unawaited.logger, "error", lambda text, *args: told.put(text % args))
+    coroutine = go()
+    _thread.start_new_thread(unawaited.report, (coroutine,))
+    assert told.get(timeout=10).startswith("a call of go did nothing")
+    coroutine.close()
+
+
+def test_a_goal_that_is_sent_by_the_other_name(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`async with client.send_goal(...)` needs no await, but `send`."""
+    text = "async with self.goals.send_goal(goal) as sent:"
+    monkeypatch.setattr(unawaited, "_origin", lambda *_: ("drive.py:5", text))
+
+    async def send_goal() -> None: ...
+
+    coroutine: Any = send_goal()
+    coroutine.__qualname__ = "GoalClient.send_goal"
+    unawaited.report(coroutine)
+    coroutine.close()
+    assert caplog.messages[0].endswith("is a coroutine; write send in place of send_goal")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import sys
 from collections.abc import Iterator
@@ -14,7 +15,8 @@ from graphflow.errors import GraphflowError, Problem
 from graphflow.interface import Interface
 from graphflow.msgs import registry
 from graphflow.supervisor import classes
-from graphflow.supervisor.classes import add_root, import_class, interfaces, read_interfaces
+from graphflow.supervisor.classes import add_root, import_class, interfaces
+from graphflow.supervisor.probed import read_interfaces
 from tests.conftest import PROGRAMS
 
 
@@ -28,10 +30,13 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         "raises": "def deep():\n    raise RuntimeError('no wheels')\n\n\ndeep()\n",
         "needs": "\nimport no_such_module_anywhere\n",
         "ros": "import geometry_msgs.msg\n",
+        "elderly": "import rospy\n",
         "from_robot": "from machines.robot import Robto\n",
         "syntax": "class Robot(:\n    pass\n",
         "declares": "from graphflow import Node, Param\n\n\nclass Robot(Node):\n    rate = Param(1, ge=3)\n",
         "ends": "raise SystemExit(3)\n",
+        "parses": "import json\n\njson.loads('nonsense')\n",
+        "asks": "from graphflow import Qos\n\nQos(\n    depth='10')\n",
     }.items():
         (folder / f"{name}.py").write_text(text)
     monkeypatch.setattr(sys, "path", list(sys.path))
@@ -56,11 +61,20 @@ def test_a_class_by_its_path(project: Path) -> None:
         (
             "machines.nowhere:Robot",
             "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
-            "there is declares, ends, from_robot, needs, raises, robot, ros, syntax",
+            "there is asks, declares, elderly, ends, from_robot, needs, parses, raises, robot, ros, syntax",
         ),
         (
             "nowhere.robot:Robot",
-            "cannot import nowhere.robot: there is no module 'nowhere'; modules are looked for in {project}",
+            "cannot import nowhere.robot: there is no module 'nowhere'; did you mean 'machines.robot:Robot'?",
+        ),
+        (
+            "nowhere.nothing:Robot",
+            "cannot import nowhere.nothing: there is no module 'nowhere'; modules are looked for in {project}",
+        ),
+        ("robot:Robot", "cannot import robot: there is no module 'robot'; did you mean 'machines.robot:Robot'?"),
+        (
+            "machines.robt:Robot",
+            "cannot import machines.robt: there is no module 'machines.robt'; did you mean 'machines.robot:Robot'?",
         ),
         ("machines.raises:Robot", "cannot import machines.raises: {machines}/raises.py:2: RuntimeError: no wheels"),
         (
@@ -79,6 +93,20 @@ def test_a_class_by_its_path(project: Path) -> None:
             "cannot import machines.ros: {machines}/ros.py:1: ModuleNotFoundError: No module named 'geometry_msgs'; "
             "write graphflow.msgs.geometry_msgs",
         ),
+        (
+            "machines.elderly:Robot",
+            "cannot import machines.elderly: {machines}/elderly.py:1: ModuleNotFoundError: No module named 'rospy'; "
+            "rospy is ROS 1's: write `from graphflow import Node`, or ROS 2's import rclpy",
+        ),
+        (
+            "machines.parses:Robot",
+            "cannot import machines.parses: {machines}/parses.py:3: JSONDecodeError: "
+            "Expecting value: line 1 column 1 (char 0)",
+        ),
+        (
+            "machines.asks:Robot",
+            "cannot import machines.asks: {machines}/asks.py:3: ValueError: depth of a Qos is a whole number, not '10'",
+        ),
         ("machines.syntax:Robot", "cannot import machines.syntax: {machines}/syntax.py:1: invalid syntax"),
     ],
 )
@@ -87,6 +115,16 @@ def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path)
     with pytest.raises(GraphflowError) as caught:
         import_class(class_path)
     assert str(caught.value) == problem.replace("{machines}", f"{project}/machines").replace("{project}", str(project))
+
+
+def test_a_package_that_another_hides(project: Path) -> None:
+    """A name that an installed module has too is told as such, and not offered again."""
+    (project / "json").mkdir()
+    (project / "json" / "robot.py").touch()
+    with pytest.raises(GraphflowError) as caught:
+        import_class("json.robot:Robot")
+    text = f"'json' is {json.__file__}; give the package in {project} another name"
+    assert str(caught.value) == f"cannot import json.robot: {text}"
 
 
 def test_a_wrong_declaration_names_its_line(project: Path) -> None:

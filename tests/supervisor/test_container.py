@@ -12,6 +12,7 @@ from graphflow.graph.plan import node_from_json
 from graphflow.msgs.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
 from graphflow.msgs.rcl_interfaces.msg import Parameter, ParameterValue
 from graphflow.runtime.company import Company
+from graphflow.runtime.ending import StopRequest
 from graphflow.supervisor.container import Container
 from graphflow.supervisor.orders import Orders
 from graphflow.supervisor.worker import make_node
@@ -31,7 +32,7 @@ class Stage:
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
-        self.stop = asyncio.Event()
+        self.stop = StopRequest()
         context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
         company = Company(context, self.stop)
         self.told: list[dict[str, Any]] = []

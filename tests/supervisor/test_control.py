@@ -7,6 +7,7 @@ import json
 import os
 import socket
 import stat
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,8 @@ import pytest
 from graphflow.errors import SupervisorError
 from graphflow.graph.plan import Plan
 from graphflow.supervisor import control
-from graphflow.supervisor.control import ControlClient, ControlServer
+from graphflow.supervisor.control import ControlServer
+from graphflow.supervisor.control_client import ControlClient
 from graphflow.supervisor.doors import Doors
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -29,7 +31,7 @@ class Graph:
 
     def __init__(self) -> None:
         self.stopped: list[str] = []
-        self.asked: list[tuple[str, str, str]] = []
+        self.asked: list[tuple[str, ...]] = []
         self.emptied = 0
         self.doors = Doors(self._empty)
 
@@ -45,10 +47,10 @@ class Graph:
     def begin_stop(self, *, now: bool, reason: str) -> None:
         self.stopped.append(reason)
 
-    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None:
+    def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None:
         if node != "/a":
             raise SupervisorError(f"graph g has no node {node}")
-        self.asked.append(("start" if only_ended else "restart", node, by))
+        self.asked.append(("start" if only_ended else "restart", node, by, *threads))
 
     def stop(self, node: str, by: str) -> None:
         self.asked.append(("stop", node, by))
@@ -110,3 +112,20 @@ async def test_nobody_is_waited_for_who_has_gone(monkeypatch: pytest.MonkeyPatch
     assert not waiting.done()
     server.expect_nobody()
     await asyncio.wait_for(waiting, 5.0)
+
+
+async def test_a_stop_that_comes_late(portable: bool, tmp_path: Path) -> None:
+    """A graph that has just ended says so to one who wants to stop it, and waits for nothing more."""
+    graph = Graph()
+    server = ControlServer(graph)
+    address = await server.open(tmp_path / "control.sock")
+    graph.doors.tell(event="exited", nodes=["/a"])
+    graph.doors.tell(event="end", exit_code=1)
+
+    def take_down() -> list[str]:
+        with ControlClient(address) as client:
+            client.send(do="down", now=False)
+            return [event["event"] for event in client.receive()]
+
+    assert await asyncio.wait_for(asyncio.to_thread(take_down), 5.0) == ["exited", "end"]
+    await server.close()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import LIMIT, PROJECT, Machine
 
 pytest.importorskip("coverage")
@@ -31,6 +32,7 @@ def never() -> int:
 """
 
 
+@slow
 def test_forked_nodes_are_measured(machine: Machine, tmp_path: Path) -> None:
     """The lines of a handler count, though nothing but the node's process has run them."""
     page = (PROJECT / "docs" / "testing.md").read_text(encoding="utf-8")

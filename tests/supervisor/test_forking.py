@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import socket
@@ -14,6 +15,7 @@ import pytest
 from graphflow.errors import SupervisorError
 from graphflow.supervisor import preload
 from graphflow.supervisor.forking import ForkingStarter
+from graphflow.supervisor.starter import Start
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="nothing is forked there")
 
@@ -109,6 +111,43 @@ async def test_what_a_worker_said_before_it_ended_is_heard_first(
     preloads.sendall(b'{"event": "exited", "process": "/a", "pid": 4194305, "status": 0}\n')
     made._lines[0].read()
     assert heard == ["spawned", "ready", "exited"]
+    await made.close()
+    for end in (mine, preloads):
+        end.close()
+    for fd in (status_read, status_write):
+        os.close(fd)
+
+
+@pytest.mark.usefixtures("graphflow_runner")
+async def test_a_worker_that_is_started_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """It is started once; what becomes of it is told in order, once it is asked for. Later it is started anew."""
+    mine, preloads = socket.socketpair()
+    preloads.settimeout(5.0)
+    status_read, status_write = os.pipe()
+    monkeypatch.setattr(preload, "start", lambda keep: (mine, status_read, 0))
+    heard: list[str] = []
+    made = ForkingStarter(())
+    start = Start("/a", {"nodes": []}, "a.log", {})
+    made.begin([start])
+    spawn = b'{"do": "spawn", "process": "/a", "job": {"nodes": []}, "log": "a.log", "env": {}}\n'
+    assert preloads.recv(4096) == spawn
+
+    await made.open(tmp_path / "log", lambda event: heard.append(event["event"]), lambda _: None)
+    preloads.sendall(b'{"event": "spawned", "process": "/a", "pid": 4194305}\n')
+    made._lines[0].read()
+    os.write(status_write, b'{"event": "ready", "process": "/a"}\n')
+    made._lines[1].read()
+    assert heard == []
+    made.spawn(*start)
+    os.write(status_write, b'{"event": "beat", "process": "/a"}\n')
+    made._lines[1].read()
+    await asyncio.sleep(0)
+    assert heard == ["spawned", "ready", "beat"]
+    made.spawn(*start)
+    assert preloads.recv(4096).splitlines(keepends=True)[1:] == [spawn]
+    preloads.sendall(b'{"event": "exited", "process": "/a", "pid": 4194305, "status": 0}\n')
+    made._lines[0].read()
+    assert heard[3:] == ["exited"]
     await made.close()
     for end in (mine, preloads):
         end.close()

@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from graphflow.supervisor.rundir import SUPERVISOR_LOG, RunDirectory
+from graphflow.supervisor.rundir import RunDirectory
 from graphflow.system import is_portable
 from tests.cases import slow, some
 from tests.conftest import PROGRAMS, Machine, alive
@@ -131,18 +131,6 @@ def test_what_a_node_leaves_behind_goes_with_it(machine: Machine, nursery: list[
     machine.until(lambda: rows(machine)["/n"]["state"] == "failed", "its end is known")
     machine.until(lambda: sum(map(alive, nursery)) == 3 + 4, "what it left is gone, and nothing else")
     assert not any(map(alive, its))
-    machine.look("down")
-    nothing_is_left(machine, nursery)
-
-
-@slow
-def test_a_graph_outlives_its_guardian(machine: Machine, nursery: list[int]) -> None:
-    """It says so, goes on, and goes down as any other."""
-    guardian = role(machine, "guardian")
-    log = Path(rows(machine)["/n"]["log"]).with_name(SUPERVISOR_LOG)
-    os.kill(guardian, signal.SIGKILL)
-    machine.until(lambda: f"the guardian, process {guardian}, was ended" in log.read_text(), "it is told")
-    assert {row["state"] for row in rows(machine).values()} == {"ready"}
     machine.look("down")
     nothing_is_left(machine, nursery)
 

@@ -20,7 +20,7 @@ def problems() -> Iterator[list[dict[str, Any]]]:
 
 
 def said(name: str, /, *args: Any, **kwargs: Any) -> Said:
-    made: Said = type(name, (Said,), {"name": name})(*args, **kwargs)
+    made: Said = type(name, (Said,), {"kind": name})(*args, **kwargs)
     made.line = 7
     return made
 
@@ -30,6 +30,18 @@ def test_an_action_and_its_condition() -> None:
     var = said("LaunchConfiguration", "x")
     node = said("Node", package="p", executable=["e_", var], condition=said("UnlessCondition", var))
     assert actions([None, [node]]) == [{"node": {"pkg": "p", "exec": "e_$(var x)", "line": 7, "unless": "$(var x)"}}]
+
+
+def test_where_components_are_loaded() -> None:
+    """By a container, or by a name that is a substitution; each may have a condition."""
+    x = said("LaunchConfiguration", "x")
+    node = said("ComposableNode", package="p", plugin="p::P", condition=said("UnlessCondition", x))
+    for target in ("box", said("ComposableNodeContainer", name="box"), x):
+        load = said("LoadComposableNodes", target_container=target, composable_node_descriptions=[node])
+        [action] = actions([load])
+        found = action["load_composable_node"]
+        assert found["target"] == ("$(var x)" if target is x else "box")
+        assert found["composable_node"] == [{"pkg": "p", "plugin": "p::P", "unless": "$(var x)"}]
 
 
 def test_what_comes_after_what() -> None:
@@ -158,21 +170,60 @@ def test_what_a_process_says_is_done_at_its_end() -> None:
 
 def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
     """It is a problem, with its line if there is one."""
+    RECORDING.written_at = 1
     assert actions(3) == []
+    actions([said("TimerAction", period=1, actions=["x"])])
     actions([said("PushMatrix")])
     assert problems == [
-        {"line": 1, "message": "3 is no action"},
+        {"line": 1, "message": "3 is no action, such as Node(...)"},
+        {"line": 7, "message": "'x' is no action, such as Node(...)"},
         {"line": 7, "message": "PushMatrix has no words in a graph file"},
     ]
 
 
 @pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"period": "abc"}, "period is a number of seconds, such as 2.0, and not 'abc'"),
+        ({"period": True}, "period is a number of seconds, such as 2.0, and not True"),
+        ({}, "period is a number of seconds, such as 2.0, and not None"),
+        ({"period": 2.0, "actions": said("Node")}, "actions is a list: write [ ] around Node(...)"),
+    ],
+)
+def test_a_timer_of_other_types(given: dict[str, Any], told: str, problems: list[dict[str, Any]]) -> None:
+    """Is told once, by the names that launch files have."""
+    actions(said("TimerAction", **given))
+    assert problems == [{"line": 7, "message": f"TimerAction: {told}"}]
+
+
+@pytest.mark.parametrize("period", [2, 2.5, "2.0", said("LaunchConfiguration", "x")])
+def test_the_period_of_a_timer(period: Any, problems: list[dict[str, Any]]) -> None:
+    """Is a number, a text of one, or a substitution."""
+    (made,) = actions(said("TimerAction", period=period, actions=[]))
+    assert made["timer"]["period"] == ("$(var x)" if isinstance(period, Said) else period)
+    assert problems == []
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"), [(said("LaunchConfiguration", "x"), "LaunchConfiguration(...)"), ("1", "'1'")]
+)
+def test_a_condition_that_is_none(given: Any, shown: str, problems: list[dict[str, Any]]) -> None:
+    """Is answered with the one around it."""
+    actions(said("LogInfo", msg="x", condition=given))
+    assert problems == [{"line": 7, "message": f"condition: write IfCondition({shown}) or UnlessCondition(...)"}]
+
+
+@pytest.mark.parametrize(
     ("given", "said_of_it"),
     [
-        ({"nam": "x"}, "Node has no argument 'nam'; did you mean 'name'?"),
-        ({"wheels": 4}, "Node has no argument 'wheels'"),
         ({"parameters": {"rate": 2.0}}, "parameters: expected a list, such as [{'rate': 2.0}], got {'rate': 2.0}"),
         ({"arguments": "--fast"}, "arguments: expected a list, such as ['--fast'], got '--fast'"),
+        ({"output": "scren"}, "Node: output: 'scren' is none of launch's; did you mean 'screen'?"),
+        (
+            {"parameters": [{"rate"}]},
+            "parameters: {'rate'} is neither a dictionary nor a file; write {'name': value}, with a colon",
+        ),
+        ({"parameters": [2]}, "parameters: 2 is neither a dictionary nor a file"),
         ({"remappings": ["a"]}, "remappings: expected pairs, such as [('from', 'to')], got ['a']"),
     ],
 )
@@ -212,3 +263,10 @@ def test_a_text_that_is_set_for_all_stays_one() -> None:
     settings = [said("SetParameter", "a", value) for value in ("0042", said("LaunchConfiguration", "x"), 2)]
     found = [action["set_parameter"] for action in actions(settings)]
     assert [(one["value"], one.get("type")) for one in found] == [("0042", "str"), ("$(var x)", None), (2, None)]
+
+
+def test_files_of_parameters() -> None:
+    """In which substitutions are made where that is asked for."""
+    files = ["a", said("ParameterFile", "b"), said("ParameterFile", param_file="c", allow_substs=True)]
+    [action] = actions([said("Node", package="p", executable="e", parameters=files)])
+    assert action["node"]["param"] == [{"from": "a"}, {"from": "b"}, {"from": "c", "allow_substs": "True"}]

@@ -111,6 +111,22 @@ def test_what_a_container_cannot_be_given(tmp_path: Path) -> None:
     assert (told["problems"], told["remarks"]) == ([], [{"line": 8, "message": text}])
 
 
+def test_the_line_of_a_value_that_cannot_be_made(tmp_path: Path) -> None:
+    """It is that of the action, where the file itself is not being run any more."""
+    (tmp_path / "a.launch.py").write_text(
+        "from launch import LaunchDescription\n"
+        "from launch.actions import SetLaunchConfiguration\n"
+        "from launch.substitutions import EnvironmentVariable\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([\n"
+        "        SetLaunchConfiguration('x', EnvironmentVariable('NOBODYS')),\n"
+        "    ])\n"
+    )
+    [problem] = record(tmp_path / "a.launch.py", y="1")["problems"]
+    assert problem["line"] == 6
+    assert "the environment variable NOBODYS is not set" in problem["message"]
+
+
 SMALL = """
 import os
 import launch
@@ -176,6 +192,72 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
             1,
             "TypeError: generate_launch_description() returned 3",
         ),
+        (
+            "def generate_launch_description():\n    return []\n",
+            1,
+            "TypeError: generate_launch_description() returned a list, and not a LaunchDescription; write Launch",
+        ),
+        (
+            "def generate_launch_description():\n    3\n",
+            1,
+            "TypeError: generate_launch_description() returned None, and",
+        ),
+        (
+            "def generate_launch_desription(): ...\n",
+            1,
+            "NameError: it has no function generate_launch_description(); rename generate_launch_desription in line 1",
+        ),
+        (
+            "import launch\ndef f():\n    reading = 1\n    return reeding\nf()\n",
+            4,
+            "NameError: name 'reeding' is not defined; did you mean 'reading'?",
+        ),
+        (
+            "from launch import LaunchDescription\nLaunchDescripton([])\n",
+            2,
+            "NameError: name 'LaunchDescripton' is not defined; did you mean 'LaunchDescription'?",
+        ),
+        (
+            "import os\nfrom launch.substitutions import *\nos.path.join('a', LaunchConfiguration('x'))\n",
+            3,
+            "TypeError: join() argument must be str, bytes, or os.PathLike object, not 'LaunchConfiguration'; write "
+            "PathJoinSubstitution([..., LaunchConfiguration(...)])",
+        ),
+        (
+            "from launch import LaunchDescription\nfrom launch_ros import Node\n",
+            2,
+            "ImportError: launch_ros has no Node; write: from launch_ros.actions import Node",
+        ),
+        (
+            "TimerActon()\n",
+            1,
+            "NameError: name 'TimerActon' is not defined; did you mean 'TimerAction'? Write from launch.",
+        ),
+        (
+            "import launch\n\ndef generate_launch_description():\n    return launch.LaunchDescripton([])\n",
+            4,
+            "LaunchDescripton has no words in a graph file; did you mean 'LaunchDescription'?",
+        ),
+        ("qqqq\n", 1, "NameError: name 'qqqq' is not defined"),
+        ("Node()\n", 1, "NameError: name 'Node' is not defined; write from launch_ros.actions import Node"),
+        (
+            "import launch\ndef generate_launch_description():\n    ld = launch.LaunchDescription()\n"
+            "    ld.add_action\n    return ld\n",
+            4,
+            "add_action is not called: what it adds goes into parentheses behind it",
+        ),
+        (
+            "import launch\ndef generate_launch_description():\n"
+            "    return launch.LaunchDescription(launch.actions.LogInfo(msg='x'))\n",
+            3,
+            "TypeError: LaunchDescription takes a list: write [ ] around LogInfo(...)",
+        ),
+        (
+            "import launch\ndef generate_launch_description():\n"
+            "    return launch.LaunchDescription([launch.actions.ExecuteProcess(cmd='a b')])\n",
+            3,
+            "cmd: expected a list of words, such as ['a', 'b'], got 'a b'",
+        ),
     ],
 )
 def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> None:
@@ -184,6 +266,14 @@ def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> 
     (problem,) = record(tmp_path / "a.launch.py")["problems"]
     assert problem["line"] == line
     assert problem["message"].startswith(message)
+
+
+def test_a_description_of_nothing(tmp_path: Path) -> None:
+    """It is let pass, and told."""
+    (tmp_path / "a.launch.py").write_text("import launch\ngenerate_launch_description = launch.LaunchDescription\n")
+    told = record(tmp_path / "a.launch.py")
+    assert (told["problems"], told["actions"]) == ([], [])
+    assert [remark["message"] for remark in told["remarks"]] == ["the launch description has no actions"]
 
 
 STARTED = """

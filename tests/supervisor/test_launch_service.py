@@ -40,6 +40,7 @@ if __name__ == "__main__":
 """
 
 
+@slow
 @pytest.mark.real
 def test_a_program_starts_what_it_describes(machine: Machine, tmp_path: Path) -> None:
     """With its arguments; Ctrl-C, which the whole group of processes hears, stops it, and the program goes on."""

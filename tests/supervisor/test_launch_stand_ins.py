@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from graphflow.graph.substitutions import SubstitutionError
-from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, StandIns, as_text, plain, text
+from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, StandIns, as_text, plain, stand_in_of, text
 
 
 @pytest.fixture(autouse=True)
@@ -18,22 +19,44 @@ def nothing_is_known() -> Iterator[None]:
     RECORDING.values, RECORDING.defaults, RECORDING.needed = None, {}, set()
 
 
-def said(name: str, *args: object, **kwargs: object) -> Said:
-    made: Said = type(name, (Said,), {"name": name})(*args, **kwargs)
+def said(name: str, /, *args: object, **kwargs: object) -> Said:
+    made: Said = type(name, (Said,), {"kind": name})(*args, **kwargs)
     return made
 
 
 def test_substitutions_are_texts() -> None:
-    """Also where they are put together by hand."""
+    """Also where they are put together in a list."""
     x = said("LaunchConfiguration", "x")
     assert text(["a", x, 3]) == "a$(var x)3"
     assert text(said("LaunchConfiguration", "x", default="a b")) == "$(var x 'a b')"
-    assert ("a" + x, x + "b", f"{x}") == ("a$(var x)", "$(var x)b", "$(var x)")
     assert text(said("PathJoinSubstitution", [said("FindPackageShare", "p"), "a/", x])) == (
         "$(find-pkg-share p)/a/$(var x)"
     )
     assert [plain(value) for value in (3, [1.5, True], [x], x)] == [3, [1.5, True], "$(var x)", "$(var x)"]
     assert plain([["a", x], ["b"], x]) == ["a$(var x)", "b", "$(var x)"]
+
+
+def test_substitutions_are_no_texts_before_the_launch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Adding one is an error, as in ROS; an f-string would have its address there, which is told."""
+    monkeypatch.setattr(RECORDING, "remarks", [])
+    x = stand_in_of("LaunchConfiguration")("x")
+    with pytest.raises(TypeError, match=r"and has no \+; write a list: \['a', LaunchConfiguration\(\.\.\.\)\]$"):
+        "a" + x
+    with pytest.raises(TypeError, match=r"write a list: \[LaunchConfiguration\(\.\.\.\), 'b'\]$"):
+        x + "b"
+    with pytest.raises(TypeError, match="not 'LaunchConfiguration'"):
+        os.path.join("a", x)
+    assert f"{x:>9}" == " $(var x)"
+    [remark] = RECORDING.remarks
+    assert remark["message"] == "LaunchConfiguration in an f-string is an object to ROS 2; write a list: ['text', ...]"
+
+
+def test_paths_are_joined() -> None:
+    """By a slash as well; a part that is absolute begins anew, as in ROS."""
+    share, x = said("PathSubstitution", said("FindPackageShare", "p")), said("LaunchConfiguration", "x")
+    assert text(share / "a" / ["b_", x] / "c.yaml") == "$(find-pkg-share p)/a/b_$(var x)/c.yaml"
+    assert text("home" / said("PathJoinSubstitution", [x, "a"])) == "home/$(var x)/a"
+    assert text(said("PathJoinSubstitution", [x, "/etc", "a"])) == "/etc/a"
 
 
 def test_values_are_known_when_a_file_is_started() -> None:
@@ -56,6 +79,34 @@ def test_values_are_known_when_a_file_is_started() -> None:
     with pytest.raises(SubstitutionError, match="there is no argument 'z'"):
         said("LaunchConfiguration", "z").perform(Context())
     assert [as_text(value) for value in ("True", True, 2.5)] == ["True", "true", "2.5"]
+
+
+def test_classes_are_derived_as_in_ros() -> None:
+    """For helpers that ask for a class."""
+    variable, node = stand_in_of("LaunchConfiguration")("x"), stand_in_of("LifecycleNode")(package="p", executable="e")
+    assert isinstance(variable, stand_in_of("Substitution"))
+    assert not isinstance(variable, stand_in_of("Action"))
+    assert all(isinstance(node, stand_in_of(base)) for base in ("Node", "ExecuteProcess", "Action"))
+    assert (node.kind, variable.kind) == ("LifecycleNode", "LaunchConfiguration")
+
+
+def test_what_was_given_can_be_asked_for() -> None:
+    """By the name that it has, also when it was given by place; what launch alone would know is not there."""
+    argument = said("DeclareLaunchArgument", "x", default_value="1")
+    assert (argument.name, argument.default_value, argument.choices) == ("x", "1", None)
+    assert said("Node", package="p").describe() == "Node(p)"
+    with pytest.raises(AttributeError, match="Node has no 'process_details' here"):
+        _ = said("Node", package="p").process_details
+
+
+def test_what_cannot_be_given() -> None:
+    """It is a problem of the line, and the rest is read."""
+    RECORDING.problems = []
+    said("LogInfo", "hello")
+    assert [problem["message"] for problem in RECORDING.problems] == [
+        "LogInfo takes nothing without a name, and not 'hello'; write msg='hello'"
+    ]
+    RECORDING.problems = []
 
 
 def test_modules_are_found_by_name() -> None:
@@ -83,7 +134,7 @@ def test_what_fails_can_be_caught() -> None:
     module = StandIns().create_module(StandIns().find_spec("launch.substitutions"))  # type: ignore[arg-type]
     RECORDING.values = {}
     with pytest.raises(module.SubstitutionFailure):
-        said("LaunchConfiguration", "z").perform(module.LaunchContext())
+        said("LaunchConfiguration", "z").perform(Context())
     with pytest.raises(module.InvalidConditionExpressionError):
         said("IfCondition", "typo").evaluate(Context())
     assert issubclass(module.InvalidLaunchFileError, Exception)

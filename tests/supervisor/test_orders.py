@@ -8,6 +8,7 @@ from typing import Any
 
 from graphflow import Context, GraphflowError, Node
 from graphflow.runtime.company import Company
+from graphflow.runtime.ending import StopRequest
 from graphflow.supervisor.orders import Orders
 from graphflow.testing import Graph
 from tests.runtime.cast import Speaker
@@ -24,7 +25,7 @@ class Stage:
     def __init__(self, graph: Graph) -> None:
         session = graph.network.session(asyncio.get_running_loop())
         self.context = Context(session, clock=graph.clock)
-        self.stop = asyncio.Event()
+        self.stop = StopRequest()
         self.company = Company(self.context, self.stop)
         self.told: list[dict[str, Any]] = []
         self.orders = Orders(self.company, self.make, lambda **event: self.told.append(event))

@@ -224,7 +224,7 @@ async def test_after_an_end(tmp_path: Path) -> None:
         await stage.until(a="ready", d="ready")
         assert stage.told("up")
         assert stage.states() == {"/a": "ready", "/b": "pending", "/c": "pending", "/d": "ready", "/e": "pending"}
-        with pytest.raises(SupervisorError, match="/b has not been started yet: it comes after /a"):
+        with pytest.raises(SupervisorError, match="/b has not been started yet: it comes after the end of /a"):
             stage.supervisor.restart("/b", "a test")
         stage.workers.end("/a", 0)
         stage.workers.end("/d", 7)

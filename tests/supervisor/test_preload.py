@@ -61,6 +61,7 @@ def test_what_a_node_has_started_goes_with_it(machine: Machine, project: Path, h
     """A child process of a node does not outlive it, however the node ends."""
     up = machine.start("up", write(project, "nodes:\n  /p: {class: nodes.lab:Parent}\n"), cwd=project)
     machine.until(lambda: "child " in machine.look("logs", "/p", code=None), "it has a child")
+    machine.look("wait")
     child = int(machine.look("logs", "/p").split("child ")[1].split(".")[0])
     assert alive(child)
 

@@ -14,9 +14,9 @@ from graphflow.errors import Problem
 from graphflow.graph.plan import Plan
 from graphflow.interface import Interface
 from graphflow.supervisor import probe as probe_module
-from graphflow.supervisor.classes import read_interfaces
 from graphflow.supervisor.preload import PROBE_LIMIT
 from graphflow.supervisor.probe import probe
+from graphflow.supervisor.probed import read_interfaces
 from tests.conftest import PROGRAMS, alive
 
 

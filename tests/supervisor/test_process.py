@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
-from graphflow.errors import Place
+import pytest
+
+from graphflow.errors import Place, SupervisorError
 from graphflow.graph.plan import PlannedNode
-from graphflow.machines.process import Exit, State
+from graphflow.interface import GroupChange
+from graphflow.machines.process import BLOCKED_STOP_LIMIT, STOP_LIMIT, Exit, State
 from graphflow.machines.restarts import Backoff
 from graphflow.supervisor.process import Process
 
@@ -33,6 +37,8 @@ def test_rows() -> None:
         ("/b", "x:B", "both", "pending", 0),
     ]
     assert Process("/p", [PROGRAM], "p.log").rows()[0]["class"] == "sleep 1"
+    named = Process("both", [A, replace(A, name="/c", keeps_names=True)], "both.log").rows()
+    assert [row["is_named"] for row in named] == [True, False]
 
 
 def test_what_is_wrong_with_it() -> None:
@@ -57,9 +63,13 @@ def test_a_new_start_forgets() -> None:
     process.waiting_for.clear()
     process.exit, process.error, process.failed, process.ready_since = Exit(code=1), "x", True, time.monotonic()
     assert process.ready_for >= 0.0
+    process.heard = process.silent_since = time.monotonic()
+    process.numbers = {"/b": 1}
     process.begin()
+    assert process.numbers == {"/a": 1, "/b": 2}
     assert process.detail == ""
     assert (process.failed, process.ready_for) == (False, 0.0)
+    assert {process.heard, process.silent_since} == {None}
     assert process.waiting_for == {"/a", "/b"}
     assert process.rows()[0]["restarts"] == 1
 
@@ -74,3 +84,43 @@ def test_the_state_of_a_lifecycle_node() -> None:
     assert (process.rows()[0]["state"], process.rows()[0]["lifecycle"]) == ("unresponsive", "")
     process.state = State.STOPPING
     assert process.rows()[0]["lifecycle"] == ""
+
+
+def test_handlers_that_are_put_in_threads() -> None:
+    """Beside what the graph file says of the node's groups; a program decides that itself."""
+    both = Process("both", [A, B], "both.log")
+    both.put_in_threads("/b", ["tick"])
+    planned = both.put_in_threads("/b", ["go"])
+    assert both.nodes == [A, planned]
+    assert planned.concurrency["blocking"].change == GroupChange(("tick", "go"), thread=True)
+    with pytest.raises(SupervisorError, match="its own code says what runs in threads"):
+        Process("/p", [PROGRAM], "p.log").put_in_threads("/p", ["tick"])
+
+
+def test_the_time_that_a_process_may_stay_in_its_state() -> None:
+    """One that blocks its event loop, and is started again for that, has little: it cannot clean up."""
+    process = Process("both", [A, B], "both.log")
+    process.begin()
+    process.state = State.RESTARTING
+    assert process.may_stay(2.0) == STOP_LIMIT
+    process.put_in_threads("/b", ["tick"])
+    assert process.may_stay(2.0) == STOP_LIMIT  # it has said nothing yet: it is new
+    process.heard = 0.0
+    assert process.may_stay(1.4) == STOP_LIMIT
+    assert process.may_stay(1.6) == BLOCKED_STOP_LIMIT < STOP_LIMIT
+    process.state = State.STOPPING
+    assert process.may_stay(1.6) == STOP_LIMIT
+    process.state, process.delay = State.WAITING, 7.0
+    assert process.may_stay(1.6) == 7.0
+    process.begin()
+    process.state, process.heard = State.RESTARTING, 0.0
+    assert process.may_stay(1.6) == STOP_LIMIT
+
+
+def test_the_start_of_a_process_that_is_debugged() -> None:
+    """It may take any time: somebody looks for the lines to stop at."""
+    debugged = Process("/a", [replace(A, is_debugged=True)], "a.log")
+    debugged.state = State.STARTING
+    assert debugged.may_stay(0.0) is None
+    debugged.state = State.STOPPING
+    assert debugged.may_stay(0.0) == STOP_LIMIT

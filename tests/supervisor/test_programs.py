@@ -192,7 +192,8 @@ def test_an_executable_of_a_package_is_a_node(machine: Machine, project: Path, s
     both = ["/room/big", "/room/lamp"]
     machine.until(lambda: machine.look("node", "list").split() == both, "both are there")
     assert "data: 3" in machine.look("topic", "echo", "/sun", "std_msgs/msg/Int32", "--once")
-    assert machine.look("param", "get", "/room/lamp", "level") == "Integer value is: 3\n"
+    level = ("param", "get", "/room/lamp", "level")  # which it declares after it has been seen
+    machine.until(lambda: machine.look(*level, code=None) == "Integer value is: 3\n", "it has its parameters")
     assert "[room.lamp]: level 3" in machine.look("logs", next(n for n in rows(machine) if n != "/room/big"))
     pid = rows(machine)["/room/big"]["pid"]
     os.kill(pid, signal.SIGKILL)

@@ -244,6 +244,26 @@ async def test_a_goal_to_its_end(graph: Graph, types: dict[str, str]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("do", "target", "end"),
+    [
+        ("call", "/count", "; it is an action: goal: /count"),
+        ("call", "/pose", "; it is a topic, of type "),
+        ("call", "/robot/get_parametrs", "; did you mean '/robot/get_parameters'"),
+        ("goal", "/robot/get_parameters", "; it is a service: call: /robot/get_parameters"),
+        ("goal", "/cont", "; did you mean '/count'"),
+    ],
+)
+async def test_a_target_of_another_kind(graph: Graph, do: Deed, target: str, end: str) -> None:
+    """What it is instead is told, with the key for it."""
+    await graph.start(Robot())
+    async with runner(graph, {}) as steps:
+        running = asyncio.ensure_future(steps.run(deed(do, target, timeout=1.0)))
+        await graph.clock.advance(1.1)
+        with pytest.raises(ServiceUnavailable, match=end):
+            await running
+
+
+@pytest.mark.parametrize(
     ("target", "what"),
     [("/robot", "node"), ("/pose", "topic"), ("/count", "action"), ("/robot/get_parameters", "service")],
 )

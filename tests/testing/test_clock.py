@@ -151,3 +151,9 @@ async def test_what_never_rests_is_an_error(graphflow_runner: asyncio.Runner, mo
         await settle()
     running.cancel()
     await settle()
+
+
+async def test_time_does_not_go_back(graphflow_runner: asyncio.Runner) -> None:
+    """As a slip of the sign would have it."""
+    with pytest.raises(ValueError, match=r"time does not go back: advance\(-1\)"):
+        await ManualClock().advance(-1)

@@ -196,3 +196,14 @@ async def test_a_parameter_that_a_made_node_does_not_have(graph: Graph) -> None:
         await graph.start(graph.make(Taught, sizes=3))
     with pytest.raises(ParameterError, match="size"):
         graph.make(Taught, size="x")
+
+
+async def test_two_nodes_of_one_name(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Are told, as they are where they run; not one that has taken the place of another."""
+    first = Node("bob")
+    await graph.start(first)
+    await graph.stop(first)
+    await graph.start(Node("bob"))
+    assert caplog.messages == []
+    await graph.start(Node("bob"))
+    assert [message.partition(":")[0] for message in caplog.messages] == ["two nodes are called /bob"]

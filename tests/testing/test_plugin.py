@@ -132,7 +132,7 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
 
 def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """What it waits for would come with time, and its clock does not move; one that is busy goes on."""
-    monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.05)
+    monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.4)
     result = run(
         pytester,
         """
@@ -143,7 +143,7 @@ def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatc
             await graph.call(Empty, "/nobody", Empty.Request())  # here
 
         async def test_busy(graph):
-            until = time.monotonic() + 0.3
+            until = time.monotonic() + 1.0
             while time.monotonic() < until:
                 await asyncio.sleep(0)
         """,
@@ -151,6 +151,38 @@ def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatc
 
     result.assert_outcomes(failed=1, passed=1)
     result.stdout.fnmatch_lines(["*TimeoutError*", "*waited in *test_it.py:5*a node that is not there*"])
+
+
+def test_a_failing_test_is_told_what_has_not_happened(pytester: pytest.Pytester) -> None:
+    """In a section of its report; what passes is told nothing."""
+    result = run(
+        pytester,
+        """
+        import pytest
+        from counter import Counter
+        from graphflow.msgs.std_msgs.msg import String
+
+        @pytest.mark.parametrize("way", ["assert", "fail"])
+        async def test_waits(graph, way):
+            await graph.start(Counter())
+            heard = graph.tap(String, "/outt")
+            if way == "fail":
+                pytest.fail("nothing")
+            assert heard
+
+        async def test_passes(graph):
+            await graph.start(Counter())
+        """,
+    )
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.fnmatch_lines(
+        2
+        * [
+            "*Captured graphflow call*",
+            "no node publishes /outt, which the test taps; did you mean '/out'?",
+            "the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)",
+        ]
+    )
 
 
 def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from graphflow.testing.clock import settle
 from graphflow.transport import base
-from graphflow.transport.base import Bell, DeepInbox, Inbox
+from graphflow.transport.base import Bell, DeepInbox, Inbox, RequestInbox, size_of
 
 
 async def test_a_burst_rings_once(graphflow_runner: asyncio.Runner) -> None:
@@ -171,3 +171,58 @@ async def test_a_deep_inbox_is_bounded_by_its_bytes(
         inbox.put(Arrival(bytes(100)))
         inbox.items.popleft()
     assert inbox.dropped == dropped
+
+
+async def test_losses_are_told(graphflow_runner: asyncio.Runner) -> None:
+    """The first that counts, and whenever there are twice as many; though nothing is taken."""
+    told: list[int] = []
+    inbox = Inbox(Bell(asyncio.get_running_loop(), threads=False), 10, lambda: None)
+    inbox.tell_losses(lambda: told.append(inbox.dropped), 5)
+    for n in range(110):
+        inbox.put(n)
+        await settle()
+    assert told == [5, 10, 20, 40, 80]
+
+
+async def test_an_inbox_of_requests_refuses_what_comes(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With too many bytes or too many items; it takes again when a quarter has gone."""
+    monkeypatch.setattr(base, "BYTES_BOUND", 1000)
+    refused: list[Arrival] = []
+    told: list[int] = []
+    bell = Bell(asyncio.get_running_loop(), threads=False)
+    inbox = RequestInbox(bell, 100, lambda: None, size_of, refused.append)
+    inbox.tell_losses(lambda: told.append(inbox.dropped), 1)
+    for n in range(20):
+        inbox.put(Arrival(bytes([n]) * 100))
+    assert [item.payload[0] for item in inbox.items] == [*range(10)]
+    assert [item.payload[0] for item in refused] == [*range(10, 20)]
+    assert inbox.dropped == 10
+    await settle()
+    assert told == [10]
+
+    inbox.items.popleft()
+    inbox.put(Arrival(bytes(100)))
+    assert inbox.dropped == 11
+    for _ in range(3):
+        inbox.items.popleft()
+    inbox.put(Arrival(bytes(100)))
+    assert inbox.dropped == 11
+
+    inbox.items.clear()
+    inbox.put(Arrival(bytes(5000)))  # one that is alone is taken
+    inbox.items.clear()
+    for _ in range(120):
+        inbox.put(Arrival(b""))
+    assert len(inbox.items) == 100
+    assert inbox.dropped == 31
+
+
+async def test_what_stands_in_for_the_refused(graphflow_runner: asyncio.Runner) -> None:
+    """Waits in its order; there are not endlessly many either."""
+    bell = Bell(asyncio.get_running_loop(), threads=False)
+    inbox = RequestInbox(bell, 2, lambda: None, size_of, lambda item: "refused")
+    for _ in range(30):
+        inbox.put(Arrival(b"x"))
+    assert [*inbox.items] == [Arrival(b"x"), Arrival(b"x"), *["refused"] * 18]

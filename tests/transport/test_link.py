@@ -184,6 +184,18 @@ def test_other_users_of_other_machines_are_no_strangers(hosts: Hosts, near: Mach
     assert "/turtlesim" in far.run("node", "list")
 
 
+KILLER = """\
+from graphflow import Client, Node, task
+from graphflow.msgs.turtlesim.srv import Kill
+
+
+class Killer(Node):
+    kill = Client(Kill, "/kill")
+
+    @task
+    async def work(self) -> None:
+        await self.kill.call(Kill.Request(name="turtle1"))
+"""
 CERTIFICATES = """\
 listen: {listen}
 connect: [{connect}]
@@ -233,6 +245,10 @@ def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     assert f"/kill does not pass the net profile {here}" in near.run(
         "service", "call", "/kill", "turtlesim/srv/Kill", "{name: turtle1}", code=1
     )
+    (tmp_path / "killer.py").write_text(KILLER)
+    killer = near.start("run", "killer.py", cwd=tmp_path)
+    killer.wait_for(f"/kill does not pass the net profile {here}, which allows /turtle1/**, /spawn; if its node is on")
+    killer.end()
     assert graph.end(signal.SIGTERM) == 0
 
 
@@ -263,6 +279,15 @@ def test_with_a_profile_everything_is_encrypted(net: Path, monkeypatch: pytest.M
     monkeypatch.setenv("GRAPHFLOW_CONNECT", "tcp/127.0.0.1:1")
     with pytest.raises(TransportError, match=r"tcp/.*:1: with a net profile everything is encrypted; write tls/"):
         dial()
+
+
+def test_a_dial_beyond_this_machine_has_a_short_lease(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing tells the other side that the way between has been cut."""
+    dialled: list[zenoh.Config] = []
+    monkeypatch.setenv("GRAPHFLOW_CONNECT", "tcp/192.0.2.1:7447")
+    monkeypatch.setattr(link, "open_session", dialled.append)
+    dial()
+    assert dialled[0].get_json("transport/link/tx/lease") == "4000"
 
 
 def test_without_endpoints_nobody_is_dialled(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
+
 import pytest
 
+from graphflow.errors import UsageFault
 from graphflow.system import is_portable
 from graphflow.transport import loop as loop_module
 from graphflow.transport.loop import new_event_loop
@@ -21,3 +24,15 @@ def test_uvloop_is_taken_where_it_is_installed(monkeypatch: pytest.MonkeyPatch) 
     other = new_event_loop()
     assert isinstance(other, uvloop.Loop)
     other.close()
+
+
+def test_no_loop_no_coroutine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the loop is refused, the coroutine is closed, and Python does not call it forgotten."""
+
+    async def main() -> None: ...
+
+    monkeypatch.setenv("GRAPHFLOW_LOOP", "trio")
+    coroutine = main()
+    with pytest.raises(UsageFault, match="'asyncio' or 'uvloop'"):
+        loop_module.run(coroutine)
+    assert inspect.getcoroutinestate(coroutine) == inspect.CORO_CLOSED

@@ -264,6 +264,11 @@ async def test_tokens_are_told_to_watchers(graphflow_runner: asyncio.Runner) -> 
         ("@a/0/exact", True),
         ("exactly @a/0/exact", True),
     ]
+    found: list[list[str]] = []
+    for key in ("@a/*/new", "@a/*/exact", "@a/*/**", "@a/*/*/**"):
+        talk.two.ask_tokens(key, 1.0, found.append)
+    await settle()
+    assert found == [[], ["@a/0/exact"], ["@a/0/old", "@a/1/other", "@a/0/exact"], []]
     watcher.close()
     talk.one.announce("@a/0/later")
     await settle()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import socket
 import threading
+from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -64,6 +66,19 @@ def test_a_forged_token_locks_nobody_out(foreign_router: zenoh.Session) -> None:
     with foreign_router.liveliness().declare_token(f"{rendezvous.TOKENS}/{zid}/{os.getuid() + 1}/4242"):
         assert rendezvous.establish() is None
         Client().close()
+
+
+def test_only_as_much_is_read_as_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system makes its table as it is read: of a machine with many connections all of it takes long."""
+
+    def table() -> Iterator[str]:
+        yield "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid\n"
+        yield "   0: 0100007F:1D16 00000000:0000 0A 00000000:00000000 00:00000000 00000000     7        0 1\n"
+        yield "   1: 0100007F:1D17 00000000:0000 0A 00000000:00000000 00:00000000 00000000  1000        0 1\n"
+        raise AssertionError("more was read")
+
+    monkeypatch.setattr(rendezvous, "open", lambda *_, **__: nullcontext(table()), raising=False)
+    assert rendezvous._listener_uid(0x1D17) == 1000
 
 
 def test_who_listens(port: int) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import struct
-import threading
 import time
 from collections.abc import Iterator
 
@@ -14,8 +13,7 @@ import zenoh
 
 from graphflow.qos import Durability, Qos
 from graphflow.transport.base import Answer, Inbox
-from graphflow.transport.config import callback_threads
-from graphflow.transport.zenoh import QUESTIONS_BOUND, ZenohSession
+from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine
 
@@ -201,6 +199,9 @@ async def test_a_session_that_leaves_withdraws_all_at_once(
     await see(dict.fromkeys(("@x/0", "@x/1", "@x/2"), True))
     tokens[0].close()
     await see({"@x/0": False, "@x/1": True, "@x/2": True})
+    asked = loop.create_future()
+    other.ask_tokens("@x/*", 0.1, asked.set_result)
+    assert sorted(await asked) == ["@x/1", "@x/2"]
     mine.leave()
     tokens.pop(1).close()
     last = mine.announce("@x/last")  # which overtakes nothing
@@ -208,6 +209,27 @@ async def test_a_session_that_leaves_withdraws_all_at_once(
     await mine.close()
     await see(dict.fromkeys(("@x/0", "@x/1", "@x/2", "@x/last"), False))
     last.close()
+    await other.close()
+
+
+async def test_asking_for_tokens(
+    graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of more than so many, some are left out."""
+    loop = asyncio.get_running_loop()
+    mine, other = ZenohSession(loop), ZenohSession(loop)
+    tokens = [mine.announce(f"@x/{i}") for i in range(3)]
+    monkeypatch.setattr("graphflow.transport.zenoh.ASKED_BOUND", 2)
+    found: list[str] = []
+    async with asyncio.timeout(LIMIT):
+        while len(found) < 2:
+            asked: asyncio.Future[list[str]] = loop.create_future()
+            other.ask_tokens("@x/*", 0.2, asked.set_result)
+            found = await asked
+    assert len(found) == 2
+    for token in tokens:
+        token.close()
+    await mine.close()
     await other.close()
 
 
@@ -268,53 +290,3 @@ async def test_an_answer_does_not_overtake_what_was_published_before_it(
     client.raw.close()  # type: ignore[no-untyped-call]
     server.raw.close()  # type: ignore[no-untyped-call]
     assert counts == [3 * (i + 1) for i in range(300)]
-
-
-async def test_a_flood_of_questions(graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session) -> None:
-    """Is ended by Zenoh, without Python, but for the latest that can wait; whoever asks next is answered."""
-    mine = ZenohSession(asyncio.get_running_loop())
-    taken, goes_on, ended = threading.Event(), threading.Event(), threading.Semaphore(0)
-    goes_on.set()
-    answers: list[zenoh.Reply] = []
-
-    def report() -> bytes:
-        taken.set()
-        assert goes_on.wait(LIMIT)
-        return b"told"
-
-    def ask(number: int) -> None:
-        for _ in range(number):
-            handler = zenoh.handlers.Callback(answers.append, drop=ended.release, indirect=False)
-            foreign_router.get("questions/mine", handler, timeout=LIMIT)
-
-    def flood() -> None:
-        while not list(foreign_router.get("questions/mine")):  # there is no way to it yet
-            time.sleep(0.01)
-        goes_on.clear()
-        taken.clear()
-        ask(1)
-        assert taken.wait(LIMIT)
-        ask(3_000)
-        for _ in range(3_000 - QUESTIONS_BOUND):
-            assert ended.acquire(timeout=LIMIT)
-        assert not answers
-        goes_on.set()
-        for _ in range(QUESTIONS_BOUND + 1):
-            assert ended.acquire(timeout=LIMIT)
-        assert len(answers) == QUESTIONS_BOUND + 1
-        ask(1)
-        assert ended.acquire(timeout=LIMIT)
-        assert len(answers) == QUESTIONS_BOUND + 2
-
-    before = {*callback_threads()}
-    questions = mine.open_report("questions/mine", report)
-    (thread,) = {*callback_threads()} - before
-    try:
-        async with asyncio.timeout(LIMIT):
-            await asyncio.to_thread(flood)
-    finally:
-        goes_on.set()
-        questions.close()
-        await asyncio.to_thread(thread.join, LIMIT)
-        mine.raw.close()  # type: ignore[no-untyped-call]
-    assert not thread.is_alive()

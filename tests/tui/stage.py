@@ -110,6 +110,9 @@ class MemoryView:
     def service_types(self, name: str) -> list[str]:
         return self.cache.services(hidden=True)[name]
 
+    def wait_for_service(self, name: str, timeout: float) -> None:
+        assert name in self.cache.services(hidden=True)
+
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         type_: Any = registry.interface_class(type_name)
         return self._on_loop(lambda: self._graph.call(type_, name, request))

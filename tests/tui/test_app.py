@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from textual import events
+from textual.widgets import Input
 
+from graphflow.tui.dialogs import AskLine
 from graphflow.tui.panes import Content
 from tests.tui.stage import record, stage
 
@@ -32,11 +35,36 @@ async def test_what_the_supervisor_says(event: dict[str, Any], text: str) -> Non
         assert text in s.console.said[-1]
 
 
+async def test_who_has_stopped_the_graph() -> None:
+    """Is still told at its end."""
+    async with stage() as s:
+        s.console.heard({"event": "stopping", "reason": "down, by pts/7"})
+        s.console.heard({"event": "end", "exit_code": 0})
+        assert "the graph has ended (down, by pts/7), exit code 0; q leaves" in s.text
+
+
+async def test_a_terminal_that_has_lost_the_focus() -> None:
+    """As tmux says of one that nobody looks at: the first dialog has the focus nevertheless."""
+    async with stage() as s:
+        s.console.post_message(events.AppBlur())
+        await s.until(lambda: not s.console.app_focus)
+        await s.prefix("c")
+        await s.type("log")
+        await s.press("enter")
+        await s.until("1:log*")
+        s.console.post_message(events.AppBlur())
+        await s.until(lambda: not s.console.app_focus)
+        s.console.push_screen(AskLine("Name"))  # at a moment when nobody types
+        await s.pilot.pause()
+        s.console.post_message(events.AppFocus())
+        await s.until(lambda: isinstance(s.console.focused, Input))
+
+
 async def test_a_crash_is_flagged_until_one_looks() -> None:
     """The window list has a mark, the bottom line the way to go on."""
     async with stage(Content("log"), Content("nodes")) as s:
         s.console.heard({"event": "exited", "nodes": ["/arm"], "how": "signal SIGKILL", "unexpected": True})
-        assert "/arm died: signal SIGKILL; ^b r restarts" in s.text
+        assert "^b e shows why: /arm died, signal SIGKILL" in s.text
         assert "0:log*!" in s.text
         await s.prefix("1")
         await s.prefix("0")

@@ -7,18 +7,29 @@ from typing import Any
 
 import pytest
 
+from graphflow.machines.lifecycle import LifecycleState
 from graphflow.machines.process import State
-from graphflow.tui.bars import MARKS, SEEN_AFTER
+from graphflow.tui.bars import MARKS, SEEN_AFTER, word_of
 from graphflow.tui.panes import Content
-from tests.tui.stage import stage
+from tests.tui.stage import record, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 def test_every_state_has_a_mark() -> None:
-    """Those of processes, failed ones, and nodes of others; all glyphs differ where the words could be cut off."""
-    assert {state.value for state in State} | {"failed", "given_up", "lost", "unresponsive", "foreign"} == set(MARKS)
-    assert MARKS["ready"].glyph != MARKS["failed"].glyph != MARKS["ended"].glyph
+    """Those of processes, of life cycles, failed ones, and nodes of others; those that are wrong have each its own."""
+    states = {state.value for state in State} | {state.label for state in LifecycleState if state.is_primary and state}
+    assert states | {"failed", "given_up", "lost", "unresponsive", "foreign", "deadlock"} == set(MARKS)
+    bad = [mark.glyph for mark in MARKS.values() if mark.ink == "bad"]
+    assert len(bad) == len(set(bad)) == 5
+
+
+def test_the_word_of_a_node() -> None:
+    """A deadlock hides that it runs; a state of its life cycle says more than that."""
+    row = {"node": "/a", "state": "ready", "lifecycle": "inactive"}
+    assert word_of(row, {"/a"}) == "deadlock"
+    assert word_of(row, ()) == "inactive"
+    assert word_of({**row, "state": "failed", "lifecycle": ""}, {"/a"}) == "failed"
 
 
 async def test_the_bottom_lines_on_80_columns() -> None:
@@ -30,12 +41,37 @@ async def test_the_bottom_lines_on_80_columns() -> None:
         assert status.endswith("●2  ^b ? help  ^b d leave")
 
 
+async def test_what_is_wrong_with_the_graph() -> None:
+    """Errors that nobody has looked at with the key to them, and races that were found."""
+    async with stage(Content("nodes"), size=(110, 24)) as s:
+        s.console.hub.logs.add([record("RACE: an update of self.x is lost", level=2), record("bad", level=3)])
+        await s.look()
+        assert "E1 ^b e ⇄1 RACE ^b g" in s.text.split("\n")[-1]
+
+
 async def test_a_click_on_a_window_opens_it() -> None:
     """As everything can be reached by the mouse."""
     async with stage(Content("log"), Content("nodes")) as s:
         at = s.text.split("\n")[-1].index("1:nodes")
         await s.pilot.click(type(s.console.status), offset=(at + 1, 0))
         assert s.console.windows.current == 1
+
+
+async def test_many_windows_leave_room_for_the_states() -> None:
+    """Those around the current one are shown, with marks for the others, which a click opens, too."""
+    async with stage(*[Content("topics")] * 12, size=(80, 24)) as s:
+        status = s.text.split("\n")[-1]
+        assert status.startswith(" [lab]  0:topics*  1:topics ")
+        assert ":topics >" in status
+        assert status.endswith(" ●2")
+        s.console.deadlocks = 1
+        s.console.deeds.go_to_window(7)
+        await s.until(lambda: "7:topics*" in s.text.split("\n")[-1])
+        status = s.text.split("\n")[-1]
+        assert status.endswith("●2 ✖ 1 DEADLOCK ^b g")
+        assert status.count(":topics") == 4
+        await s.pilot.click(type(s.console.status), offset=(status.index("<"), 0))
+        assert s.console.windows.current == int(status[status.index("<") + 2]) - 1
 
 
 async def test_clicks_on_what_can_be_pressed() -> None:
@@ -58,10 +94,10 @@ async def test_a_deadlock_is_told_wherever_one_is() -> None:
     async with stage() as s:
         s.console.deadlocks = 1
         await s.look()
-        assert "✖ 1 DEADLOCK ^b g" in s.text
+        await s.until("✖ 1 DEADLOCK ^b g")
         s.console.prefix = "ctrl+a"
         await s.look()
-        assert "✖ 1 DEADLOCK ^a g" in s.text
+        await s.until("✖ 1 DEADLOCK ^a g")
 
 
 async def test_after_the_end() -> None:
@@ -70,7 +106,7 @@ async def test_after_the_end() -> None:
         supervision: Any = s.console.hub.supervision
         supervision.exit_code = 1
         await s.look()
-        assert "ended, exit code 1" in s.text
+        await s.until("ended, exit code 1")
 
 
 async def test_a_supervisor_that_died() -> None:
@@ -79,7 +115,7 @@ async def test_a_supervisor_that_died() -> None:
         supervision: Any = s.console.hub.supervision
         supervision.is_lost = True
         await s.look()
-        assert "✖ supervisor gone" in s.text
+        await s.until("✖ supervisor gone")
 
 
 async def test_what_went_wrong_stays_until_it_is_seen() -> None:
@@ -100,7 +136,7 @@ async def test_a_message_that_is_too_long() -> None:
         await s.look()
         assert s.text.split("\n")[-2].endswith("… ^b ~ shows all")
         await s.press("down")
-        assert "word word" in s.text
+        await s.until("word word")
         s.console.hints.look(time.monotonic() + SEEN_AFTER, pressed=True)
         await s.look()
         assert "word word" not in s.text

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import pytest
+from textual.geometry import Region
 
-from graphflow.tui.canvas import DEFAULT_PEN, RECENT, Dots, Drawing, read_picture
+from graphflow.tui.canvas import DEFAULT_PEN, RECENT, Dots, Drawing, TurtleCanvas, read_picture
+from graphflow.tui.panes import Content
 from nodes.turtle_canvas import Pen
 from nodes.turtle_picture import svg
 from nodes.turtle_world import World
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 RED = (255, 0, 0)
 
@@ -65,3 +70,51 @@ def test_a_picture_replaces_the_moves_before_it_and_tells_the_pens() -> None:
     assert [m.at for m in drawing.recent] == [3.0]
     assert drawing.turtles["t"].colour == RED
     assert drawing.recent.maxlen == RECENT
+
+
+async def test_only_what_has_changed_is_drawn_again() -> None:
+    """Heads and names where they were and where they are, and the new piece of a line; nothing when nobody moves."""
+    drawing = Drawing()
+    drawing.moved("alice", 2.0, 2.0, 0.0, jump=1.0)
+    drawing.moved("bob", 9.0, 9.0, 0.0, jump=1.0)
+    async with stage(Content("nodes"), size=(80, 30)) as s:
+        canvas = TurtleCanvas(drawing)
+        await s.view.mount(canvas)
+        await s.pilot.pause()
+        canvas.redraw()
+        asked: list[Region] = []
+        canvas.refresh = lambda *regions, **_: asked.extend(regions)  # type: ignore[method-assign,assignment]
+        before = canvas._placed["alice"]
+        canvas.redraw()
+        assert asked == []
+        drawing.moved("alice", 2.9, 2.0, 0.0, jump=1.0)
+        canvas.redraw()
+        after = canvas._placed["alice"]
+        for column, row, *_ in (before, after):
+            for cell in ((column, row), (column + 1, row - 1), (column + len("alice"), row - 1)):
+                assert any(region.contains(*cell) for region in asked)
+        far = canvas._placed["bob"]
+        assert not any(region.contains(*far[:2]) for region in asked)
+
+
+async def test_names_of_turtles_that_are_near_each_other() -> None:
+    """The second one stands below its turtle, as does that of one at the upper edge."""
+    drawing = Drawing()
+    for name, x, y in (("alice", 2.0, 2.0), ("bob", 2.6, 2.0), ("carol", 9.0, 11.0)):
+        drawing.moved(name, x, y, 0.0, jump=1.0)
+    async with stage(Content("nodes"), size=(80, 40)) as s:
+        canvas = TurtleCanvas(drawing)
+        canvas.styles.height = 30
+        await s.view.mount(canvas)
+        await s.pilot.pause()
+        canvas.redraw()
+        placed = canvas._placed
+        assert placed["alice"].row == placed["bob"].row
+        assert placed["alice"].name_row == placed["alice"].row - 1
+        assert placed["bob"].name_row == placed["bob"].row + 1
+        assert (placed["carol"].row, placed["carol"].name_row) == (0, 1)
+        await s.until("alice")
+        assert "bob" in s.text
+        drawing.moved("bob", 7.0, 2.0, 0.0, jump=1.0)
+        canvas.redraw()
+        assert canvas._placed["bob"].name_row == canvas._placed["bob"].row - 1

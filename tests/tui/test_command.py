@@ -6,7 +6,6 @@ import pytest
 
 from graphflow.tui.command import CommandLine
 from graphflow.tui.panes import Content
-from graphflow.tui.views.prompt import Prompt
 from tests.cases import sample
 from tests.tui.stage import stage
 
@@ -52,8 +51,8 @@ async def test_words_of_the_consoles_own() -> None:
 
 async def test_recall_and_completion() -> None:
     """↑ brings back what was typed in any prompt; tab completes."""
-    Prompt.past[:] = ["ps --json"]
     async with stage(Content("nodes")) as s:
+        s.console.hub.history.add("ros2 ps --json")
         await s.press("colon")
         assert isinstance(s.console.screen, CommandLine)
         await s.press("up")

@@ -9,6 +9,7 @@ import pytest
 from graphflow.tui.home import open_home
 from graphflow.tui.hub import Hub
 from graphflow.tui.layout import Layout
+from graphflow.tui.panes import Split
 from tests.tui.stage import Supervised
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -17,8 +18,8 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 @pytest.mark.parametrize(
     ("class_path", "views", "focused"),
     [
-        ("nodes.turtlesim:TurtleSim", ["nodes", "log", "turtle"], "turtle"),
-        ("nodes.talker:Talker", ["nodes", "log"], "nodes"),
+        ("nodes.turtlesim:TurtleSim", ["nodes", "detail", "turtle"], "turtle"),
+        ("nodes.talker:Talker", ["nodes", "detail"], "nodes"),
     ],
 )
 async def test_the_turtle_where_there_is_one(class_path: str, views: list[str], focused: str, tmp_path: Path) -> None:
@@ -30,3 +31,14 @@ async def test_the_turtle_where_there_is_one(class_path: str, views: list[str], 
     assert [pane.content.view for pane in layout.window.panes()] == views
     assert layout.window.pane(layout.window.focused).content.view == focused
     assert len(layout.window.places(80, 22)) == len(views), "it fits 80 x 24"
+
+
+@pytest.mark.parametrize(("nodes", "columns", "axis"), [(40, 120, "columns"), (40, 80, "rows"), (4, 120, "rows")])
+def test_many_nodes_have_the_whole_height(nodes: int, columns: int, axis: str, tmp_path: Path) -> None:
+    """Where the terminal is wide enough for what there is of one of them beside the list."""
+    supervision = Supervised([f"/n{i}" for i in range(nodes)], tmp_path)
+    layout = Layout()
+    open_home(layout, Hub(0, supervision, (), dict), columns)
+    root = layout.window.root
+    assert isinstance(root, Split)
+    assert root.axis == axis

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 from rich.style import Style
+from rich.text import Text
 from textual.theme import Theme
 
 from graphflow.tui.ink import DARK, LIGHT
+from graphflow.tui.lines import Lines
 from graphflow.tui.panes import Content
 from tests.tui.stage import stage
 
@@ -68,3 +70,19 @@ async def test_a_node_has_one_colour() -> None:
     """Wherever it is named."""
     async with stage(Content("help")) as s:
         assert s.console.ink.node("/a") == s.console.ink.node("/a")
+
+
+async def test_lines_drawn_before_a_change_of_theme_follow_it() -> None:
+    """There and back."""
+    async with stage(Content("prompt")) as s:
+        lines = s.view.query_one(Lines)
+        ink = s.console.ink
+        lines.extend([Text.assemble(("good ", ink.good), ("/talker", ink.nodes[7]), style=ink.dim)])
+        for name in (LIGHT.name, DARK.name):
+            s.console.theme = name
+            await s.until(lambda is_dark=name == DARK.name: s.console.ink.is_dark is is_dark)
+            ink = s.console.ink
+            text = lines.last_row
+            assert [text.style, text.spans[0].style] == [ink.dim, ink.good]
+            assert text.spans[1].style == ink.nodes[7]
+        assert lines.rows[0].style == ink.dim

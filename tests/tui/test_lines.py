@@ -10,7 +10,7 @@ import pytest
 from rich.text import Text
 from textual.widget import Widget
 
-from graphflow.tui.lines import Lines, breaks
+from graphflow.tui.lines import WRAPS_INTO, Lines, breaks
 from graphflow.tui.panes import Content
 from tests.tui.stage import Stage, stage
 
@@ -34,14 +34,16 @@ async def test_only_so_many_are_kept_and_what_is_read_stays_put() -> None:
     async with lines(bound=50) as (s, made):
         made.extend([f"line {i}" for i in range(50)])
         assert "line 49" in s.text
-        await s.press("pageup", "pageup")
-        top = s.text.split("\n")[1]
+        await s.press("pageup", "pageup", "up")
+        top, chosen = s.text.split("\n")[1], made.chosen
+        assert chosen is not None
         made.extend([f"line {i}" for i in range(50, 55)])
         await s.pilot.pause()
         assert len(made.rows) == 50
         assert s.text.split("\n")[1] == top
+        assert made.chosen == chosen
         await s.press("end")
-        assert "line 54" in s.text
+        await s.until("line 54")
 
 
 async def test_long_rows_wrap() -> None:
@@ -54,6 +56,14 @@ async def test_long_rows_wrap() -> None:
         assert len(made.rows) == 3
         made.wrap(False)
         assert len(made.rows) == 2
+
+
+async def test_a_last_row_that_is_replaced() -> None:
+    """Goes with all of its parts."""
+    async with lines(wraps=True) as (_, made):
+        made.extend(["short", "a" * 50])
+        made.replace_last("new")
+        assert [*made.rows] == ["short", "new"]
 
 
 @pytest.mark.parametrize(
@@ -73,16 +83,53 @@ def test_breaking_between_words(text: str, width: int, lines: list[str]) -> None
     assert found == lines
 
 
+def test_a_row_that_is_much_too_long() -> None:
+    """Becomes a limited number of lines."""
+    assert len([*breaks("a" * 100_000, 10)]) == WRAPS_INTO
+
+
 async def test_moving() -> None:
     """By lines, pages, to both ends."""
     async with lines() as (s, made):
         made.extend([f"line {i}" for i in range(100)])
         await s.press("home")
-        assert "line 0" in s.text
+        await s.until("line 0")
         assert not made.follows
         await s.press("j")
         assert made.chosen is not None
         await s.press("pagedown", "k")
-        await s.press("G")
-        assert made.follows
-        assert made.chosen is None
+        for back, on in (("k", "G"), ("pageup", "pagedown")):
+            await s.press(back)
+            assert not made.follows
+            await s.press(on)
+            assert made.follows
+            assert made.chosen is None
+
+
+async def test_searching() -> None:
+    """Backwards from the end at first; n and N go on; small letters stand for capital ones too."""
+    async with stage(Content("help")) as s:
+        lines = s.view.query_one(Lines)
+        lines.replace([f"{'Gear' if i % 10 == 0 else 'line'} {i}" for i in range(100)])
+        lines.focus()
+        await s.press("slash")
+        await s.until("Search for")
+        await s.type("gear")
+        await s.press("enter")
+        assert lines.chosen == "Gear 90"
+        await s.press("N")
+        assert lines.chosen == "Gear 80"
+        await s.press("n")
+        assert lines.chosen == "Gear 90"
+        assert not lines.search("nothing", 1)
+        assert not lines.search("GEAR", -1)
+
+
+async def test_copying_a_line() -> None:
+    """Where `y` copies nothing else."""
+    async with stage(Content("prompt")) as s:
+        lines = s.view.query_one(Lines)
+        lines.replace(["one", "two"])
+        await s.prefix("[")
+        await s.press("up", "y")
+        assert s.console.clipboard_text in ("one", "two")

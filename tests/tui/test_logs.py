@@ -61,7 +61,7 @@ def test_a_long_log_is_read_from_a_line_near_its_end(tmp_path: Path, monkeypatch
     file = LogFile(path, ("/talker",))
     found = file.read()
     assert [r.text for r in found] == [f"line {i}" for i in range(1000 - len(found), 1000)]
-    assert len(found) > 10
+    assert 10 < len(found) < 30
 
 
 def test_levels_nodes_and_what_goes_on(tmp_path: Path) -> None:
@@ -80,7 +80,19 @@ def test_levels_nodes_and_what_goes_on(tmp_path: Path) -> None:
         ("/arm/right", "ERROR", "Traceback:", True),
         ("/arm/right", "ERROR", "  File", True),
     ]
-    assert read.worst == {"/arm/left": 2, "/arm/right": 3}
+    assert (read.warnings, read.errors) == ({"/arm/left": 1}, {"/arm/right": 1})
+    assert [record.text for record in read.last_error.values()] == ["line 2"]
+
+
+def test_errors_are_kept(tmp_path: Path) -> None:
+    """However much else is written after them, with their tracebacks."""
+    path = tmp_path / "arm.log"
+    path.write_text(line(1, "arm", "ERROR") + "Traceback\n" + "".join(line(i, "arm") for i in range(100)))
+    read = Logs(bound=30)
+    read.follow([(str(path), ("/arm",))])
+    read.read()
+    assert read.lost == 72
+    assert [record.text for record in read.serious] == ["line 1", "Traceback"]
 
 
 def test_several_files_are_merged_by_time(tmp_path: Path) -> None:

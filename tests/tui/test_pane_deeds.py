@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graphflow.tui.dialogs import AskLine, Pick
-from graphflow.tui.panes import Content, Window
+from graphflow.tui.panes import Content, Split, Window
 from tests.cases import slow, some
 from tests.tui.stage import stage
 
@@ -76,7 +76,7 @@ async def test_windows(focused: str) -> None:
             await s.prefix(key)
             assert windows.current == there, key
         await s.prefix("9")
-        assert "there is no window 9" in s.text
+        await s.until("there is no window 9")
         await s.prefix("comma")
         assert isinstance(s.console.screen, AskLine)
         await s.press("ctrl+u")
@@ -97,3 +97,24 @@ async def test_windows(focused: str) -> None:
         await s.type("log")
         await s.press("enter")
         assert windows.current == 2
+
+
+@pytest.mark.parametrize(
+    ("size", "view", "where"),
+    [
+        ((120, 30), "params", "columns"),
+        ((100, 30), "params", "rows"),
+        ((100, 14), "params", "a window"),
+        ((100, 14), "echo", "columns"),
+        ((50, 40), "params", "a window"),
+        ((58, 40), "params", "rows"),
+    ],
+)
+async def test_what_is_opened_has_the_room_that_it_needs(size: tuple[int, int], view: str, where: str) -> None:
+    """Beside, below, or in a window of its own."""
+    async with stage(Content("top"), size=size) as s:
+        s.console.open_beside(Content(view, "/talker"))
+        await s.pilot.pause()
+        root = s.console.windows.windows[0].root
+        assert (root.axis if isinstance(root, Split) else "a window") == where
+        assert (len(s.console.windows.windows) == 2) is (where == "a window")

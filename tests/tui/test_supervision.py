@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +40,7 @@ class Graph:
     def begin_stop(self, *, now: bool, reason: str) -> None:
         self.asked.append(f"stop {reason}")
 
-    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None:
+    def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None:
         self.asked.append(f"restart {node}")
         self.doors.announce(f"restart {node}", by)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import pytest
 from textual.widgets import DataTable
 
 from graphflow.tui import table
 from graphflow.tui.panes import Content
-from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.tui.table import FIND, ORDER, Cells, TableView
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -17,8 +19,8 @@ class Numbers(TableView):
     """Rows that a test sets."""
 
     NAME = "numbers"
-    COLUMNS = ("name", "value")
-    ACTIONS = (FIND,)
+    COLUMNS: ClassVar[tuple[str, ...]] = ("name", "value")
+    ACTIONS = (FIND, ORDER)
     now: dict[str, Cells] = {}  # noqa: RUF012
 
     def rows(self) -> dict[str, Cells]:
@@ -41,7 +43,7 @@ async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> N
         assert view.query_one(DataTable).row_count == 5
         Numbers.now = {name: (name, "3") for name in "abcde"}
         await s.look()
-        assert "3" in s.text
+        await s.until("3")
         Numbers.now = {}
         await s.look()
         assert view.key == ""
@@ -56,7 +58,7 @@ async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         await s.look()
         assert "nothing there yet" not in s.text
         await s.press("slash", "z")
-        assert "no row has 'z'; esc shows all" in s.text
+        await s.until("no row has 'z'; esc shows all")
         await s.press("enter", "escape")
         assert "esc shows all" not in s.text
 
@@ -68,4 +70,59 @@ async def test_long_tables_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     Numbers.now = {f"r{i}": (f"r{i}", "") for i in range(25)}
     async with stage(Content("numbers")) as s:
         await s.look()
-        assert "10, 15 more not shown" in s.text
+        await s.until("10 of 25")
+        assert s.view.query_one(DataTable).row_count == 10
+
+
+async def test_an_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a column's quantities, units and all; once more for backwards; what has none comes last."""
+    monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
+    Numbers.now = {name: (name, value) for name, value in zip("abcd", ("10ms", "", "1.5s", "900ms"), strict=True)}
+    async with stage(Content("numbers")) as s:
+        view = s.view
+        assert isinstance(view, Numbers)
+        for keys, order, head in ((("down", "enter"), "adcb", "value ▲"), (("down", "enter"), "cdab", "value ▼")):
+            await s.press("o")
+            await s.until("Order by")
+            await s.press(*keys)
+            await s.look()
+            assert [*view._shown] == list(order)
+            assert head in s.text
+        assert view.content.options["order"] == "-value"
+
+
+async def test_a_find_stays_in_the_title(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With how many of all rows it leaves; it comes back with the windows."""
+    monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
+    Numbers.now = {f"r{i}": (f"r{i}", "") for i in range(25)}
+    async with stage(Content("numbers", options={"find": "r2"})) as s:
+        await s.look()
+        await s.until("[/r2] 6 of 25")
+        await s.press("escape")
+        await s.look()
+        assert "of 25" not in s.text
+
+
+class Wide(Numbers):
+    """One whose last column takes what is left."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ("name", "value", "text")
+    SHED = ("name", "text", "value")
+    KEEPS = 1
+    STRETCHES = True
+
+
+@pytest.mark.parametrize(
+    ("width", "shown"), [(80, "a one long"), (40, "a one long"), (28, "a long"), (20, "a one"), (12, "a")]
+)
+async def test_the_width_that_is_there(monkeypatch: pytest.MonkeyPatch, width: int, shown: str) -> None:
+    """The last column has the rest of the line; what has no room goes, in the order of its worth."""
+    monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Wide)
+    Wide.now = {"a": ("a", "one", "long " * 30)}
+    async with stage(Content("numbers"), size=(width, 12)) as s:
+        await s.look()
+        row = s.text.split("\n")[2]
+        assert " ".join(row.split()).startswith(shown)
+        assert ("…" in row) is ("long" in shown)
+        if "…" in row:
+            assert width - len(row) < 5

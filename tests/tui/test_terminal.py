@@ -81,10 +81,16 @@ def test_leaving_and_coming_back(machine: Machine, terminal: Open, counting: str
     assert "▌$ node list" in text
     back.until("● running")
     assert rows(machine)["/counting"]["pid"] == pid
-    back.press("C-c")
+    other = terminal("attach")
+    other.until("enter runs this again")
+    machine.until(lambda: len(consoles(machine)) == 2, "both are attached")
+    back.press("C-b", "S")
     back.until("Leave or stop counting, 1 node?")
-    back.press("C-c")
+    back.press("C-c", "C-c")
+    back.until("Stopping ends it for the other console, too: pts/")
+    back.press("s")
     back.until("graph counting is down")
+    other.until("the graph has ended (down, by pts/")
     back.until("ended with 0")
     nothing_is_left(machine, [pid])
 
@@ -173,12 +179,12 @@ def test_several_consoles_and_sizes(machine: Machine, terminal: Open, counting: 
     two.until(lambda text: "restart /counting by pts/" in text)
     one.until(lambda text: bool(re.search(r"● running.* 1$", text, re.MULTILINE)))
     two.resize(40, 8)
-    two.until(lambda text: "nodes" in text and "log of" not in text)
+    two.until(lambda text: "nodes" in text and "[all]" not in text)
     two.resize(100, 30)
-    two.until(lambda text: "nodes" in text and "log of" in text)
+    two.until(lambda text: "nodes" in text and "[all]" in text)
     machine.look("down")
     for t in (one, two):
-        t.until("the graph has ended, exit code 0")
+        t.until("the graph has ended (down, by ")
 
 
 def test_a_graph_that_cannot_start_says_why(machine: Machine, terminal: Open) -> None:
@@ -201,6 +207,30 @@ def test_nodes_of_others(machine: Machine, terminal: Open) -> None:
     t.press("q")
     t.until("its nodes run on]")
     node.end()
+
+
+@slow
+def test_back_to_the_shell_and_on(machine: Machine, terminal: Open, counting: str) -> None:
+    """Ctrl-Z gives the terminal to the shell, `fg` comes back with the screen and all keys, twice; q still leaves."""
+    machine.run("up", "-d", counting)
+    t = terminal("--version; PS1='READY> ' bash --norc --noprofile -i")
+    t.until("READY>")
+    t.type(f"{sys.executable} -m graphflow attach")
+    t.press("Enter")
+    for _ in range(2):
+        t.until("● running")
+        t.press("C-z")
+        t.until(lambda text: "Stopped" in text and "● running" not in text)
+        t.type("fg")
+        t.press("Enter")
+    t.until("● running")
+    t.press("C-b", "w")
+    t.until("Windows and panes")
+    t.press("Escape")
+    t.until(lambda text: "Windows and panes" not in text)
+    t.press("q")
+    t.until("[detached from counting: 1 node keeps running]")
+    machine.look("down")
 
 
 def test_waiting_never_ends_in_silence(machine: Machine, terminal: Open) -> None:

@@ -75,7 +75,7 @@ async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
         assert view.looks == before, "nobody looks at what is not on screen"
         await s.prefix("0")
         await s.press("c")
-        assert "$ graphflow service call /charge   (^b y copies)" in s.text
+        await s.until("$ graphflow service call /charge   (^b y copies)")
         assert [str(p.content) for p in s.console.window.panes()] == ["battery main", "log /battery"]
         await s.prefix("o")
         await s.prefix("x")

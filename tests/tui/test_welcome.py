@@ -19,7 +19,7 @@ async def test_it_is_put_away_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     async with stage(size=(80, 24)) as s:
         s.console.welcome.display = True
         await s.pilot.pause()
-        assert "New here? tab next pane  ^b d leave, all runs on  ^c stop" in s.text
+        assert "New here? tab next pane  ^b d leave, all runs on  ^c stop...  ^p menu  esc hide" in s.text
         await s.press("escape")
         assert "New here?" not in s.text
         assert not is_first_visit()

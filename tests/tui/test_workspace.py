@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graphflow.tui.panes import Content
-from graphflow.tui.workspace import Frame, Title, Workspace
+from graphflow.tui.workspace import Frame, Title, Workspace, _cut
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -65,3 +65,29 @@ async def test_the_title_says_what_is_special() -> None:
         await s.prefix("quotation_mark")
         assert s.text.startswith(" log of all nodes ──")
         assert len(s.console.query(Title)) == 2
+
+
+async def test_a_note_that_comes_and_goes_between_two_looks() -> None:
+    """The title does not keep it: what counts is what was drawn last."""
+    async with stage(Content("log")) as s:
+        title = s.console.workspace.frames[s.console.window.focused].title_line
+        title.refresh_if_changed()
+        s.view._bad = "a passing note"  # type: ignore[attr-defined]
+        assert "a passing note" in title.render_line(0).text
+        s.view._bad = ""  # type: ignore[attr-defined]
+        title.refresh_if_changed()
+        await s.until(lambda: "a passing note" not in s.text)
+        assert "a passing note" not in title.render_line(0).text
+        assert title._shown[1] == s.view.note
+
+
+@pytest.mark.parametrize(("width", "shown"), [(6, "a name"), (5, "a na…"), (1, "…"), (0, ""), (-3, "")])
+def test_titles_that_are_too_long(width: int, shown: str) -> None:
+    """They end with a sign that something is missing."""
+    assert _cut("a name", width) == shown
+
+
+@pytest.mark.parametrize(("width", "shown"), [(6, "a note"), (5, "a no…"), (4, "a n…"), (3, "")])
+def test_notes_without_room(width: int, shown: str) -> None:
+    """They are left out rather than cut to a few letters."""
+    assert _cut("a note", width, least=4) == shown

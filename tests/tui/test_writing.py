@@ -27,13 +27,13 @@ async def test_the_windows_are_written(file: Path) -> None:
     """By a key, after the change was shown; comments stay."""
     async with stage(Content("nodes"), Content("log"), folder=file.parent) as s:
         await s.prefix("ctrl+s")
-        assert "Write the windows of this console to lab.yaml?" in s.text
-        assert "+console:" in s.text
+        await s.until("Write the windows of this console to lab.yaml?")
+        await s.until("+console:")
         await s.press("w")
         await s.until("written to")
         assert file.read_text().startswith(TEXT)
         await s.prefix("ctrl+s")
-        assert "says so already" in s.text
+        await s.until("says so already")
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ async def test_a_full_disk_leaves_the_old_file(file: Path, monkeypatch: pytest.M
         writing.write_file(s.console, file, lambda text: text + "# more\n", "a comment")
         monkeypatch.setattr("os.fsync", full)
         await s.press("w")
-        assert "No space left on device; nothing was changed" in s.text
+        await s.until("No space left on device; nothing was changed")
         assert file.read_text() == TEXT
         assert [f.name for f in file.parent.iterdir()] == ["lab.yaml"]
 

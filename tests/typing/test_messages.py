@@ -96,7 +96,7 @@ def lists(points: list[Point]) -> None:
 
 def constants() -> None:
     Log(level=Log.WARN)
-    Log.WARN = 1  # type: ignore[misc]
+    Log.WARN = 1  # type: ignore[assignment]
 
 
 def add(request: AddTwoInts.Request) -> AddTwoInts.Response:

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Any
+
+from msgspec import defstruct
 
 from graphflow.msgs import base, registry
 from graphflow.wire import idl
+from graphflow.wire.codegen import Types
 from graphflow.wire.schema import INTEGER_RANGES, FieldType, Interface, Message, Service, string_length
 
 from .conftest import INTERFACES
@@ -91,3 +96,13 @@ def plain(value: Any) -> Any:
     if isinstance(value, list):
         return [plain(item) for item in value]
     return value
+
+
+def types_of(schemas: Mapping[str, Any]) -> Types:
+    """Messages of some schemas, in classes that check nothing."""
+
+    @cache
+    def message_class(name: str) -> type:
+        return defstruct("Thing", [f.name for f in schemas[name].fields], namespace={"SCHEMA": schemas[name]})
+
+    return Types(schemas.__getitem__, message_class, lambda message: message)

@@ -12,10 +12,9 @@ from graphflow.errors import DecodeError
 from graphflow.msgs import registry
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.wire.cdr import Codec
-from graphflow.wire.codegen import Types
 from graphflow.wire.schema import Field, FieldType, Message
 
-from .messages import make
+from .messages import make, types_of
 
 
 def round_trip(name: str, **values: Any) -> Any:
@@ -128,13 +127,9 @@ def test_plain_arrays() -> None:
         registry.plain_codec("std_msgs/msg/Float64MultiArray").decode(b"\0\1\0\0" + bytes(8) + b"\xff" * 4)
 
 
-class Thing:
-    """A message of whatever type."""
-
-
 EMPTY, ROW = Message("p/msg/Empty"), Message("p/msg/Row", (Field("cells", FieldType("p/msg/Empty", 0, "unbounded")),))
 TABLE = Message("p/msg/Table", (Field("rows", FieldType("p/msg/Row", 0, "unbounded")),))
-TYPES = Types({m.name: m for m in (EMPTY, ROW, TABLE)}.__getitem__, lambda _: Thing, lambda m: m)
+TYPES = types_of({m.name: m for m in (EMPTY, ROW, TABLE)})
 
 
 def table(rows: int, cells: int) -> bytes:

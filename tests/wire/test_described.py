@@ -10,11 +10,12 @@ import pytest
 from graphflow.errors import InterfaceError
 from graphflow.msgs import registry
 from graphflow.wire.cdr import Codec
-from graphflow.wire.codegen import Types
 from graphflow.wire.described import FieldSaid, definition_of, verified
 from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import base_of, referenced, type_id
 from tests.cases import sample
+
+from .messages import types_of
 
 
 def said(field: Field) -> FieldSaid:
@@ -72,10 +73,6 @@ def nested(depth: int, text: str) -> dict[str, str]:
     return {**texts, f"p/msg/{names[-1]}": "uint8 z"}
 
 
-class Thing:
-    """A message of whatever type."""
-
-
 BOMBS = {
     "fields": (nested(21, "{0} x\n{0} y"), "more than 20,000 fields"),
     "lists": (nested(21, "{0}[] x\n{0}[] y"), "more than 20,000 fields"),
@@ -106,7 +103,7 @@ def test_types_that_multiply(sources: dict[str, str], message: str) -> None:
 def test_the_largest_that_are_not_refused(text: str) -> None:
     """Can be read and written within bounds, too: no decoder is written twice."""
     found = verified("p/msg/A", "", nested(13, text))
-    types = Types(found.__getitem__, lambda _: Thing, lambda m: m)  # type: ignore[arg-type]
+    types = types_of(found)
     tracemalloc.start()
     try:
         codec = Codec(found["p/msg/A"], types)  # type: ignore[arg-type]

@@ -161,6 +161,8 @@ def test_constants_are_read(line: str, expected: Constant) -> None:
 BROKEN = [
     ("float64", "TYPE NAME"),
     ("flaot64 x", r"not a type; did you mean 'float64'"),
+    ("double x", r"'double' is not a type; did you mean 'float64'\?$"),
+    ("int[] x", r"'int' is not a type; did you mean 'int32'\?$"),
     ("point p", "'point' is not a type"),
     ("float64[3 x", "is not a type; write for example"),
     ("float64[-1] x", "is not a type"),
@@ -182,7 +184,8 @@ BROKEN = [
     ("float64 from", "Python keyword"),
     ("float64 x\nint32 y\nbool x", "'x' is defined twice"),
     ("int32 X=1\nint32 X=1", "'X' is defined twice"),
-    ("int32 x=1", "constant name 'x'"),
+    ("int32 x = 1", "constant name 'x': .*; a constant: int32 X=1; a default of a field: int32 x 1$"),
+    ("int32 x=", "constant name 'x': capitals, digits and single _ only$"),
     ("int32 X_=1", "constant name 'X_'"),
     ("int32 X=", "'' is not a value of int32"),
     ("int32 X=one", "'one' is not a value of int32"),
@@ -192,6 +195,7 @@ BROKEN = [
     ("float64 X=far", "'far' is not a value of float64"),
     ("bool X=maybe", "'maybe' is not a value of bool"),
     ("int32[] X=[1]", "constant 'X': only numbers, bool and string"),
+    ("string[] n = ['a']", r"can be constants, not string\[\]; a default has no =: string\[\] n \['a'\]"),
     ("wstring X=a", "constant 'X': only numbers, bool and string"),
     ("Point X=1", "constant 'X': only numbers, bool and string"),
     ("uint16 x 65536", "65536 does not fit uint16"),
@@ -216,6 +220,13 @@ def test_a_broken_rule_is_named_with_its_line(text: str, rule: str) -> None:
     line = 2 + len(text.splitlines())
     with pytest.raises(InterfaceError, match=rf"^pkg/msg/Thing line {line}: .*{rule}"):
         message(f"# a comment\n\n{text}")
+
+
+@pytest.mark.parametrize("line", ["--", "----", "- - -".replace(" ", "\u2014"), "===", "--- # a comment"])
+def test_a_line_that_parts_nothing(line: str) -> None:
+    """Is named where sections are missing."""
+    with pytest.raises(InterfaceError, match=rf"^pkg/srv/Get line 2: '{line}': write ---$"):
+        idl.parse("pkg/srv/Get", f"int32 x\n{line}\nint32 y\n")
 
 
 def test_lines_are_counted_through_the_sections() -> None:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -48,6 +51,35 @@ def test_a_process_is_named_with_its_host_where_that_is_another() -> None:
     """Its number says enough on this machine, and nothing on another."""
     assert str(HERE) == f"process {os.getpid()}"
     assert str(ELSEWHERE) == f"process {os.getpid()} on robot-7"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_stopped_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that have Zenoh and the same rendezvous are told, with their commands."""
+    library = tmp_path / "libzenoh.so"
+    library.write_bytes(bytes(4096))
+    opened = f"f = open({os.fspath(library)!r}, 'r+b'); m = mmap.mmap(f.fileno(), 0)"
+    code = f"import mmap, time; {opened}; print(); time.sleep(60)"
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/127.0.0.1:1")
+    command = [sys.executable, "-u", "-c", code]
+    environments = [os.environ.copy(), os.environ | {"GRAPHFLOW_RENDEZVOUS": "tcp/127.0.0.1:2"}]
+    started = [subprocess.Popen(command, env=env, stdout=subprocess.PIPE) for env in environments]
+    try:
+        for one in started:
+            assert one.stdout is not None
+            one.stdout.readline()
+        assert process.stopped() == {}
+        for one in started:
+            one.send_signal(signal.SIGSTOP)
+            os.waitid(os.P_PID, one.pid, os.WSTOPPED)
+        first = started[0].pid
+        [(pid, text)] = process.stopped().items()
+        assert (pid, text.startswith(f"process {first}, {sys.executable} -u -c ")) == (first, True)
+        assert text.endswith(f", is stopped: kill -CONT {first}")
+    finally:
+        for one in started:
+            one.kill()
+            one.communicate()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")

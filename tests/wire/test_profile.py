@@ -38,9 +38,14 @@ def test_a_profile_is_chosen_by_its_name(profile: str, monkeypatch: pytest.Monke
 
 
 def test_a_mistyped_profile_is_an_error_that_helps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Another word is refused, with the nearest that is right."""
+    """Another word is refused, with the nearest that is right, or with all of them, once."""
     monkeypatch.setenv("GRAPHFLOW_WIRE", "lyrial")
-    with pytest.raises(GraphflowError, match=r"GRAPHFLOW_WIRE='lyrial' is not a wire profile.*lyrical"):
+    with pytest.raises(GraphflowError, match=r"GRAPHFLOW_WIRE='lyrial' is not a wire profile; did you mean 'lyrical'"):
+        wire_profile()
+    monkeypatch.setenv("GRAPHFLOW_WIRE", "humble")
+    with pytest.raises(
+        GraphflowError, match=r"GRAPHFLOW_WIRE='humble' is not .* profile; there is [a-z]+, [a-z]+, [a-z]+$"
+    ):
         wire_profile()
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
 import time
-from typing import Any, ClassVar
 
 from rich.text import Text
 from textual.app import ComposeResult
@@ -20,12 +20,11 @@ from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
 from graphflow.tui.logs import plain_text
 from graphflow.tui.panes import Content
-from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.tui.table import FIND, ORDER, Cells, TableView
 from graphflow.wire.liveliness import Kind
 
 CALL_LIMIT = 10.0
 """Seconds that a service has to answer."""
-HISTORY = 50
 _OF_EVERY_NODE = (
     "/describe_parameters",
     "/get_parameter_types",
@@ -44,6 +43,7 @@ class Calls(TableView):
 
     NAME = "calls"
     DOC = "services: a form for the request, the answers so far"
+    LEAST_WIDTH = 56
     EMPTY = "no node offers a service of its own; a shows those that every node has"
     COLUMNS = ("service", "type", "node")
     EVERY = 1.0
@@ -55,13 +55,11 @@ class Calls(TableView):
         Action("back", "back to the list", keys=("escape",), hint=True),
         Action("hidden", "every node's own services too", keys=("a",)),
         FIND,
+        ORDER,
     )
     DEFAULT_CSS = """
     Calls .shell { height: auto; max-height: 3; padding: 0 1; color: $text-muted; }
     """
-
-    asked: ClassVar[dict[str, list[dict[str, Any]]]] = {}
-    """The requests made in this console, by service."""
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
@@ -69,8 +67,7 @@ class Calls(TableView):
         self._type = ""
         self._form: Form | None = None
         self._shell = Static("", classes="shell", markup=False)
-        self._answers = Lines(2000, wraps=True)
-        self._at = 0
+        self._answers = Lines(2000, wraps=True, copies=True)
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
@@ -119,7 +116,9 @@ class Calls(TableView):
         self.do_open_form()
 
     def do_open_form(self) -> None:
-        if self.key:
+        if self._form is not None:  # one without fields, where enter finds nothing to go to
+            self.do_send()
+        elif self.key:
             self._open(self.key)
 
     def _open(self, name: str) -> None:
@@ -129,13 +128,13 @@ class Calls(TableView):
             return
         self.about, self._type = name, types[0]
         try:
-            self._form = form_for(registry.service_schema(self._type).request.name)
+            request = registry.service_schema(self._type).request.name
+            self._form = form_for(request, self.hub.history.requests("service", "call", name, self._type))
         except GraphflowError as error:
             self.about = ""
             self.say(str(error), bad=True)
             return
         self._answers.replace([])
-        self._at = len(self.asked.get(name, []))
         self.mount(self._form, before=self._shell)
         self._show_list()
         self._show_shell()
@@ -152,14 +151,19 @@ class Calls(TableView):
     def on_form_edited(self) -> None:
         self._show_shell()
 
+    def on_form_completed(self) -> None:
+        self.do_send()
+
     def _command(self) -> str:
         assert self._form is not None
         values = self._form.values()
-        return f"graphflow service call {self.about} {self._type}" + (f" '{flow(values)}'" if values else "")
+        return f"graphflow service call {self.about} {self._type}" + (f" {shlex.quote(flow(values))}" if values else "")
 
     def _show_shell(self) -> None:
         try:
-            self._shell.update(f"ctrl+s calls;  $ {self._command()}")
+            assert self._form is not None
+            self._form.message()
+            self._shell.update(f"tab next field, ctrl+s calls, esc back;  $ {self._command()}")
         except EncodeError as error:
             self._shell.update(str(error))
 
@@ -168,15 +172,12 @@ class Calls(TableView):
         if form is None:
             self.do_open_form()
             return
-        try:
-            message, values, command = form.message(), form.values(), self._command()
-        except EncodeError as error:
-            self.say(str(error), bad=True)
+        if fault := form.first_fault():
+            self.say(fault, bad=True)
             return
-        past = self.asked.setdefault(self.about, [])
-        past.append(values)
-        del past[:-HISTORY]
-        self._at = len(past) - 1
+        message, values, command = form.message(), form.values(), self._command()
+        form.keep()
+        self.hub.history.add(command)
         name, type_name = self.about, self._type
         self.did(command)
         self.hub.announce(command.removeprefix("graphflow "))
@@ -204,10 +205,8 @@ class Calls(TableView):
         self._recall(1)
 
     def _recall(self, step: int) -> None:
-        past = self.asked.get(self.about, [])
-        if self._form is not None and past:
-            self._at = max(0, min(len(past) - 1, self._at + step))
-            self._form.fill(past[self._at])
+        if self._form is not None:
+            self.say(self._form.recall(step) or f"no request to {self.about} was made before")
 
     def do_hidden(self) -> None:
         self._hidden_too = not self._hidden_too

@@ -16,7 +16,7 @@ from graphflow.tui.actions import Action
 from graphflow.tui.bars import MARKS
 from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
-from graphflow.tui.logs import Record
+from graphflow.tui.logs import Logs, Record
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 from graphflow.tui.views.source import edit, find_file
@@ -32,6 +32,7 @@ class Crash(View):
 
     NAME = "crash"
     DOC = "how a node ended, its traceback and last words"
+    LEAST_WIDTH = 48
     EVERY = 1.0
     ACTIONS = (
         Action("restart", "restart", keys=("r",), verb="graphflow restart {node}", hint=True),
@@ -42,9 +43,11 @@ class Crash(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._lines = Lines(2000, wraps=True)
+        self._lines = Lines(2000, wraps=True, copies=True)
         self._lines.follows = False
         self._seen: object = None
+        self._own: Logs | None = None
+        """Its log, read from its file."""
 
     def compose(self) -> ComposeResult:
         yield self._lines
@@ -59,7 +62,10 @@ class Crash(View):
     def look(self, now: float) -> None:
         supervision = self.hub.supervision
         row = supervision.nodes.get(self.about) if supervision is not None else None
-        seen = (row and (row["state"], row["detail"], row["restarts"]), self.hub.logs.total, int(now))
+        self._own = self._own or self.hub.own_logs(self.about)
+        if self._own is not None:
+            self._own.read()
+        seen = (row and (row["state"], row["detail"], row["restarts"]), self._logs.total, int(now))
         if seen != self._seen:
             self._seen = seen
             self._lines.replace(list(self._rows(row)))
@@ -78,7 +84,7 @@ class Crash(View):
         process = f"process {row['pid']}" if row["pid"] else "no process"
         yield Text(f"  {process}, restarts: {row['restarts'] or 'none'}", style=ink.dim)
         yield Text(f"  {row['log']}", style=ink.dim)
-        records = [r for r in self.hub.logs.since(0) if r.node == self.about]
+        records = self._records()
         trace = traceback_of(records)
         if trace:
             yield Text("")
@@ -91,9 +97,16 @@ class Crash(View):
         for record in records[-LAST_LINES:]:
             yield Text(f"  {record.text}", style=ink.level(record.level))
 
+    @property
+    def _logs(self) -> Logs:
+        return self._own or self.hub.logs
+
+    def _records(self) -> list[Record]:
+        return [record for record in self._logs.since(0) if record.node == self.about]
+
     def _place(self) -> tuple[str, int] | None:
         """The user's innermost line in the traceback, else the innermost."""
-        trace = traceback_of([r for r in self.hub.logs.since(0) if r.node == self.about])
+        trace = traceback_of(self._records())
         frames = [(m[1], int(m[2])) for record in trace if (m := _FRAME.search(record.text))]
         own = [frame for frame in frames if _is_own(f'File "{frame[0]}"')]
         return (own or frames)[-1] if frames else None

@@ -26,6 +26,7 @@ class Echo(View):
 
     NAME = "echo"
     DOC = "the messages of a topic"
+    LEAST_WIDTH = 36
     EVERY = 0.2
     ACTIONS = (
         Action("stream", "one after the other, or the latest", keys=("s",), hint=True),
@@ -106,8 +107,7 @@ class Echo(View):
 
     def do_copy(self) -> None:
         if self._tap is not None and self._tap.message is not None:
-            self.console.copy_to_clipboard(block(plain(self._tap.message)))
-            self.say("copied the message as YAML")
+            self.console.copy(block(plain(self._tap.message)), "the message as YAML")
 
     def closed(self) -> None:
         if self._tap is not None:

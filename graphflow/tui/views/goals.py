@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import time
 from dataclasses import dataclass
 from functools import partial
@@ -22,7 +23,7 @@ from graphflow.tui.form import Form, form_for
 from graphflow.tui.hub import Hub
 from graphflow.tui.logs import plain_text
 from graphflow.tui.panes import Content
-from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.tui.table import FIND, ORDER, Cells, TableView
 from graphflow.tui.tap import Tap
 
 STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "canceled", "aborted")
@@ -32,6 +33,8 @@ GOALS = 500
 """Goals that are remembered; the oldest that has ended goes first."""
 ACTIONS_BOUND = 50
 CANCEL_LIMIT = 5.0
+FEEDBACK = 2000
+"""Characters of a goal's feedback that are kept."""
 
 
 @dataclass
@@ -51,6 +54,7 @@ class Goals(TableView):
 
     NAME = "goals"
     DOC = "goals: state, feedback, cancel; a form for a new one"
+    LEAST_WIDTH = 56
     EMPTY = "no goals yet"
     COLUMNS = ("goal", "action", "state", "for", "feedback")
     EVERY = 0.25
@@ -59,12 +63,15 @@ class Goals(TableView):
             "new", "new goal", keys=("n", "enter"), verb="graphflow action send_goal {action} TYPE VALUES", hint=True
         ),
         Action("send", "send it", keys=("ctrl+s",), hint=True),
+        Action("earlier", "the goal before", keys=("ctrl+up",)),
+        Action("later", "the goal after", keys=("ctrl+down",)),
         Action("cancel", "cancel", keys=("c",), hint=True),
         Action("back", "put the form away", keys=("escape",)),
         FIND,
+        ORDER,
     )
     DEFAULT_CSS = """
-    Goals .shell { height: auto; max-height: 3; padding: 0 1; color: $text-muted; }
+    Goals .shell { height: auto; max-height: 8; padding: 0 1; color: $text-muted; }
     """
 
     def __init__(self, hub: Hub, content: Content) -> None:
@@ -114,6 +121,9 @@ class Goals(TableView):
             for tap in taps:
                 tap.look()
         super().look(now)
+        if self._form is None:
+            chosen = self._goals.get(self.key)
+            self._shell.update(f"feedback: {chosen.feedback}" if chosen is not None and chosen.feedback else "")
 
     def _status(self, action: str, message: Any, _: float) -> None:
         now = time.monotonic()
@@ -133,7 +143,7 @@ class Goals(TableView):
     def _feedback(self, action: str, message: Any, _: float) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid).hex())
         if goal is not None and goal.action == action:
-            goal.feedback = plain_text(flow(truncated(plain(message.feedback), 16)))[:200]
+            goal.feedback = plain_text(flow(truncated(plain(message.feedback), 16)))[:FEEDBACK]
 
     def rows(self) -> dict[str, Cells]:
         ink, now = self.ink, time.monotonic()
@@ -210,7 +220,8 @@ class Goals(TableView):
 
     def _open(self, name: str) -> None:
         try:
-            self._form = form_for(f"{self._types[name]}_Goal")
+            words = ("action", "send_goal", "-f", name, self._types[name])
+            self._form = form_for(f"{self._types[name]}_Goal", self.hub.history.requests(*words))
         except GraphflowError as error:
             self.say(str(error), bad=True)
             return
@@ -230,17 +241,31 @@ class Goals(TableView):
     def on_form_edited(self) -> None:
         self._show_shell()
 
+    def on_form_completed(self) -> None:
+        self.do_send()
+
     def _command(self) -> str:
         assert self._form is not None
-        return (
-            f"graphflow action send_goal -f {self._sent_to} {self._types[self._sent_to]} '{flow(self._form.values())}'"
-        )
+        values = shlex.quote(flow(self._form.values()))
+        return f"graphflow action send_goal -f {self._sent_to} {self._types[self._sent_to]} {values}"
 
     def _show_shell(self) -> None:
         try:
-            self._shell.update(f"ctrl+s sends, esc back;  $ {self._command()}")
+            assert self._form is not None
+            self._form.message()
+            self._shell.update(f"tab next field, ctrl+s sends, esc back;  $ {self._command()}")
         except EncodeError as error:
             self._shell.update(str(error))
+
+    def do_earlier(self) -> None:
+        self._recall(-1)
+
+    def do_later(self) -> None:
+        self._recall(1)
+
+    def _recall(self, step: int) -> None:
+        if self._form is not None:
+            self.say(self._form.recall(step) or f"no goal was sent to {self._sent_to} before")
 
     def do_send(self) -> None:
         form, live = self._form, self.hub.live
@@ -249,11 +274,11 @@ class Goals(TableView):
             return
         name = self._sent_to
         type_: Any = registry.interface_class(self._types[name])
-        try:
-            goal, command = form.message(), self._command()
-        except EncodeError as error:
-            self.say(str(error), bad=True)
+        if fault := form.first_fault():
+            self.say(fault, bad=True)
             return
+        goal, command = form.message(), self._command()
+        self.hub.history.add(command)
         self.did(command)
         self.hub.announce(command.removeprefix("graphflow "))
 

@@ -55,6 +55,7 @@ class Graph(View):
 
     NAME = "graph"
     DOC = "nodes and topics as boxes and arrows"
+    LEAST_WIDTH = 60
     EVERY = 1.0
     ACTIONS = (
         Action("next_box", "next box", keys=("n",), hint=True),
@@ -107,7 +108,8 @@ class Graph(View):
             if spaces:
                 self._collapsed = spaces
                 made = picture(live.cache, self.about, self._collapsed, everything=self._everything)
-        labels = {t: _label(t, live.numbers.published(t)) for t in made.topics}
+        bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
+        labels = {t: f"{'✖ ' if t in bad else ''}{_label(t, live.numbers.published(t))}" for t in made.topics}
         wanted = (made, tuple(labels.values()), self._chosen, self.ink)
         if wanted == self._drawn:
             return
@@ -179,8 +181,7 @@ class Graph(View):
         self.look(0.0)
 
     def do_mermaid(self) -> None:
-        self.console.copy_to_clipboard(mermaid(self._picture))
-        self.say("copied the graph as Mermaid")
+        self.console.copy(mermaid(self._picture), "the graph as Mermaid")
 
     def on_click(self, event: events.Click) -> None:
         row = event.screen_y - self._boxes.region.y + self._boxes.scroll_offset.y

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import time
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 from typing import ClassVar, NamedTuple
@@ -12,24 +12,25 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from graphflow.errors import CallError, RemoteError
 from graphflow.introspect import concurrency
 from graphflow.introspect.view import View as Graph
 from graphflow.machines.explain import group_of, headline, title, wanted
-from graphflow.machines.moves import Move, moves
+from graphflow.machines.group_fixes import Fix, Thread, fixes
 from graphflow.machines.remedies import remedies
 from graphflow.machines.rings import Deadlock
 from graphflow.machines.wait_graph import FREE, ActivityView, GroupView, WaitGraph
 from graphflow.tui.actions import Action
+from graphflow.tui.dialogs import Item, Pick
 from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
-from graphflow.tui.logs import plain_text
+from graphflow.tui.logs import Record, plain_text
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
-from graphflow.wire.process import GROUPS, answer_key
 
-MOVE_LIMIT = 2.0
-"""Seconds that a node has to move a handler."""
+ANSWER_LIMIT = 2.0
+"""Seconds that a node has to change its groups."""
+JUDGED_AFTER, RESTARTED_WITHIN = 2.5, 12.0
+"""Seconds after which a change that has ended no deadlock is told; longer where the node is started again for it."""
 SLOTS = 12
 """Slots of a group that are drawn one by one."""
 
@@ -39,6 +40,8 @@ class Row(NamedTuple):
 
     text: Text
     place: str = ""
+    told: Record | None = None
+    """The report whose line it is, for one that points to the line that /rosout has for it."""
 
 
 class RowLines(Lines):
@@ -48,17 +51,34 @@ class RowLines(Lines):
         return super().draw(row.text)
 
 
+Ring = frozenset[tuple[str, str]]
+"""The members of a deadlock, each with the queue that it waits for."""
+
+
+class Applied(NamedTuple):
+    """A change that was made, and what was stuck before it."""
+
+    fix: Fix
+    rings: dict[Ring, str]
+    at: float
+    """When, by the monotonic clock."""
+
+
 class Groups(View):
     """Groups, waits and deadlocks."""
 
     NAME = "groups"
     DOC = "who holds and who waits; deadlocks, and the key that ends them"
+    LEAST_WIDTH = 60
     EVERY = 0.5
     ACTIONS: ClassVar[tuple[Action, ...]] = (
         Action("fix", "end the deadlock", keys=("f",), verb="graphflow groups move NODE HANDLER GROUP", hint=True),
-        Action("write", "keep the fix in the graph file", keys=("w",), hint=True),
+        Action(
+            "choose_fix", "other ways to end it", keys=("F",), verb="graphflow groups limit NODE GROUP N", hint=True
+        ),
+        Action("write", "keep it in the graph file", keys=("w",), hint=True),
         Action("source", "go to the line of source", keys=("enter",), hint=True),
-        Action("why", "the whole report", keys=("question_mark",), verb="graphflow waits"),
+        Action("why", "the whole report", keys=("r",), verb="graphflow waits", hint=True),
         Action("everything", "idle groups too", keys=("a",), hint=True),
         Action("copy", "copy the command that ends it", keys=("y",)),
     )
@@ -69,11 +89,17 @@ class Groups(View):
         self._lines.follows = False
         self._deadlocks: list[Deadlock] = []
         self._graph = WaitGraph()
-        self._moves: list[Move] = []
-        self._moved: list[Move] = []
-        """Moves made here, which are not in the graph file yet."""
+        self._fixes: list[list[Fix]] = []
+        """The changes that would end each of the deadlocks."""
+        self._made: list[Fix] = []
+        """Changes made here, which are not in the graph file yet."""
+        self._applied: Applied | None = None
+        """The last of them, until what became of it is known."""
+        self._outcome = ""
+        """The result of the last change, in words."""
+        self._is_freed = False
+        """Whether changes made here, or in the graph file meanwhile, have ended all deadlocks."""
         self._everything = False
-        self._unfrozen = ""
 
     def compose(self) -> ComposeResult:
         yield self._lines
@@ -90,7 +116,7 @@ class Groups(View):
     def note(self) -> str:
         if self._deadlocks:
             return f"✖ {len(self._deadlocks)} DEADLOCK{'S' if len(self._deadlocks) > 1 else ''}" + (
-                ", f ends it" if self._moves else ""
+                ", f ends it" if any(self._fixes) else ""
             )
         waiting = sum(a.wait is not FREE for a in self._graph.activities.values())
         return f"{waiting} waiting"
@@ -107,47 +133,81 @@ class Groups(View):
         if report is None:
             return
         self._graph = report.graph
-        before = len(self._deadlocks)
         self._deadlocks = live.deadlocks
-        self._moves = [move for d in self._deadlocks for move in moves(d, report.graph)]
-        if self._deadlocks:
-            self._unfrozen = ""
-        elif before and self._moved:
-            self._unfrozen = "It moves again."
+        self._fixes = [fixes(deadlock, report.graph) for deadlock in self._deadlocks]
+        self._is_freed &= not self._deadlocks
+        if self._applied is not None:
+            self._judge(self._applied, live.asked_at, now)
         kept = self._lines.cursor
-        rows = [*self._deadlock_rows(), *self._mended_rows(), *self._group_rows(report)]
+        rows = [*self._outcome_rows(), *self._deadlock_rows(), *self._race_rows(), *self._made_rows()]
+        rows += self._group_rows(report)
         top = self._lines.scroll_offset.y
         self._lines.replace(rows)
         self._lines.cursor = kept if kept is not None and kept < len(rows) else None
         self._lines.scroll_to(y=top, animate=False, immediate=True)
 
+    def _rings(self) -> dict[Ring, str]:
+        """The deadlocks as their headlines, by their members and the queues that those wait for."""
+        return {_key(deadlock): headline(deadlock, self._graph) for deadlock in self._deadlocks}
+
+    def _judge(self, applied: Applied, asked_at: float, now: float) -> None:
+        """Tell what has become of a change, once the answers are newer than it."""
+        if asked_at <= applied.at:
+            return
+        rings = self._rings()
+        ended = [text for ring, text in applied.rings.items() if ring not in rings]
+        limit = RESTARTED_WITHIN if isinstance(applied.fix, Thread) else JUDGED_AFTER
+        if not ended and now - applied.at < limit:
+            return
+        self._applied = None
+        fresh = sum(ring not in applied.rings for ring in rings)
+        left = f"{len(rings)} deadlock{'s' if len(rings) > 1 else ''}"
+        if not ended:
+            self._outcome = f"Still stuck {now - applied.at:.0f} s after it; F has other ways."
+            self.say(self._outcome, bad=True)
+        elif not rings:
+            self._outcome, self._is_freed = "It moves again.", True
+            self.say(f"ended: {_first_line(ended[0])}; nothing is stuck any more")
+        else:
+            which = f"a new one, {left} now" if fresh else f"{left} left"
+            self._outcome = f"One ended; {which}: f again."
+            self.say(f"ended: {_first_line(ended[0])}; {which}: f again")
+
     # what is drawn
 
     def _deadlock_rows(self) -> Iterator[Row]:
         ink, graph = self.ink, self._graph
-        for deadlock in self._deadlocks:
-            yield Row(Text(f" ✖ {headline(deadlock, graph)}", style=ink.bad))
+        for deadlock, found in zip(self._deadlocks, self._fixes, strict=True):
+            for i, line in enumerate(headline(deadlock, graph).split("\n")):
+                yield Row(Text(f" ✖ {line}" if i == 0 else f"   {line.strip()}", style=ink.bad))
             yield from self._ring(deadlock)
             for name in deadlock.victims[:10]:
                 yield Row(Text(f"     behind them: {title(graph.activities[name])}", style=ink.dim))
-            found = moves(deadlock, graph)
-            if found:
-                move = found[0]
-                who, its = " and ".join(move.handlers), "its" if len(move.handlers) == 1 else "their"
-                fix = Text.assemble(
-                    ("   f ", ink.accent), (f"gives {who} of {move.node} a group of {its} own", ink.strong)
-                )
-                yield Row(fix)
-                yield Row(Text(f"     $ {move.command}", style=ink.dim))
-                regrouping = graph.regrouping(move.node).moved(move.handlers, move.group)
-                lines = regrouping.lines(move.node, "")
-                yield Row(Text(f"     {regrouping.where} {lines[0]}", style=ink.dim))
-                yield from (Row(Text(f"       {line}", style=ink.dim)) for line in lines[1:])
-            else:
-                yield Row(Text("   no handler that could be moved now would end it; what does:", style=ink.warn))
-                for line in remedies(deadlock, graph) or ["  see the report: ?"]:
-                    yield Row(Text(f"   {plain_text(line)}", style=ink.text))
+            yield from self._fix_rows(deadlock, found)
             yield Row(Text(""))
+
+    def _fix_rows(self, deadlock: Deadlock, found: list[Fix]) -> Iterator[Row]:
+        """The ways to end a deadlock: those that a key makes, else those in the code."""
+        ink, graph = self.ink, self._graph
+        for i, fix in enumerate(found):
+            caution = f"   ({fix.caution})" if fix.caution else ""
+            text = (("   f  ", ink.accent), (fix.title, ink.strong)) if i == 0 else (("   F  ", ink.accent), fix.title)
+            yield Row(Text.assemble(*text, (caution, ink.dim)))
+            if i == 0:
+                regrouping = fix.made_in(graph.regrouping(fix.node))
+                lines = regrouping.lines(fix.node, "")
+                yield Row(Text(f"      $ {fix.command}", style=ink.dim))
+                yield Row(Text(f"      {regrouping.where} {lines[0]}", style=ink.dim))
+                yield from (Row(Text(f"        {line}", style=ink.dim)) for line in lines[1:])
+        if found:
+            yield Row(
+                Text.assemble(("   r  ", ink.accent), ("the whole report, with what ends it in the code", ink.dim))
+            )
+            return
+        yield Row(Text("   no key ends it while it runs; what does, in the code:", style=ink.warn))
+        for remedy in remedies(deadlock, graph) or ["see the report: r"]:
+            for line in remedy.split("\n"):
+                yield Row(Text(f"   {plain_text(line)}", style=ink.text))
 
     def _ring(self, deadlock: Deadlock) -> Iterator[Row]:
         """The ring, drawn: each member waits for the one below, the last for the first."""
@@ -169,22 +229,33 @@ class Groups(View):
                 yield Row(Text.assemble(("   │    ", ink.bad), (needs, ink.dim)))
             yield Row(Text("   └── back to the first" if i == last else "   │  ▼", style=ink.bad))
 
-    def _mended_rows(self) -> Iterator[Row]:
+    def _outcome_rows(self) -> Iterator[Row]:
+        """The result of the last change, above the deadlocks that are left, which look like those before it."""
+        ink, is_over = self.ink, not self._deadlocks
+        if self._made and self._outcome:
+            yield Row(Text(f" {'✔' if is_over else '●'} {self._outcome}", style=ink.good if is_over else ink.warn))
+
+    def _race_rows(self) -> Iterator[Row]:
+        """Updates that were lost: the source alone can be changed, so each line points there."""
         ink = self.ink
-        if not self._moved:
+        for report in self.hub.logs.races:
+            for i, line in enumerate(report):
+                text = f" ⇄ {line.text}" if i == 0 else f"   {line.text.strip()}"
+                yield Row(Text(text, style=ink.warn if i == 0 else ink.text), told=report[0])
+            yield Row(Text(""))
+
+    def _made_rows(self) -> Iterator[Row]:
+        ink = self.ink
+        if not self._made:
             return
-        if self._unfrozen:
-            yield Row(Text(f" ✔ {self._unfrozen}", style=ink.good))
-        for move in self._moved:
-            what = f"{' and '.join(move.handlers)} of {move.node} to group {move.group}"
-            yield Row(Text(f"   moved {what}, until the graph stops", style=ink.text))
-        yield Row(
-            Text.assemble(
-                ("   w ", ink.accent),
-                ("writes it into the graph file", ink.strong),
-                (", after showing the change", ink.dim),
-            )
+        for fix in self._made:
+            yield Row(Text(f"   done here: {fix.title}; until the graph stops", style=ink.text))
+        keep = (
+            ("   w  ", ink.accent),
+            ("keep it in the graph file", ink.strong),
+            (", after showing the change", ink.dim),
         )
+        yield Row(Text.assemble(*keep))
         yield Row(Text(""))
 
     def _group_rows(self, report: concurrency.ConcurrencyReport) -> Iterator[Row]:
@@ -228,6 +299,8 @@ class Groups(View):
             yield Row(Text(" in no group", style=ink.dim))
         for activity in sorted(others, key=lambda a: -a.age):
             yield self._activity_row(activity, "", activity.id in dead)
+        if not (self._deadlocks or self.hub.logs.races or self._made):
+            yield Row(Text(" no deadlock; for updates that are lost: graphflow up --races", style=ink.dim))
         if not by_node and not others:
             yield Row(Text(" no groups: each handler queues behind itself only", style=ink.dim))
         elif idle:
@@ -256,69 +329,96 @@ class Groups(View):
     # actions
 
     def offers(self, action: Action) -> bool:
-        has = {"fix": self._moves, "write": self._moved}
-        return action.hint and bool(has.get(action.name, True))
+        has = {"fix": any(self._fixes), "choose_fix": sum(map(len, self._fixes)) > 1, "write": bool(self._made)}
+        return action.hint and has.get(action.name, True)
+
+    def _refusal(self) -> str:
+        """Why there is nothing to apply; empty where there is."""
+        if not self._deadlocks:
+            return "a race is ended in the code: enter opens it" if self.hub.logs.races else "there is no deadlock"
+        return "" if any(self._fixes) else "no key ends it; what does stands below the ring"
 
     def do_fix(self) -> None:
-        if not self._moves:
-            self.say(
-                "no handler that could be moved now would end it; what does stands below the ring"
-                if self._deadlocks
-                else "there is no deadlock"
-            )
+        if refusal := self._refusal():
+            self.say(refusal)
             return
-        move = self._moves[0]
-        self.work(lambda: self._move(move), group="move")
+        fix = next(found[0] for found in self._fixes if found)
+        self.work(lambda: self._apply(fix), group="fix")
 
-    async def _move(self, move: Move) -> None:
-        live = self.hub.live
+    def do_choose_fix(self) -> None:
+        if refusal := self._refusal():
+            self.say(refusal)
+            return
+
+        def picked(fix: Fix | None) -> None:
+            if fix is not None:
+                self.work(lambda: self._apply(fix), group="fix")
+
+        items = [Item(fix.title, fix.caution, fix) for found in self._fixes for fix in found]
+        self.app.push_screen(Pick("End the deadlock: one of these", items), picked)
+
+    async def _apply(self, fix: Fix) -> None:
+        live, supervision = self.hub.live, self.hub.supervision
         assert live is not None
-        payloads = [
-            json.dumps({"node": move.node, "handler": handler, "group": move.group}).encode()
-            for handler in move.handlers
-        ]
+        rings = self._rings()
+        if isinstance(fix, Thread):
+            if supervision is None or fix.node not in supervision.nodes:
+                self.say(f"{fix.node} was not started by this graph's supervisor; in the code: thread=True", bad=True)
+                return
+            supervision.send(do="restart", node=fix.node, threads=list(fix.handlers))
+        else:
+            wanted = fix.requests
 
-        def ask(graph: Graph) -> None:
-            zid = graph.cache.owners(graph.node(move.node))[0].zid
-            for payload in payloads:
-                try:
-                    answer = graph.ask(answer_key(graph.domain, GROUPS, zid), payload, MOVE_LIMIT)
-                except TimeoutError:
-                    raise CallError(f"{move.node} did not answer within {MOVE_LIMIT:g} s") from None
-                if answer.is_error:
-                    raise RemoteError.from_payload(answer.payload, move.node)
+            def ask(graph: Graph) -> None:
+                concurrency.change_groups(graph, graph.node(fix.node), wanted, ANSWER_LIMIT)
 
-        await live.ask(ask)
-        self._moved.append(move)
-        self._unfrozen = ""
-        self.did(move.command)
-        self.hub.announce(move.command.removeprefix("graphflow "))
+            await live.ask(ask)
+        self._made.append(fix)
+        self._outcome = "The node is being started again ..." if isinstance(fix, Thread) else ""
+        self._applied = Applied(fix, rings, time.monotonic())
+        self.did(fix.command)
+        if not isinstance(fix, Thread):  # the supervisor tells the others of a restart
+            self.hub.announce(fix.command.removeprefix("graphflow "))
 
     def do_write(self) -> None:
-        if not self._moved:
-            self.say("nothing was moved here yet; f ends a deadlock by a move")
+        if not self._made:
+            self.say(
+                "nothing was changed here yet: f or F first" if any(self._fixes) else "nothing was changed here yet"
+            )
             return
         from graphflow.graph.edit import with_group
         from graphflow.tui.writing import write_nodes
 
-        made, graph = list(self._moved), self._graph
+        made, graph = list(self._made), self._graph
 
         def change(text: str, keys: dict[str, tuple[str, ...]]) -> str:
-            for move in made:
-                text = with_group(text, keys[move.node], move.group, move.handlers, graph.regrouping(move.node).groups)
+            for fix in made:
+                said = graph.regrouping(fix.node).groups
+                text = with_group(text, keys[fix.node], fix.group, fix.handlers, said, fix.settings)
             return text
 
-        write_nodes(self.console, {m.node for m in made}, change, "the groups moved here", self._moved.clear)
+        write_nodes(self.console, {fix.node for fix in made}, change, "the groups changed here", self._made.clear)
 
     def do_source(self) -> None:
+        rows = [*self._lines.whole_rows]
         row: Row | None = self._lines.chosen
-        place = row.place if row is not None else ""
-        if not place:
-            place = next((r.place for r in self._lines.whole_rows if r.place), "")
-        if place:
-            self.open("source", place)
-        else:
+        if row is None or not (row.place or row.told):
+            row = next((r for r in rows if r.place or r.told), None)
+        if row is None:
             self.say("nothing here waits in a line of source")
+        elif row.told is None:
+            self.open("source", row.place)
+        else:
+            report = row.told
+            self.work(lambda: self._open_report(report), group="source")
+
+    async def _open_report(self, report: Record) -> None:
+        live = self.hub.live
+        place = None if live is None else await live.source_of(report.stamp, report.text)
+        if place is None:
+            self.say("this report is older than the console: its line of source is not known here")
+        else:
+            self.open("source", place)
 
     def do_why(self) -> None:
         self.open("prompt", "waits", run=True)
@@ -328,13 +428,22 @@ class Groups(View):
         self.look(0.0)
 
     def do_copy(self) -> None:
-        made = self._moves[0].command if self._moves else self.console.last_shell
-        self.console.copy_to_clipboard(made)
-        self.say(f"copied: {made}")
+        best = next((found[0].command for found in self._fixes if found), "")
+        made = best or self.console.last_shell
+        self.console.copy(made)
 
 
 def _place(activity: ActivityView) -> str:
     return f"{activity.place.file}:{activity.place.line}" if activity.place.file else ""
+
+
+def _key(deadlock: Deadlock) -> Ring:
+    """The identity of a deadlock between two looks: who waits, and for which handler."""
+    return frozenset((name, edge.queue) for name, edge in zip(deadlock.ring, deadlock.edges, strict=True))
+
+
+def _first_line(text: str) -> str:
+    return text.partition("\n")[0]
 
 
 def _short(place: str) -> str:

@@ -1,61 +1,113 @@
-"""All keys: the console's and those of every view, from the one table they are made of."""
+"""All keys: the console's and those of every view, from the one table they are made of; found by typing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from rich.text import Text
+from textual import events
 from textual.app import ComposeResult
 from textual.widget import Widget
+from textual.widgets import Input
 
 from graphflow.graph.console import known_views
-from graphflow.tui.actions import CONSOLE, keys_of, shown
+from graphflow.tui.actions import CONSOLE, Action, keys_of, shown
+from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
+from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
 from graphflow.tui.view import View
 
+KEYS_WIDTH = 22
+"""Columns of the keys."""
+_SCROLL = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
+
+
+class KeyLines(Lines):
+    """Keys in a column, and beside it what they do, over several lines if need be."""
+
+    def hanging(self, row: Text) -> int | None:
+        return KEYS_WIDTH + 3 if row.plain.startswith("  ") else None
+
 
 class Help(View):
-    """All keys."""
+    """All keys, first those of the view that one comes from: the option `first`."""
 
     NAME = "help"
     DOC = "all keys of the console and of every view"
 
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._first = str(self.options.pop("first", ""))
+        self._find = Input(placeholder="type to find a key or what it does; ↑↓ scroll")
+        self._lines = KeyLines(wraps=True)
+
     def compose(self) -> ComposeResult:
-        self._lines = Lines()
+        yield self._find
         yield self._lines
 
     def on_mount(self) -> None:
         self._lines.follows = False
-        self._lines.replace(list(self._rows()))
+        self._show("")
 
-    def _rows(self) -> Iterator[Text]:
+    def restyle(self) -> None:
+        self._show(self._find.value)
+
+    def _show(self, wanted: str) -> None:
+        rows = list(self._rows(wanted.lower().strip()))
+        self._lines.replace(rows or [Text(f"nothing here has {wanted!r}", style=self.ink.warn)])
+        self._lines.scroll_home(animate=False, immediate=True)
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        event.stop()
+        self._show(event.value)
+
+    def on_key(self, event: events.Key) -> None:
+        if event.key in _SCROLL and self._find.has_focus:
+            event.stop()
+            self._lines.scroll_relative(y=_SCROLL[event.key], animate=False, immediate=True)
+
+    def _rows(self, wanted: str) -> Iterator[Text]:
         ink, prefix = self.ink, self.console.prefix
-        yield Text.assemble(
-            ("The prefix is ", ink.text), (shown(prefix), ink.accent), (": press it, let go, then the key.", ink.text)
-        )
+        if not wanted:
+            yield Text.assemble(
+                ("The prefix is ", ink.text),
+                (shown(prefix), ink.accent),
+                (": press it, let go, then the key.", ink.text),
+            )
+        names = [*(name for name in known_views() if name == self._first)]
+        for name in names:
+            yield from self._view(name, wanted)
         for section, actions in CONSOLE.items():
-            yield Text("")
-            yield Text(section, style=ink.strong)
-            for action in actions:
-                yield self._row(keys_of(action, prefix), action.title, action.verb)
+            yield from self._section(Text(section, style=ink.strong), actions, wanted)
         for name in known_views():
-            view = view_class(name)
-            yield Text("")
-            yield Text.assemble((f"View {name}", ink.strong), (f"   {view.DOC}", ink.dim))
-            for action in view.ACTIONS:
-                yield self._row(keys_of(action, prefix), action.title, action.verb)
+            if name not in names:
+                yield from self._view(name, wanted)
+
+    def _view(self, name: str, wanted: str) -> Iterator[Text]:
+        view, ink = view_class(name), self.ink
+        head = Text.assemble((f"View {name}", ink.strong), (f"   {view.DOC}", ink.dim))
+        yield from self._section(head, view.ACTIONS, wanted, show_empty=not wanted)
+
+    def _section(
+        self, head: Text, actions: Iterable[Action], wanted: str, *, show_empty: bool = False
+    ) -> Iterator[Text]:
+        """A headline and its actions, as far as they have what is wanted."""
+        rows = [self._row(keys_of(a, self.console.prefix), a.title, a.verb) for a in actions]
+        rows = [row for row in rows if wanted in row.plain.lower() or wanted in head.plain.lower()]
+        if rows or show_empty:
+            yield from (Text(""), head, *rows)
 
     def _row(self, keys: str, title: str, shell: str) -> Text:
         ink = self.ink
-        text = Text.assemble((f"  {keys:22}", ink.accent), (f" {title}", ink.text))
+        text = Text.assemble((f"  {keys:{KEYS_WIDTH}}", ink.accent), (f" {title}", ink.text))
         if shell:
             text.append(f"   $ {shell}", style=ink.dim)
         return text
 
     @property
     def heart(self) -> Widget:
-        return self._lines
+        return self._find
 
 
 VIEW = Help

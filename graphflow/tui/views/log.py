@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from rich.style import Style
 from textual.app import ComposeResult
@@ -14,25 +14,41 @@ from textual.widgets import Input
 from graphflow.tui.actions import Action
 from graphflow.tui.hub import Hub
 from graphflow.tui.lines import KEPT, Lines
-from graphflow.tui.logs import LEVELS, Record
+from graphflow.tui.logs import LEVELS, WARNING, Logs, Record
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 
 _PLACE = re.compile(r'(?:File "([^"]+)", line (\d+))|((?:[\w./-]+/)?[\w-]+\.(?:py|yaml)):(\d+)')
 _NAME_WIDTH = 18
+MORE_ROOM, MORE_INDENT = 60, 2
+"""Columns beside the names that the further lines of a report need; with fewer, they begin at that column."""
 
 
 class LogLines(Lines):
     """The records, each on one line."""
 
+    HAS_SEARCH = False
+
     def __init__(self, log: Log) -> None:
-        super().__init__(KEPT, wraps=bool(log.options.get("wrap")))
+        super().__init__(KEPT, wraps=bool(log.options.get("wrap", True)))
         self._log = log
+
+    def hanging(self, row: Record) -> int | None:
+        indent, text = self._indented(row)
+        return indent + len(text) - len(text.lstrip(" "))
+
+    def _indented(self, row: Record) -> tuple[int, str]:
+        """The column at which a record begins, and its text: where there is little room, what goes on stands left."""
+        if not row.is_more or self._log.size.width - self._log.indent >= MORE_ROOM:
+            return self._log.indent, row.text
+        text = row.text.lstrip(" ")
+        return MORE_INDENT, " " * ((len(row.text) - len(text)) // 2) + text
 
     def draw(self, row: Record) -> Iterable[tuple[str, Style]]:
         ink, log = self.ink, self._log
+        indent, text = self._indented(row)
         if row.is_more:
-            yield " " * log.indent, ink.dim
+            yield " " * indent, ink.dim
         else:
             if log.size.width > 60:
                 yield f"{time.strftime('%H:%M:%S', time.localtime(row.stamp))} ", ink.dim
@@ -41,7 +57,7 @@ class LogLines(Lines):
                 yield f"{name.ljust(log.name_width)} ", ink.node(row.node)
             if row.level >= 2:
                 yield f"{LEVELS[row.level]} ", ink.level(row.level)
-        text, style = row.text, ink.level(row.level)
+        style = ink.level(row.level)
         found = log.pattern.search(text) if log.pattern is not None else None
         if found is None or found.end() == found.start():
             yield text, style
@@ -49,6 +65,8 @@ class LogLines(Lines):
             yield text[: found.start()], style
             yield found.group(), ink.match
             yield text[found.end() :], style
+        if row.times > 1:
+            yield f"  x{row.times}", ink.accent
 
 
 class Log(View):
@@ -56,6 +74,7 @@ class Log(View):
 
     NAME = "log"
     DOC = "what nodes have written: all, one node, or a namespace"
+    LEAST_WIDTH = 40
     EVERY = 0.1
     ACTIONS = (
         Action("filter", "filter", keys=("slash",), verb="graphflow logs {node}", hint=True),
@@ -82,8 +101,12 @@ class Log(View):
         self.name_width = 4
         self._lines = LogLines(self)
         self._filter = Input(str(self.options.get("filter", "")), placeholder="regular expression", classes="find")
+        self._own: Logs | None = None
+        """The records of one node or namespace, read from its own files: however much others write, none is missing."""
         self._read = 0
         """Number of the first record that has not been looked at."""
+        self._goes_to = str(self.options.pop("at", ""))
+        """The record to go to first: its file and offset."""
         self._bad = ""
         self._muted: frozenset[str] = frozenset()
 
@@ -110,8 +133,15 @@ class Log(View):
             words.append(f"{LEVELS[self.level].lower()}+")
         if self.hub.muted and not self.about:
             words.append(f"{len(self.hub.muted)} muted")
-        words.append("follow ▼" if self._lines.follows else f"{len(self._lines.rows)} lines, f follows")
+        if self._source.lost and self.level < WARNING:
+            words.append(f"{self._source.lost:,} older ones gone{'' if self.about else ', o shows one node'}")
+        lines = len(self._lines.rows)
+        words.append("follow ▼" if self._lines.follows else f"{lines} line{'' if lines == 1 else 's'}, f follows")
         return " ".join(words)
+
+    @property
+    def _source(self) -> Logs:
+        return self._own or self.hub.logs
 
     @property
     def shows_names(self) -> bool:
@@ -122,20 +152,55 @@ class Log(View):
         return (9 if self.size.width > 60 else 0) + (self.name_width + 1 if self.shows_names else 0)
 
     def look(self, now: float) -> None:
-        logs = self.hub.logs
+        if self.about and self._own is None and (own := self.hub.own_logs(self.about)) is not None:
+            self._own, self._read = own, 0
+            self._lines.replace([])
+        if self._own is not None:
+            self._own.read()
+        logs = self._source
+        if self.about in self.hub.nodes():
+            self.hub.seen[self.about] = (self.hub.logs.errors[self.about], self.hub.logs.warnings[self.about])
         if self._muted != frozenset(self.hub.muted) and not self.about:
             self._again()
         widest = max((len(name) for name in logs.counts), default=4)
         width = min(widest, _NAME_WIDTH if self.size.width < 100 else 30)
         if width != self.name_width:
             self.name_width = width
-            self._lines.refresh()
+            self._lines.wrap(self._lines.wraps)
         if logs.total == self._read:
             return
         fresh = [record for record in logs.since(self._read) if self._fits(record)]
         self._read = logs.total
-        if fresh:
-            self._lines.extend(fresh)
+        self._add(fresh)
+        if self._goes_to:
+            self._go_to_record()
+
+    def asked_again(self, content: Content) -> None:
+        self._goes_to = str(content.options.get("at", ""))
+        self._go_to_record()
+
+    def _add(self, fresh: list[Record]) -> None:
+        """Show more records; a line that comes several times in a row only once."""
+        lines = self._lines
+        folded = list(_folded(fresh))
+        last = lines.last_row
+        if folded and isinstance(last, Record) and folded[0].repeats(last):
+            times = last.times + folded.pop(0).times
+            lines.replace_last(last._replace(times=times))
+        if folded:
+            lines.extend(folded)
+
+    def _go_to_record(self) -> None:
+        """Put the cursor on the record that was asked for, once it is there."""
+        lines = self._lines
+        for i in range(len(lines.rows)):
+            record = lines.row_that_begins(i)
+            if isinstance(record, Record) and f"{record.file}:{record.offset}" == self._goes_to:
+                self._goes_to = ""
+                lines.hold()
+                lines.cursor = i
+                lines.scroll_to(y=max(0, i - 2), animate=False, immediate=True)
+                return
 
     def _fits(self, record: Record) -> bool:
         if record.level < self.level:
@@ -150,8 +215,10 @@ class Log(View):
     def _again(self) -> None:
         """Look at all records once more: what is shown has changed."""
         self._muted = frozenset(self.hub.muted)
-        self._lines.replace([r for r in self.hub.logs.since(0) if self._fits(r)])
-        self._read = self.hub.logs.total
+        source = self._source
+        kept = source.serious if self.level >= WARNING else source.since(0)
+        self._lines.replace(_folded([record for record in kept if self._fits(record)]))
+        self._read = source.total
 
     def _compile(self, text: str) -> None:
         try:
@@ -260,8 +327,21 @@ class Log(View):
         if record is None:
             self.say("choose a line first: ↑ or a click")
         else:
-            self.console.copy_to_clipboard(record.text)
-            self.say("copied the line")
+            self.console.copy(record.text, "the line")
+
+
+def _folded(records: Iterable[Record]) -> Iterator[Record]:
+    """The records, those that are the same as the one before counted on it."""
+    last: Record | None = None
+    for record in records:
+        if last is not None and record.repeats(last):
+            last = last._replace(times=last.times + record.times)
+            continue
+        if last is not None:
+            yield last
+        last = record
+    if last is not None:
+        yield last
 
 
 def place_in(text: str) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -46,11 +47,16 @@ class Params(TableView):
 
     NAME = "params"
     DOC = "parameters: value, range, source; changed in place"
+    LEAST_WIDTH = 56
     EMPTY = "no node here has parameters"
     COLUMNS = ("parameter", "value", "from", "range", "type", "what it is")
+    SHED = ("parameter", "value", "range", "from", "what it is", "type")
+    KEEPS = 2
+    STRETCHES = True
     EVERY = 0.5
     ACTIONS = (
         Action("change", "change", keys=("enter", "e"), verb="graphflow param set {node} {parameter} VALUE", hint=True),
+        Action("undo", "undo", keys=("u",), hint=True),
         Action("save", "save to the graph file", keys=("ctrl+s",), hint=True),
         Action("reload", "read again", keys=("R",)),
         FIND,
@@ -62,6 +68,8 @@ class Params(TableView):
         self._rows: dict[str, Row] = {}
         self._changed: dict[tuple[str, str], Any] = {}
         """Values set while looking on, by node and name."""
+        self._before: list[tuple[Row, Any]] = []
+        """Parameters set here, with the values that they had."""
         self._edited = ""
         self._input = Input(classes="find")
         self._events: Tap | None = None
@@ -192,6 +200,19 @@ class Params(TableView):
             return
         row = self._rows[self._edited]
         text = event.value
+        self.work(lambda: self._change(row, text), group="set")
+
+    async def _change(self, row: Row, text: str) -> None:
+        await self._set(row, text)
+        self._before.append((row, row.value))
+
+    def do_undo(self) -> None:
+        """Give the parameter that was set last the value that it had before."""
+        if not self._before:
+            self.say("no parameter was set in this pane")
+            return
+        row, value = self._before.pop()
+        text = value if isinstance(value, str) and value else flow(value)
         self.work(lambda: self._set(row, text), group="set")
 
     async def _set(self, row: Row, text: str) -> None:
@@ -212,9 +233,9 @@ class Params(TableView):
         self._changed[row.node, row.name] = None
         self._stale = True
         self._close_input()
-        quoted = text if text.isalnum() else f"'{text}'"
-        self.did(f"graphflow param set {row.node} {row.name} {quoted}")
-        self.hub.announce(f"param set {row.node} {row.name} {quoted}")
+        command = shlex.join(["param", "set", row.node, row.name, text])
+        self.did(f"graphflow {command}")
+        self.hub.announce(command)
 
     def _close_input(self) -> None:
         self._input.remove_class("shown")
@@ -250,8 +271,7 @@ class Params(TableView):
     def do_copy(self) -> None:
         row = self._rows.get(self.key)
         if row is not None:
-            self.console.copy_to_clipboard(flow(row.value))
-            self.say(f"copied: {flow(row.value)}")
+            self.console.copy(flow(row.value))
 
     def closed(self) -> None:
         if self._events is not None:

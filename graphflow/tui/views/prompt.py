@@ -15,7 +15,8 @@ from textual.widget import Widget
 from textual.widgets import Input
 
 from graphflow.tui.actions import Action, shown
-from graphflow.tui.completion import Completer
+from graphflow.tui.completion import Completer, completed, nothing_to_complete
+from graphflow.tui.history import without_program
 from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
 from graphflow.tui.logs import plain_text
@@ -25,7 +26,6 @@ from graphflow.tui.view import View
 CHUNK = 1 << 16
 WAITING = 2_000
 """Lines that may wait to be drawn; what comes faster is counted and left out."""
-HISTORY = 200
 WELCOME = (
     "Any verb of graphflow: topic echo /turtle1/pose, param set ..., action send_goal ...",
     "tab completes, ↑ recalls, ^c ends what runs; f2 shows a view here instead.",
@@ -37,17 +37,16 @@ class Prompt(View):
 
     NAME = "prompt"
     DOC = "type any graphflow verb; its output streams here"
+    LEAST_WIDTH = 48
     EVERY = 0.1
     ACTIONS = (
         Action("complete", "complete", keys=("tab",), hint=True),
         Action("interrupt_it", "end what runs", keys=("ctrl+c",), hint=True),
     )
 
-    past: list[str] = []  # noqa: RUF012 - one history for all prompts of a console
-
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._lines = Lines(10_000, wraps=True)
+        self._lines = Lines(10_000, wraps=True, copies=True)
         self._input = Input(placeholder="a command, such as: topic list", classes="line")
         self._completer = Completer(hub)
         self._runs_at_once = bool(self.options.pop("run", False))
@@ -55,15 +54,19 @@ class Prompt(View):
         self._fresh: deque[tuple[str, str]] = deque()
         self._lost = 0
         self._at = 0
+        self._was_interrupted = False
+        """Whether the command that runs, or ran last, was asked to end."""
+        self._offered: list[str] = []
+        """The completions that were printed last."""
 
     def compose(self) -> ComposeResult:
         yield self._lines
         yield self._input
 
     def on_mount(self) -> None:
-        self._at = len(self.past)
+        self._at = len(self.hub.history.lines)
         if self.about and self._runs_at_once:
-            self._run(self.about)
+            self._run(self.about, at_once=True)
         elif self.about:  # it came back with the windows: what it did need not be wanted twice
             self._input.value = self.about
             self._lines.extend([Text("enter runs this again", style=self.ink.dim)])
@@ -99,20 +102,24 @@ class Prompt(View):
         self._input.value = ""
         if not text:
             return
-        if not self.past or self.past[-1] != text:
-            self.past.append(text)
-            del self.past[:-HISTORY]
-        self._at = len(self.past)
+        self.hub.history.add(text)
+        self._at = len(self.hub.history.lines)
         if text in ("clear", "exit", "quit"):
             self._lines.replace([]) if text == "clear" else self.console.deeds.do_close_pane()
             return
         self._run(text)
 
+    def on_input_changed(self, event: Input.Changed) -> None:
+        if event.value == ":":  # as anywhere else: no verb begins with it
+            self._input.value = ""
+            self.console.deeds.do_command()
+
     def on_key(self, event: events.Key) -> None:
         if event.key in ("up", "down") and self._input.has_focus:
             event.stop()
-            self._at = max(0, min(len(self.past), self._at + (1 if event.key == "down" else -1)))
-            self._input.value = self.past[self._at] if self._at < len(self.past) else ""
+            past = self.hub.history.lines
+            self._at = max(0, min(len(past), self._at + (1 if event.key == "down" else -1)))
+            self._input.value = past[self._at] if self._at < len(past) else ""
             self._input.cursor_position = len(self._input.value)
 
     def do_complete(self) -> None:
@@ -120,24 +127,28 @@ class Prompt(View):
         self.work(self._complete, group="complete")
 
     async def _complete(self) -> None:
-        text, choices = await self._completer.complete(self._input.value)
-        self._input.value = text
-        self._input.cursor_position = len(text)
-        if len(choices) > 1:
+        text, choices = await completed(self._input, self._completer)
+        if not choices:
+            self.say(nothing_to_complete(text))
+        if len(choices) > 1 and choices != self._offered:
+            self._offered = choices
             shown = "  ".join(choices[:60]) + (f"  ... {len(choices)} in all" if len(choices) > 60 else "")
             self._lines.extend([Text(shown, style=self.ink.dim)])
 
     # what runs
 
-    def _run(self, text: str) -> None:
+    def _run(self, text: str, *, at_once: bool = False) -> None:
+        self._runs_at_once = at_once
         if self._process is not None:
             self.say("a command is running here; ^c ends it, or open another pane", bad=True)
             return
-        text = text.removeprefix("graphflow ").removeprefix("gf ").removeprefix("ros2 ").strip()
+        text = without_program(text)
         self.about = text
         self.work(lambda: self._stream(text))
 
     async def _stream(self, text: str) -> None:
+        self._was_interrupted = False
+        self._lines.action_bottom()
         self._lines.extend([Text(f"$ graphflow {text}", style=self.ink.accent)])
         self._lost = 0
         try:
@@ -167,6 +178,10 @@ class Prompt(View):
             code = await process.wait()
             if code:
                 self._fresh.append((f"exit code {code}", "bad"))
+            if self._runs_at_once and not self._was_interrupted:  # opened to be read, from the top
+                self.look(0.0)
+                self._lines.hold()
+                self._lines.scroll_home(animate=False, immediate=True)
         finally:
             if process.returncode is None:
                 process.kill()
@@ -189,10 +204,13 @@ class Prompt(View):
             self._fresh.append((plain_text(rest.decode(errors="replace")), style))
 
     def interrupt(self) -> bool:
-        """End what runs, as Ctrl-C does; returns whether anything did."""
+        """End what runs, or clear the line: in a shell, Ctrl-C never goes further than that."""
         if self._process is None or self._process.returncode is not None:
-            return False
-        self._process.send_signal(signal.SIGINT)
+            self._input.value = ""
+            self.say(f"nothing runs here any more; {shown(self.console.prefix)} S asks to stop the graph")
+        else:
+            self._was_interrupted = True
+            self._process.send_signal(signal.SIGINT)
         return True
 
     def do_interrupt_it(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -31,6 +32,7 @@ class Source(View):
 
     NAME = "source"
     DOC = "the file and line of a wait or a log line"
+    LEAST_WIDTH = 56
     ACTIONS = (
         Action("edit", "open in $EDITOR", keys=("e",), hint=True),
         Action("back", "back to the line", keys=("b",), hint=True),
@@ -78,8 +80,18 @@ class Source(View):
         self._lines.extend([])
         self.call_after_refresh(self.do_back)
 
+    def on_resize(self) -> None:
+        """Keep the line in the middle, until another one is chosen: a new pane has its size only after a while."""
+        if self._lines.cursor == self._at:
+            self.call_after_refresh(self.do_back)
+
+    @property
+    def _at(self) -> int:
+        """The row of the line."""
+        return min(self._line - 1, max(0, len(self._lines.rows) - 1))
+
     def do_back(self) -> None:
-        self._lines.cursor = min(self._line - 1, max(0, len(self._lines.rows) - 1))
+        self._lines.cursor = self._at
         height = self._lines.scrollable_content_region.height
         self._lines.scroll_to(y=max(0, self._line - 1 - height // 2), animate=False, immediate=True)
         self._lines.refresh()
@@ -95,8 +107,7 @@ class Source(View):
 
     def do_copy(self) -> None:
         place = f"{self._file or self.about}:{(self._lines.cursor or 0) + 1}"
-        self.console.copy_to_clipboard(place)
-        self.say(f"copied: {place}")
+        self.console.copy(place)
 
 
 def edit(view: View, file: Path, line: int) -> None:
@@ -106,10 +117,21 @@ def edit(view: View, file: Path, line: int) -> None:
         view.say("set EDITOR, for example export EDITOR=nano", bad=True)
         return
     try:
-        with view.app.suspend():
-            subprocess.run([*shlex.split(editor), f"+{line}", str(file)], check=False)
-    except (OSError, ValueError) as error:
-        view.say(f"{editor}: {error}", bad=True)
+        words = shlex.split(editor)
+    except ValueError as error:
+        view.say(f"EDITOR is {editor!r}: {error}", bad=True)
+        return
+    if not words or shutil.which(words[0]) is None:
+        view.say(f"EDITOR is {editor!r}, and there is no such program: install it, or export EDITOR=nano", bad=True)
+        return
+    trouble = ""
+    with view.app.suspend():  # which Textual does not end when something is raised in it
+        try:
+            subprocess.run([*words, f"+{line}", str(file)], check=False)
+        except OSError as error:
+            trouble = f"{editor}: {error.strerror}"
+    if trouble:
+        view.say(trouble, bad=True)
 
 
 def find_file(name: str, roots: list[Path]) -> Path | None:

@@ -12,7 +12,7 @@ from graphflow.system import host_name
 from graphflow.tui.actions import Action
 from graphflow.tui.hub import Hub
 from graphflow.tui.panes import Content
-from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.tui.table import FIND, ORDER, Cells, TableView
 
 
 class Top(TableView):
@@ -20,12 +20,14 @@ class Top(TableView):
 
     NAME = "top"
     DOC = "what each process costs, the dearest first"
+    LEAST_WIDTH = 48
     COLUMNS = ("pid", "cpu", "mem", "threads", "time", "nodes")
     EVERY = 2.0
     ACTIONS = (
         Action("log", "log", keys=("l", "enter"), verb="graphflow logs {node}", hint=True),
         Action("by_memory", "sort by memory, or cpu", keys=("M",), hint=True),
         FIND,
+        ORDER,
     )
 
     def __init__(self, hub: Hub, content: Content) -> None:

@@ -1,4 +1,4 @@
-"""All topics: their types, who is on them, how fast they are, and what does not fit."""
+"""All topics, or those of a node: their types, who is on them, how fast they are, and what does not fit."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from rich.text import Text
 
 from graphflow.introspect.picture import misfit
 from graphflow.tui.actions import Action
-from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.tui.table import FIND, ORDER, Cells, TableView
 from graphflow.wire.liveliness import Entity, Kind
 
 
@@ -15,8 +15,11 @@ class Topics(TableView):
 
     NAME = "topics"
     DOC = "every topic: type, publishers, subscriptions, rate"
+    LEAST_WIDTH = 56
     EMPTY = "no topics yet; a shows hidden ones"
     COLUMNS = ("topic", "type", "pub", "sub", "rate", "fits")
+    SHED = ("topic", "pub", "sub", "fits", "rate", "type")
+    KEEPS = 1
     EVERY = 1.0
     ACTIONS = (
         Action("echo", "echo", keys=("enter", "e"), verb="graphflow topic echo {topic}", hint=True),
@@ -25,6 +28,7 @@ class Topics(TableView):
         Action("info", "info", keys=("i",), verb="graphflow topic info -v {topic}", hint=True),
         Action("hidden", "hidden ones too", keys=("a",)),
         FIND,
+        ORDER,
         Action("copy", "copy the name", keys=("y",)),
     )
 
@@ -36,12 +40,14 @@ class Topics(TableView):
             return {}
         live.want("numbers")
         ends: dict[str, list[Entity]] = {}
-        for entity in live.cache:
+        for entity in live.others():
             if entity.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
                 ends.setdefault(entity.name, []).append(entity)
         found: dict[str, Cells] = {}
         for name, types in live.cache.topics(hidden=self.shows_hidden).items():
             there = ends.get(name, [])
+            if self.about and not any(e.node_name == self.about for e in there):
+                continue
             publishers = sum(e.kind is Kind.PUBLISHER for e in there)
             rate = live.numbers.published(name)
             trouble = misfit(there)
@@ -85,8 +91,7 @@ class Topics(TableView):
         self.look(0.0)
 
     def do_copy(self) -> None:
-        self.console.copy_to_clipboard(self.key)
-        self.say(f"copied: {self.key}")
+        self.console.copy(self.key)
 
 
 VIEW = Topics

@@ -57,35 +57,35 @@ class Tour(Groups):
         fixed = str(self.options.get("fixed", ""))
         if fixed:
             return f"Repaired, and it runs; see the log. What its file now says:\n{fixed}", [go_on]
-        if self._deadlocks and self._moves:
+        if self._deadlocks and any(self._fixes):
             return "It stands still. The ring below says who waits for whom, and in which line.", [
-                ("f", "end it: give one handler a group of its own, while the graph runs"),
+                ("f", f"end it, while the graph runs: {next(found[0].title for found in self._fixes if found)}"),
                 ("enter", "look at the line of source"),
             ]
         if self._deadlocks:
             return (
-                "It stands still. The ring below says why. What runs keeps its slot: no move ends it now.",
+                "It stands still. The ring below says why, and what ends it in the code.",
                 [
                     ("enter", "look at the line of source"),
                     repaired,
                 ],
             )
-        if self._unfrozen and self._moved:
+        if self._is_freed and self._made:
             return "It moves again; see the log. The change lasts until the graph stops.", [
                 ("w", "keep it: write it into the graph file"),
                 go_on,
             ]
-        if self._unfrozen:
+        if self._is_freed:
             return "It moves again, and the graph file keeps it that way.", [go_on]
-        if self._moved:
-            return "The handler is being moved ...", []
+        if self._applied is not None:
+            return "It is being changed ...", []
         if time.monotonic() - self._began < float(self.options.get("seconds", 0.0)) + 2.0:
             return "Everything runs. In a moment it will not: wait.", []
         return "No ring: nothing waits for ever here, things happen in the wrong order. See the log.", [repaired]
 
     def do_go_on(self) -> None:
         """Leave for what comes next."""
-        is_done = bool(self.options.get("fixed")) or bool(self._unfrozen)
+        is_done = bool(self.options.get("fixed")) or self._is_freed
         self.console.run_worker(self.console.leave("next" if is_done else "fixed"))
 
 

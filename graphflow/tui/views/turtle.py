@@ -89,7 +89,7 @@ class Turtles(View):
         pose = self._drawing.turtles.get(self._driven)
         if pose is None:
             return ""
-        return f"x {pose.x:.1f}  y {pose.y:.1f}  {math.degrees(pose.theta):4.0f}°"
+        return f"x {pose.x:.1f}  y {pose.y:.1f}  {round(math.degrees(pose.theta)):4d}°"
 
     def look(self, now: float) -> None:
         live = self.hub.live

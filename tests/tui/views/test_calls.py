@@ -7,7 +7,6 @@ from textual.widgets import Input
 
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
-from graphflow.tui.views.calls import Calls
 from tests.tui.nodes import Talker
 from tests.tui.stage import Stage, stage
 
@@ -20,7 +19,6 @@ def line(s: Stage, name: str) -> Input:
 
 async def test_calling(graph: Graph) -> None:
     """Fill in, send, read; the same request as a shell command; history."""
-    Calls.asked.clear()
     await graph.start(Talker())
     async with stage(Content("calls"), graph=graph, size=(110, 34)) as s:
         await s.until("/add")
@@ -29,22 +27,41 @@ async def test_calling(graph: Graph) -> None:
         await s.until(lambda: bool(s.view.query("Form")))
         await s.until(lambda: s.console.focused is line(s, "a"))
         await s.type("40")
-        line(s, "b").value = "2"
-        await s.until("$ graphflow service call /add example_interfaces/srv/AddTwoInts '{a: 40, b: 2}'")
+        await s.press("tab")
+        await s.type("2")
+        await s.until("$ graphflow service call /add example_interfaces/srv/AddTwoInts\n '{a: 40, b: 2}'")
         line(s, "a").value = "forty"
         await s.press("ctrl+s")
         await s.until("expected")
         line(s, "a").value = "40"
         await s.press("ctrl+s")
         await s.until("sum: 42")
-        assert Calls.asked["/add"] == [{"a": 40, "b": 2}]
         line(s, "a").value = "1"
-        await s.press("ctrl+s")
+        await s.press("down", "enter")
         await s.until("sum: 3")
         await s.press("ctrl+up")
+        await s.until("1 of 2 made before")
         assert line(s, "a").value == "40"
+        await s.press("ctrl+down", "ctrl+down")
+        await s.until("the defaults")
+        assert line(s, "a").value == "0"
         await s.press("escape")
         await s.until("services")
+
+
+async def test_requests_of_earlier_consoles(graph: Graph) -> None:
+    """They are the commands of its history, those that were typed as well."""
+    await graph.start(Talker())
+    async with stage(Content("calls", "/talker/get_parameters"), Content("calls", "/add"), graph=graph) as s:
+        await s.until(lambda: bool(s.view.query("Form")))
+        await s.press("ctrl+up")
+        await s.until("no request to /talker/get_parameters was made before")
+        s.console.hub.history.add("ros2 service call /add example_interfaces/srv/AddTwoInts '{a: 5}'")
+        await s.prefix("1")
+        await s.until(lambda: bool(s.view.query("Form")))
+        await s.press("ctrl+up")
+        await s.until("1 of 1 made before")
+        assert line(s, "a").value == "5"
 
 
 async def test_a_service_by_name(graph: Graph) -> None:

@@ -57,7 +57,7 @@ async def test_a_topic_that_nobody_publishes(graph: Graph) -> None:
     """It says so, and begins when somebody does."""
     async with stage(Content("echo", "/chatter"), graph=graph) as s:
         await s.look()
-        assert "nobody publishes /chatter yet" in s.text
+        await s.until("nobody publishes /chatter yet")
         node = Talker()
         await graph.start(node)
         await s.look()

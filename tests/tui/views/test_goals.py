@@ -31,7 +31,7 @@ async def test_a_goal_of_somebody_else(graph: Graph) -> None:
         await s.until("○ canceled")
         assert sent.done
         await s.press("c")
-        assert "the goal has ended" in s.text
+        await s.until("the goal has ended")
 
 
 async def test_sending(graph: Graph) -> None:
@@ -49,3 +49,8 @@ async def test_sending(graph: Graph) -> None:
         await graph.clock.advance(6.0)
         await s.until("● succeeded")
         await s.until("sequence: [0, 1, 1, 2]")
+        await s.press("n")
+        await s.until(lambda: bool(s.view.query("Form")))
+        await s.press("ctrl+up")
+        await s.until("1 of 1 made before")
+        assert next(i for i in s.view.query(Input) if i.name == "order").value == "7"

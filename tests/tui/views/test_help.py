@@ -22,3 +22,30 @@ async def test_every_action_is_in_it() -> None:
     for name in VIEWS:
         for action in view_class(name).ACTIONS:
             assert f"  {keys_of(action, 'ctrl+b'):22} {action.title}" in text
+
+
+async def test_long_lines_go_on_beside_the_keys() -> None:
+    """Where they would be cut on 80 columns."""
+    async with stage(Content("nodes"), size=(80, 24)) as s:
+        await s.press("f1")
+        await s.type("lifecycle set")
+        await s.until("set {node} TRANSITION")
+        lines = s.text.split("\n")
+        keys = next(line for line in lines if "change its life cycle" in line)
+        assert next(line for line in lines if "TRANSITION" in line).index("set") == keys.index("change")
+
+
+async def test_it_is_found_by_typing() -> None:
+    """Keys, titles and commands; the view that one comes from stands first."""
+    async with stage(Content("nodes"), size=(100, 40)) as s:
+        await s.press("f1")
+        await s.until("View nodes")
+        lines = [line.strip("│ ") for line in s.text.split("\n")]
+        assert lines.index("Leave") > next(i for i, line in enumerate(lines) if line.startswith("View nodes"))
+        await s.type("restart")
+        await s.until("graphflow restart {node}")
+        assert "detach" not in s.text
+        await s.type("xyz")
+        await s.until("nothing here has 'restartxyz'")
+        await s.press("escape")
+        assert len(s.console.screen_stack) == 1

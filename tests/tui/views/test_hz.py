@@ -19,15 +19,15 @@ async def test_numbers_and_silence(graph: Graph) -> None:
     await graph.start(node)
     async with stage(Content("hz", "/chatter"), graph=graph) as s:
         await s.look()
-        assert "no message yet" in s.text
+        await s.until("no message yet")
         await graph.settle()
         for _ in range(5):
             node.chatter.publish(String(data="x"))
             await graph.settle()
         await s.look()
-        assert "average rate" in s.text
-        assert "over 5 messages" in s.text
-        assert "0 lost on the way" in s.text
+        await s.until("average rate")
+        await s.until("over 5 messages")
+        await s.until("0 lost on the way")
         s.view._tap.arrivals.clear()  # type: ignore[attr-defined]
         await s.look()
-        assert "nothing for 5 s, 5 messages before" in s.text
+        await s.until("nothing for 5 s, 5 messages before")

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import re
 import time
+from collections import deque
+from pathlib import Path
 
 import pytest
+from textual.widgets import Input
 
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
@@ -32,12 +35,24 @@ async def test_all_nodes_one_node_a_namespace() -> None:
         assert re.search(r"/arm/left +WARN low battery", s.text)
         await s.prefix("1")
         await s.look()
-        assert "ready" in s.text
+        await s.until("ready")
         assert "battery" not in s.text
         await s.prefix("2")
         await s.look()
-        assert "battery" in s.text
+        await s.until("battery")
         assert "tick" not in s.text
+
+
+@pytest.mark.parametrize(("width", "begins"), [(120, 29), (40, 4)])
+async def test_a_report_in_a_narrow_pane(width: int, begins: int) -> None:
+    """Its further lines begin below the names where there is little room beside them, and keep their steps."""
+    told = record("DEADLOCK: a ring", "/turtle1/follower", 3)
+    more = [told._replace(text=" " * n + "holds group 'all', and waits", is_more=True) for n in (4, 12)]
+    async with stage(Content("log"), records=[told, *more, RECORDS[0]], size=(width, 20)) as s:
+        await s.until("holds group 'all', and waits")
+        at = [line.index("holds") for line in s.text.split("\n") if "holds" in line]
+        assert at[0] == begins + (2 if width == 120 else 0)
+        assert at[1] - at[0] == (8 if width == 120 else 4)
 
 
 async def test_levels_and_filter() -> None:
@@ -46,19 +61,28 @@ async def test_levels_and_filter() -> None:
         await s.look()
         await s.press("3")
         await s.look()
-        assert "low battery" in s.text
+        await s.until("low battery")
         assert "ready" not in s.text
         assert "warn+" in s.text
         await s.press("1", "slash")
         await s.type("tick [5-5]")
-        assert "tick 5" in s.text
+        await s.until("tick 5")
         assert "tick 6" not in s.text
         await s.type("(")
         await s.look()
-        assert "not a regular expression" in s.text
+        await s.until("not a regular expression")
         await s.press("escape")
-        assert "tick 6" in s.text
+        await s.until("tick 6")
         assert s.view.content.options == {"level": "debug"}
+
+
+async def test_a_filter_that_is_much_too_long() -> None:
+    """Filters nothing."""
+    async with stage(Content("log"), records=RECORDS) as s:
+        await s.press("slash")
+        s.view.query_one(Input).value = "x" * 201
+        await s.look()
+        await s.until("low battery")
 
 
 async def test_what_is_new_is_followed_until_one_scrolls() -> None:
@@ -66,19 +90,19 @@ async def test_what_is_new_is_followed_until_one_scrolls() -> None:
     many = [record(f"old {i}") for i in range(100)]
     async with stage(Content("log"), records=many) as s:
         await s.look()
-        assert "old 99" in s.text
-        assert "follow ▼" in s.text
+        await s.until("old 99")
+        await s.until("follow ▼")
         await s.press("pageup")
         s.console.hub.logs.add([record("new one")])
         await s.look()
         assert "new one" not in s.text
         assert "f follows" in s.text
         await s.press("f")
-        assert "new one" in s.text
+        await s.until("new one")
         await s.press("home")
-        assert "old 0" in s.text
+        await s.until("old 0")
         await s.press("end")
-        assert "new one" in s.text
+        await s.until("new one")
 
 
 async def test_muting() -> None:
@@ -91,7 +115,7 @@ async def test_muting() -> None:
         assert "1 muted" in s.text
         await s.prefix("1")
         await s.look()
-        assert "tick 6" in s.text
+        await s.until("tick 6")
 
 
 async def test_going_to_the_next_warning_and_to_the_source() -> None:
@@ -125,13 +149,82 @@ async def test_the_source_of_a_line_that_names_none(graph: Graph) -> None:
         assert re.fullmatch(r".*test_log\.py:\d+", s.view.about)
 
 
-async def test_long_lines_wrap_when_asked() -> None:
-    """Otherwise they are cut."""
-    async with stage(Content("log", "/talker"), records=[record("x" * 150 + "END")]) as s:
+async def test_long_lines_wrap_unless_told_otherwise() -> None:
+    """What goes on stands below the text, and neither the time nor the node is repeated."""
+    async with stage(Content("log"), records=[record("  x" * 60 + "END")], size=(70, 20)) as s:
         await s.look()
-        assert "END" not in s.text
+        lines = [text for text in s.text.split("\n") if "x" in text]
+        assert len(lines) > 3
+        assert all(text.startswith(" " * 17) for text in lines[1:])
+        assert "END" in lines[-1]
         await s.press("w")
-        assert "END" in s.text
+        assert "END" not in s.text
+
+
+async def test_a_line_that_comes_again_and_again() -> None:
+    """Is shown once with its number, whenever it comes; another node's, level or traceback is not the same."""
+    same = [record("stuck"), record("stuck"), record("stuck", "/arm"), record("stuck", "/arm", 3)]
+    async with stage(Content("log"), records=same) as s:
+        await s.look()
+        assert s.text.count("stuck") == 3
+        assert "stuck  x2" in s.text
+        s.console.hub.logs.add([record("stuck", "/arm", 3)] * 6)
+        await s.look()
+        assert s.text.count("stuck") == 3
+        assert "ERROR stuck  x7" in s.text
+
+
+def written(folder: Path, node: str, lines: list[str]) -> None:
+    text = "".join(f"[INFO] [{1700000000 + i}.0] [{node}]: {line}\n" for i, line in enumerate(lines))
+    (folder / f"{node}.log").write_text(text)
+
+
+async def test_a_quiet_node_in_a_flood(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its own log has all its lines, read from its file; the merged one says that older lines are gone."""
+    monkeypatch.setattr("graphflow.tui.logs.RECORDS", 50)
+    written(tmp_path, "quiet", [f"word {i}" for i in range(10)])
+    async with stage(Content("log", "/quiet"), Content("log"), nodes=("/quiet",), folder=tmp_path) as s:
+        s.console.hub.logs.records = deque(maxlen=50)
+        s.console.hub.logs.add([record(f"noise {i}") for i in range(100)])
+        await s.look()
+        await s.until("word 0")
+        await s.until("word 9")
+        assert "gone" not in s.text
+        await s.prefix("1")
+        await s.look()
+        await s.until("50 older ones gone, o shows one node")
+
+
+async def test_errors_outlive_a_flood() -> None:
+    """They are there when the level asks for them."""
+    async with stage(Content("log")) as s:
+        s.console.hub.logs.records = deque(maxlen=50)
+        s.console.hub.logs.add([record("it broke", level=3), *(record(f"noise {i}") for i in range(100))])
+        await s.look()
+        assert "it broke" not in s.text
+        await s.press("4")
+        await s.look()
+        await s.until("it broke")
+
+
+async def test_going_to_the_newest_error(tmp_path: Path) -> None:
+    """In the log of its node, with the cursor on it, however long ago it was; then it counts as seen."""
+    lines = "".join(f"[INFO] [{1700000000 + i}.0] [arm]: line {i}\n" for i in range(200))
+    (tmp_path / "arm.log").write_text(f"{lines}[ERROR] [1700000300.0] [arm]: it broke\n{lines}")
+    async with stage(Content("nodes"), nodes=("/arm",), folder=tmp_path) as s:
+        s.console.hub.logs.follow(s.console.hub.log_files())
+        s.console.hub.logs.read()
+        await s.look()
+        await s.until("E1 ^b e")
+        await s.until("it broke")
+        await s.prefix("e")
+        await s.until("▌log /arm")
+        await s.look()
+        chosen = s.view.chosen()
+        assert chosen == {"node": "/arm"}
+        assert "line 199" in s.text
+        assert "ERROR it broke" in s.text
+        await s.until(lambda: "E1 ^b e" not in s.text)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ from textual.widgets import Input
 
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
-from graphflow.tui.views.prompt import Prompt
 from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
@@ -35,7 +34,7 @@ async def test_output_streams_and_exit_codes_are_told() -> None:
         assert "\x1b" not in s.text
 
 
-async def test_ctrl_c_ends_the_verb_and_then_asks() -> None:
+async def test_ctrl_c_ends_the_verb_and_nothing_else() -> None:
     """It interrupts what runs, as in a terminal; the console stays."""
     async with stage(Content("prompt")) as s:
         waits = "import time\nprint('up', flush=True)\ntry:\n    time.sleep(60)\n"
@@ -45,14 +44,30 @@ async def test_ctrl_c_ends_the_verb_and_then_asks() -> None:
         await s.until("up")
         await s.press("ctrl+c")
         await s.until("bye")
-        await s.until(lambda: not s.view.interrupt())
+        await s.until(lambda: not s.view.note)
+        await s.press("ctrl+c")
+        assert "Leave or stop" not in s.text
         assert s.console.return_value is None
+
+
+async def test_what_was_interrupted_is_read_at_its_end() -> None:
+    """A command that ends by itself is read from its top, one that was followed where it ended."""
+    lines = "import time\nfor i in range(100): print('line', i, flush=True)\n"
+    for ends, shown in (("", "line 0"), ("try:\n    time.sleep(60)\nexcept KeyboardInterrupt: print('bye')", "bye")):
+        async with stage(Content("prompt", "topic echo /x", {"run": True}), size=(80, 24)) as s:
+            s.console.hub.command = program(lines + ends)
+            s.view._run("topic echo /x", at_once=True)  # type: ignore[attr-defined]
+            if ends:
+                await s.until("line 99")
+                await s.press("ctrl+c")
+            await s.until(shown)
+            await s.until(lambda: s.view._process is None)  # type: ignore[attr-defined]
+            await s.until(shown)
 
 
 @slow
 async def test_history_and_words_of_its_own() -> None:
     """↑ recalls; `clear` empties the pane; a console in a console is refused; quotes must close."""
-    Prompt.past.clear()
     async with stage(Content("prompt")) as s:
         s.console.hub.command = program("print('ran')")
         for text, answer in (
@@ -110,3 +125,24 @@ async def test_what_comes_too_fast_is_counted() -> None:
         await s.until("29999")
         await s.look()
         assert "lines left out" in s.text or s.view._lost == 0  # type: ignore[attr-defined]
+
+
+async def test_a_colon_opens_the_command_line() -> None:
+    """As everywhere else, where the line is empty; within a line it is a character."""
+    async with stage(Content("prompt")) as s:
+        await s.type("a:")
+        assert s.view.query_one("Input.line").value == "a:"  # type: ignore[attr-defined]
+        await s.press("ctrl+c", "colon")
+        await s.until("Any verb of graphflow; or a view")
+
+
+async def test_what_was_asked_for_by_a_key_is_read_from_the_top() -> None:
+    """A long answer stands at its beginning; what is typed afterwards is followed again."""
+    async with stage(Content("nodes"), size=(80, 20)) as s:
+        s.console.hub.command = program("print('\\n'.join(f'line {i}' for i in range(100)))")
+        s.view.open("prompt", "topic info -v /x", run=True)
+        await s.until("line 3")
+        await s.until(lambda: "line 99" not in s.text)
+        await s.type("again")
+        await s.press("enter")
+        await s.until("line 99")

@@ -25,6 +25,16 @@ async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
         assert s.console.clipboard_text == f"{file}:200"
 
 
+async def test_the_lines_before_it_are_on_screen(tmp_path: Path) -> None:
+    """Also in a pane that is opened below another one, whose height is known only after a while."""
+    (tmp_path / "long.py").write_text("\n".join(f"x{i} = {i}" for i in range(1, 301)))
+    async with stage(Content("nodes"), size=(80, 24)) as s:
+        s.view.open("source", f"{tmp_path / 'long.py'}:200")
+        await s.until("▶200 x200 = 200")
+        await s.until("x197 = 197")
+        assert "x203 = 203" in s.text
+
+
 async def test_escape_closes_it(tmp_path: Path) -> None:
     """And goes back to what it was opened from."""
     (tmp_path / "a.py").write_text("x = 1\n")
@@ -48,7 +58,13 @@ async def test_the_editor_must_be_named(tmp_path: Path, monkeypatch: pytest.Monk
     (tmp_path / "a.py").write_text("x = 1\n")
     async with stage(Content("source", f"{tmp_path / 'a.py'}:1")) as s:
         await s.press("e")
-        assert "set EDITOR" in s.text
+        await s.until("set EDITOR")
+        monkeypatch.setenv("EDITOR", "no-such-editor --wait")
+        await s.press("e")
+        await s.until("there is no such program: install it, or export EDITOR=nano")
+        monkeypatch.setenv("EDITOR", "'open")
+        await s.press("e")
+        await s.until("No closing quotation")
 
 
 def test_files_by_their_name_alone(tmp_path: Path) -> None:

@@ -20,8 +20,8 @@ async def test_a_row_a_process() -> None:
         supervision.nodes["/a"]["pid"] = supervision.nodes["/b"]["pid"] = os.getpid()
         supervision.nodes["/gone"] |= {"pid": os.getppid(), "state": "ended"}
         await s.look()
-        assert "/a, /b" in s.text
-        assert "the supervisor" in s.text
+        await s.until("/a, /b")
+        await s.until("the supervisor")
         assert "/gone" not in s.text
         await s.press("M")
-        assert "/a, /b" in s.text
+        await s.until("/a, /b")

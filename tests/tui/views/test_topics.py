@@ -38,7 +38,7 @@ async def test_types_and_counts(graph: Graph) -> None:
         assert row.split() == ["/chatter", "std_msgs/msg/String", "1", "1"]
         assert "_action" not in s.text
         await s.press("a")
-        assert "/fibonacci/_action/feedback" in s.text
+        await s.until("/fibonacci/_action/feedback")
 
 
 async def test_what_does_not_fit_is_said(graph: Graph) -> None:

@@ -38,7 +38,7 @@ async def test_from_the_ring_to_the_next_example(graph: Graph, tmp_path: Path) -
         for _ in range(8):
             await graph.clock.advance(0.25)
             await graph.settle()
-        await s.until("f  end it: give one handler a group of its own")
+        await s.until("f  end it, while the graph runs: give get of /left a group of its own")
         await s.press("f")
         await s.until("w  keep it: write it into the graph file")
         await asyncio.wait_for(going, 5.0)

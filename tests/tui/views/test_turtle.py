@@ -27,13 +27,13 @@ async def test_a_turtle_draws(graph: Graph) -> None:
             node.pose.publish(Pose(x=2.0 + i / 10, y=9.0, theta=0.0))
             await graph.settle()
         await s.look()
-        assert "▶" in s.text
-        assert "x 3.9  y 9.0" in s.text
+        await s.until("▶")
+        await s.until("x 3.9  y 9.0")
         before = sum("⠀" < c <= "⣿" for c in s.text)
         node.pose.publish(Pose(x=9.0, y=1.0, theta=math.pi / 2))
         await graph.settle()
         await s.look()
-        assert "▲" in s.text
+        await s.until("▲")
         assert abs(sum("⠀" < c <= "⣿" for c in s.text) - before) <= 2, "carried, not driven: no line"
 
 

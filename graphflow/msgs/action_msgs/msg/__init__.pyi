@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 from graphflow import times
 from graphflow.msgs import base
@@ -19,13 +19,13 @@ class GoalInfo(base.Message):
     ) -> None: ...
 
 class GoalStatus(base.Message):
-    STATUS_UNKNOWN: Final = 0
-    STATUS_ACCEPTED: Final = 1
-    STATUS_EXECUTING: Final = 2
-    STATUS_CANCELING: Final = 3
-    STATUS_SUCCEEDED: Final = 4
-    STATUS_CANCELED: Final = 5
-    STATUS_ABORTED: Final = 6
+    STATUS_UNKNOWN: ClassVar[Literal[0]]
+    STATUS_ACCEPTED: ClassVar[Literal[1]]
+    STATUS_EXECUTING: ClassVar[Literal[2]]
+    STATUS_CANCELING: ClassVar[Literal[3]]
+    STATUS_SUCCEEDED: ClassVar[Literal[4]]
+    STATUS_CANCELED: ClassVar[Literal[5]]
+    STATUS_ABORTED: ClassVar[Literal[6]]
     goal_info: GoalInfo
     status: int
     def __init__(self, *, goal_info: GoalInfo | Mapping[str, object] = ..., status: int = ...) -> None: ...

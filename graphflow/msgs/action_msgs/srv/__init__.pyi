@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 from graphflow.msgs import base
 from graphflow.msgs.action_msgs import msg as action_msgs
@@ -12,10 +12,10 @@ class CancelGoal_Request(base.Message):
     def __init__(self, *, goal_info: action_msgs.GoalInfo | Mapping[str, object] = ...) -> None: ...
 
 class CancelGoal_Response(base.Message):
-    ERROR_NONE: Final = 0
-    ERROR_REJECTED: Final = 1
-    ERROR_UNKNOWN_GOAL_ID: Final = 2
-    ERROR_GOAL_TERMINATED: Final = 3
+    ERROR_NONE: ClassVar[Literal[0]]
+    ERROR_REJECTED: ClassVar[Literal[1]]
+    ERROR_UNKNOWN_GOAL_ID: ClassVar[Literal[2]]
+    ERROR_GOAL_TERMINATED: ClassVar[Literal[3]]
     return_code: int
     goals_canceling: list[action_msgs.GoalInfo]
     def __init__(

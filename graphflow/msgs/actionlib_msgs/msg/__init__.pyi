@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 from graphflow import times
 from graphflow.msgs import base
@@ -19,16 +19,16 @@ class GoalID(base.Message):
     ) -> None: ...
 
 class GoalStatus(base.Message):
-    PENDING: Final = 0
-    ACTIVE: Final = 1
-    PREEMPTED: Final = 2
-    SUCCEEDED: Final = 3
-    ABORTED: Final = 4
-    REJECTED: Final = 5
-    PREEMPTING: Final = 6
-    RECALLING: Final = 7
-    RECALLED: Final = 8
-    LOST: Final = 9
+    PENDING: ClassVar[Literal[0]]
+    ACTIVE: ClassVar[Literal[1]]
+    PREEMPTED: ClassVar[Literal[2]]
+    SUCCEEDED: ClassVar[Literal[3]]
+    ABORTED: ClassVar[Literal[4]]
+    REJECTED: ClassVar[Literal[5]]
+    PREEMPTING: ClassVar[Literal[6]]
+    RECALLING: ClassVar[Literal[7]]
+    RECALLED: ClassVar[Literal[8]]
+    LOST: ClassVar[Literal[9]]
     goal_id: GoalID
     status: int
     text: str

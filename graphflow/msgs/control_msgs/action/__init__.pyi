@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 from graphflow import times
 from graphflow.msgs import base
@@ -19,9 +19,9 @@ class ExecuteMotionPrimitiveSequence_Goal(base.Message):
     def __init__(self, *, trajectory: control_msgs.MotionPrimitiveSequence | Mapping[str, object] = ...) -> None: ...
 
 class ExecuteMotionPrimitiveSequence_Result(base.Message):
-    SUCCESSFUL: Final = 0
-    INVALID_GOAL: Final = -1
-    OLD_HEADER_TIMESTAMP: Final = -3
+    SUCCESSFUL: ClassVar[Literal[0]]
+    INVALID_GOAL: ClassVar[Literal[-1]]
+    OLD_HEADER_TIMESTAMP: ClassVar[Literal[-3]]
     error_code: int
     error_string: str
     def __init__(self, *, error_code: int = ..., error_string: str = ...) -> None: ...
@@ -131,12 +131,12 @@ class FollowJointTrajectory_Goal(base.Message):
     ) -> None: ...
 
 class FollowJointTrajectory_Result(base.Message):
-    SUCCESSFUL: Final = 0
-    INVALID_GOAL: Final = -1
-    INVALID_JOINTS: Final = -2
-    OLD_HEADER_TIMESTAMP: Final = -3
-    PATH_TOLERANCE_VIOLATED: Final = -4
-    GOAL_TOLERANCE_VIOLATED: Final = -5
+    SUCCESSFUL: ClassVar[Literal[0]]
+    INVALID_GOAL: ClassVar[Literal[-1]]
+    INVALID_JOINTS: ClassVar[Literal[-2]]
+    OLD_HEADER_TIMESTAMP: ClassVar[Literal[-3]]
+    PATH_TOLERANCE_VIOLATED: ClassVar[Literal[-4]]
+    GOAL_TOLERANCE_VIOLATED: ClassVar[Literal[-5]]
     error_code: int
     error_string: str
     def __init__(self, *, error_code: int = ..., error_string: str = ...) -> None: ...

@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -110,11 +110,11 @@ class InterfaceValue(base.Message):
     ) -> None: ...
 
 class JointComponentTolerance(base.Message):
-    X_AXIS: Final = 1
-    Y_AXIS: Final = 2
-    Z_AXIS: Final = 3
-    TRANSLATION: Final = 4
-    ROTATION: Final = 5
+    X_AXIS: ClassVar[Literal[1]]
+    Y_AXIS: ClassVar[Literal[2]]
+    Z_AXIS: ClassVar[Literal[3]]
+    TRANSLATION: ClassVar[Literal[4]]
+    ROTATION: ClassVar[Literal[5]]
     joint_name: str
     component: int
     position: float
@@ -249,10 +249,10 @@ class MotionArgument(base.Message):
     def __init__(self, *, name: str = ..., value: float = ...) -> None: ...
 
 class MotionPrimitive(base.Message):
-    UNKNOWN: Final = -1
-    LINEAR_JOINT: Final = 0
-    LINEAR_CARTESIAN: Final = 50
-    CIRCULAR_CARTESIAN: Final = 51
+    UNKNOWN: ClassVar[Literal[-1]]
+    LINEAR_JOINT: ClassVar[Literal[0]]
+    LINEAR_CARTESIAN: ClassVar[Literal[50]]
+    CIRCULAR_CARTESIAN: ClassVar[Literal[51]]
     type: int
     blend_radius: float
     additional_arguments: list[MotionArgument]
@@ -381,10 +381,10 @@ class SteeringControllerStatus(base.Message):
     ) -> None: ...
 
 class VDA5050SafetyState(base.Message):
-    AUTO_ACK: Final = "autoAck"
-    MANUAL: Final = "manual"
-    REMOTE: Final = "remote"
-    NONE: Final = "none"
+    AUTO_ACK: ClassVar[Literal["autoAck"]]
+    MANUAL: ClassVar[Literal["manual"]]
+    REMOTE: ClassVar[Literal["remote"]]
+    NONE: ClassVar[Literal["none"]]
     e_stop: str
     field_violation: bool
     def __init__(self, *, e_stop: str = ..., field_violation: bool = ...) -> None: ...

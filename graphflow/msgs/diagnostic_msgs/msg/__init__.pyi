@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 from graphflow.msgs import base
 from graphflow.msgs.std_msgs import msg as std_msgs
@@ -17,10 +17,10 @@ class DiagnosticArray(base.Message):
     ) -> None: ...
 
 class DiagnosticStatus(base.Message):
-    OK: Final = 0
-    WARN: Final = 1
-    ERROR: Final = 2
-    STALE: Final = 3
+    OK: ClassVar[Literal[0]]
+    WARN: ClassVar[Literal[1]]
+    ERROR: ClassVar[Literal[2]]
+    STALE: ClassVar[Literal[3]]
     level: int
     name: str
     message: str

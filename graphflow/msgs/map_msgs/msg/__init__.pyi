@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -30,8 +30,8 @@ class OccupancyGridUpdate(base.Message):
     ) -> None: ...
 
 class PointCloud2Update(base.Message):
-    ADD: Final = 0
-    DELETE: Final = 1
+    ADD: ClassVar[Literal[0]]
+    DELETE: ClassVar[Literal[1]]
     header: std_msgs.Header
     type: int
     points: sensor_msgs.PointCloud2

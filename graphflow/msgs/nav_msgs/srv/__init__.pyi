@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 from graphflow.msgs import base
 from graphflow.msgs.geometry_msgs import msg as geometry_msgs
@@ -70,11 +70,11 @@ class LoadMap_Request(base.Message):
     def __init__(self, *, map_url: str = ...) -> None: ...
 
 class LoadMap_Response(base.Message):
-    RESULT_SUCCESS: Final = 0
-    RESULT_MAP_DOES_NOT_EXIST: Final = 1
-    RESULT_INVALID_MAP_DATA: Final = 2
-    RESULT_INVALID_MAP_METADATA: Final = 3
-    RESULT_UNDEFINED_FAILURE: Final = 255
+    RESULT_SUCCESS: ClassVar[Literal[0]]
+    RESULT_MAP_DOES_NOT_EXIST: ClassVar[Literal[1]]
+    RESULT_INVALID_MAP_DATA: ClassVar[Literal[2]]
+    RESULT_INVALID_MAP_METADATA: ClassVar[Literal[3]]
+    RESULT_UNDEFINED_FAILURE: ClassVar[Literal[255]]
     map: nav_msgs.OccupancyGrid
     result: int
     def __init__(self, *, map: nav_msgs.OccupancyGrid | Mapping[str, object] = ..., result: int = ...) -> None: ...

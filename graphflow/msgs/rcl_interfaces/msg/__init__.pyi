@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -28,11 +28,11 @@ class ListParametersResult(base.Message):
     def __init__(self, *, names: Sequence[str] = ..., prefixes: Sequence[str] = ...) -> None: ...
 
 class Log(base.Message):
-    DEBUG: Final = 10
-    INFO: Final = 20
-    WARN: Final = 30
-    ERROR: Final = 40
-    FATAL: Final = 50
+    DEBUG: ClassVar[Literal[10]]
+    INFO: ClassVar[Literal[20]]
+    WARN: ClassVar[Literal[30]]
+    ERROR: ClassVar[Literal[40]]
+    FATAL: ClassVar[Literal[50]]
     stamp: builtin_interfaces.Time
     level: int
     name: str
@@ -53,12 +53,12 @@ class Log(base.Message):
     ) -> None: ...
 
 class LoggerLevel(base.Message):
-    LOG_LEVEL_UNKNOWN: Final = 0
-    LOG_LEVEL_DEBUG: Final = 10
-    LOG_LEVEL_INFO: Final = 20
-    LOG_LEVEL_WARN: Final = 30
-    LOG_LEVEL_ERROR: Final = 40
-    LOG_LEVEL_FATAL: Final = 50
+    LOG_LEVEL_UNKNOWN: ClassVar[Literal[0]]
+    LOG_LEVEL_DEBUG: ClassVar[Literal[10]]
+    LOG_LEVEL_INFO: ClassVar[Literal[20]]
+    LOG_LEVEL_WARN: ClassVar[Literal[30]]
+    LOG_LEVEL_ERROR: ClassVar[Literal[40]]
+    LOG_LEVEL_FATAL: ClassVar[Literal[50]]
     name: str
     level: int
     def __init__(self, *, name: str = ..., level: int = ...) -> None: ...
@@ -119,16 +119,16 @@ class ParameterEventDescriptors(base.Message):
     ) -> None: ...
 
 class ParameterType(base.Message):
-    PARAMETER_NOT_SET: Final = 0
-    PARAMETER_BOOL: Final = 1
-    PARAMETER_INTEGER: Final = 2
-    PARAMETER_DOUBLE: Final = 3
-    PARAMETER_STRING: Final = 4
-    PARAMETER_BYTE_ARRAY: Final = 5
-    PARAMETER_BOOL_ARRAY: Final = 6
-    PARAMETER_INTEGER_ARRAY: Final = 7
-    PARAMETER_DOUBLE_ARRAY: Final = 8
-    PARAMETER_STRING_ARRAY: Final = 9
+    PARAMETER_NOT_SET: ClassVar[Literal[0]]
+    PARAMETER_BOOL: ClassVar[Literal[1]]
+    PARAMETER_INTEGER: ClassVar[Literal[2]]
+    PARAMETER_DOUBLE: ClassVar[Literal[3]]
+    PARAMETER_STRING: ClassVar[Literal[4]]
+    PARAMETER_BYTE_ARRAY: ClassVar[Literal[5]]
+    PARAMETER_BOOL_ARRAY: ClassVar[Literal[6]]
+    PARAMETER_INTEGER_ARRAY: ClassVar[Literal[7]]
+    PARAMETER_DOUBLE_ARRAY: ClassVar[Literal[8]]
+    PARAMETER_STRING_ARRAY: ClassVar[Literal[9]]
     def __init__(self) -> None: ...
 
 class ParameterValue(base.Message):

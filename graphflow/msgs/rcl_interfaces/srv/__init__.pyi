@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -115,7 +115,7 @@ class GetParameters(base.Service[GetParameters_Request, GetParameters_Response])
     Event: TypeAlias = GetParameters_Event
 
 class ListParameters_Request(base.Message):
-    DEPTH_RECURSIVE: Final = 0
+    DEPTH_RECURSIVE: ClassVar[Literal[0]]
     prefixes: list[str]
     depth: int
     def __init__(self, *, prefixes: Sequence[str] = ..., depth: int = ...) -> None: ...

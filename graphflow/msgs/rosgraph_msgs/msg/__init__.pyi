@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -67,25 +67,25 @@ class Node(base.Message):
     ) -> None: ...
 
 class QoSProfile(base.Message):
-    HISTORY_SYSTEM_DEFAULT: Final = 0
-    HISTORY_KEEP_LAST: Final = 1
-    HISTORY_KEEP_ALL: Final = 2
-    HISTORY_UNKNOWN: Final = 3
-    RELIABILITY_SYSTEM_DEFAULT: Final = 0
-    RELIABILITY_RELIABLE: Final = 1
-    RELIABILITY_BEST_EFFORT: Final = 2
-    RELIABILITY_UNKNOWN: Final = 3
-    RELIABILITY_BEST_AVAILABLE: Final = 4
-    DURABILITY_SYSTEM_DEFAULT: Final = 0
-    DURABILITY_TRANSIENT_LOCAL: Final = 1
-    DURABILITY_VOLATILE: Final = 2
-    DURABILITY_UNKNOWN: Final = 3
-    DURABILITY_BEST_AVAILABLE: Final = 4
-    LIVELINESS_SYSTEM_DEFAULT: Final = 0
-    LIVELINESS_AUTOMATIC: Final = 1
-    LIVELINESS_MANUAL_BY_TOPIC: Final = 3
-    LIVELINESS_UNKNOWN: Final = 4
-    LIVELINESS_BEST_AVAILABLE: Final = 5
+    HISTORY_SYSTEM_DEFAULT: ClassVar[Literal[0]]
+    HISTORY_KEEP_LAST: ClassVar[Literal[1]]
+    HISTORY_KEEP_ALL: ClassVar[Literal[2]]
+    HISTORY_UNKNOWN: ClassVar[Literal[3]]
+    RELIABILITY_SYSTEM_DEFAULT: ClassVar[Literal[0]]
+    RELIABILITY_RELIABLE: ClassVar[Literal[1]]
+    RELIABILITY_BEST_EFFORT: ClassVar[Literal[2]]
+    RELIABILITY_UNKNOWN: ClassVar[Literal[3]]
+    RELIABILITY_BEST_AVAILABLE: ClassVar[Literal[4]]
+    DURABILITY_SYSTEM_DEFAULT: ClassVar[Literal[0]]
+    DURABILITY_TRANSIENT_LOCAL: ClassVar[Literal[1]]
+    DURABILITY_VOLATILE: ClassVar[Literal[2]]
+    DURABILITY_UNKNOWN: ClassVar[Literal[3]]
+    DURABILITY_BEST_AVAILABLE: ClassVar[Literal[4]]
+    LIVELINESS_SYSTEM_DEFAULT: ClassVar[Literal[0]]
+    LIVELINESS_AUTOMATIC: ClassVar[Literal[1]]
+    LIVELINESS_MANUAL_BY_TOPIC: ClassVar[Literal[3]]
+    LIVELINESS_UNKNOWN: ClassVar[Literal[4]]
+    LIVELINESS_BEST_AVAILABLE: ClassVar[Literal[5]]
     depth: int
     deadline: builtin_interfaces.Duration
     lifespan: builtin_interfaces.Duration

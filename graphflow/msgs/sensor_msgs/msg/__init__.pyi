@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,29 +13,29 @@ from graphflow.msgs.geometry_msgs import msg as geometry_msgs
 from graphflow.msgs.std_msgs import msg as std_msgs
 
 class BatteryState(base.Message):
-    POWER_SUPPLY_STATUS_UNKNOWN: Final = 0
-    POWER_SUPPLY_STATUS_CHARGING: Final = 1
-    POWER_SUPPLY_STATUS_DISCHARGING: Final = 2
-    POWER_SUPPLY_STATUS_NOT_CHARGING: Final = 3
-    POWER_SUPPLY_STATUS_FULL: Final = 4
-    POWER_SUPPLY_HEALTH_UNKNOWN: Final = 0
-    POWER_SUPPLY_HEALTH_GOOD: Final = 1
-    POWER_SUPPLY_HEALTH_OVERHEAT: Final = 2
-    POWER_SUPPLY_HEALTH_DEAD: Final = 3
-    POWER_SUPPLY_HEALTH_OVERVOLTAGE: Final = 4
-    POWER_SUPPLY_HEALTH_UNSPEC_FAILURE: Final = 5
-    POWER_SUPPLY_HEALTH_COLD: Final = 6
-    POWER_SUPPLY_HEALTH_WATCHDOG_TIMER_EXPIRE: Final = 7
-    POWER_SUPPLY_HEALTH_SAFETY_TIMER_EXPIRE: Final = 8
-    POWER_SUPPLY_TECHNOLOGY_UNKNOWN: Final = 0
-    POWER_SUPPLY_TECHNOLOGY_NIMH: Final = 1
-    POWER_SUPPLY_TECHNOLOGY_LION: Final = 2
-    POWER_SUPPLY_TECHNOLOGY_LIPO: Final = 3
-    POWER_SUPPLY_TECHNOLOGY_LIFE: Final = 4
-    POWER_SUPPLY_TECHNOLOGY_NICD: Final = 5
-    POWER_SUPPLY_TECHNOLOGY_LIMN: Final = 6
-    POWER_SUPPLY_TECHNOLOGY_TERNARY: Final = 7
-    POWER_SUPPLY_TECHNOLOGY_VRLA: Final = 8
+    POWER_SUPPLY_STATUS_UNKNOWN: ClassVar[Literal[0]]
+    POWER_SUPPLY_STATUS_CHARGING: ClassVar[Literal[1]]
+    POWER_SUPPLY_STATUS_DISCHARGING: ClassVar[Literal[2]]
+    POWER_SUPPLY_STATUS_NOT_CHARGING: ClassVar[Literal[3]]
+    POWER_SUPPLY_STATUS_FULL: ClassVar[Literal[4]]
+    POWER_SUPPLY_HEALTH_UNKNOWN: ClassVar[Literal[0]]
+    POWER_SUPPLY_HEALTH_GOOD: ClassVar[Literal[1]]
+    POWER_SUPPLY_HEALTH_OVERHEAT: ClassVar[Literal[2]]
+    POWER_SUPPLY_HEALTH_DEAD: ClassVar[Literal[3]]
+    POWER_SUPPLY_HEALTH_OVERVOLTAGE: ClassVar[Literal[4]]
+    POWER_SUPPLY_HEALTH_UNSPEC_FAILURE: ClassVar[Literal[5]]
+    POWER_SUPPLY_HEALTH_COLD: ClassVar[Literal[6]]
+    POWER_SUPPLY_HEALTH_WATCHDOG_TIMER_EXPIRE: ClassVar[Literal[7]]
+    POWER_SUPPLY_HEALTH_SAFETY_TIMER_EXPIRE: ClassVar[Literal[8]]
+    POWER_SUPPLY_TECHNOLOGY_UNKNOWN: ClassVar[Literal[0]]
+    POWER_SUPPLY_TECHNOLOGY_NIMH: ClassVar[Literal[1]]
+    POWER_SUPPLY_TECHNOLOGY_LION: ClassVar[Literal[2]]
+    POWER_SUPPLY_TECHNOLOGY_LIPO: ClassVar[Literal[3]]
+    POWER_SUPPLY_TECHNOLOGY_LIFE: ClassVar[Literal[4]]
+    POWER_SUPPLY_TECHNOLOGY_NICD: ClassVar[Literal[5]]
+    POWER_SUPPLY_TECHNOLOGY_LIMN: ClassVar[Literal[6]]
+    POWER_SUPPLY_TECHNOLOGY_TERNARY: ClassVar[Literal[7]]
+    POWER_SUPPLY_TECHNOLOGY_VRLA: ClassVar[Literal[8]]
     header: std_msgs.Header
     voltage: float
     temperature: float
@@ -217,9 +217,9 @@ class Joy(base.Message):
     ) -> None: ...
 
 class JoyFeedback(base.Message):
-    TYPE_LED: Final = 0
-    TYPE_RUMBLE: Final = 1
-    TYPE_BUZZER: Final = 2
+    TYPE_LED: ClassVar[Literal[0]]
+    TYPE_RUMBLE: ClassVar[Literal[1]]
+    TYPE_BUZZER: ClassVar[Literal[2]]
     type: int
     id: int
     intensity: float
@@ -315,10 +315,10 @@ class MultiEchoLaserScan(base.Message):
     ) -> None: ...
 
 class NavSatFix(base.Message):
-    COVARIANCE_TYPE_UNKNOWN: Final = 0
-    COVARIANCE_TYPE_APPROXIMATED: Final = 1
-    COVARIANCE_TYPE_DIAGONAL_KNOWN: Final = 2
-    COVARIANCE_TYPE_KNOWN: Final = 3
+    COVARIANCE_TYPE_UNKNOWN: ClassVar[Literal[0]]
+    COVARIANCE_TYPE_APPROXIMATED: ClassVar[Literal[1]]
+    COVARIANCE_TYPE_DIAGONAL_KNOWN: ClassVar[Literal[2]]
+    COVARIANCE_TYPE_KNOWN: ClassVar[Literal[3]]
     header: std_msgs.Header
     status: NavSatStatus
     latitude: float
@@ -339,16 +339,16 @@ class NavSatFix(base.Message):
     ) -> None: ...
 
 class NavSatStatus(base.Message):
-    STATUS_UNKNOWN: Final = -2
-    STATUS_NO_FIX: Final = -1
-    STATUS_FIX: Final = 0
-    STATUS_SBAS_FIX: Final = 1
-    STATUS_GBAS_FIX: Final = 2
-    SERVICE_UNKNOWN: Final = 0
-    SERVICE_GPS: Final = 1
-    SERVICE_GLONASS: Final = 2
-    SERVICE_COMPASS: Final = 4
-    SERVICE_GALILEO: Final = 8
+    STATUS_UNKNOWN: ClassVar[Literal[-2]]
+    STATUS_NO_FIX: ClassVar[Literal[-1]]
+    STATUS_FIX: ClassVar[Literal[0]]
+    STATUS_SBAS_FIX: ClassVar[Literal[1]]
+    STATUS_GBAS_FIX: ClassVar[Literal[2]]
+    SERVICE_UNKNOWN: ClassVar[Literal[0]]
+    SERVICE_GPS: ClassVar[Literal[1]]
+    SERVICE_GLONASS: ClassVar[Literal[2]]
+    SERVICE_COMPASS: ClassVar[Literal[4]]
+    SERVICE_GALILEO: ClassVar[Literal[8]]
     status: int
     service: int
     def __init__(self, *, status: int = ..., service: int = ...) -> None: ...
@@ -391,14 +391,14 @@ class PointCloud2(base.Message):
     def to_numpy(self) -> npt.NDArray[Any]: ...
 
 class PointField(base.Message):
-    INT8: Final = 1
-    UINT8: Final = 2
-    INT16: Final = 3
-    UINT16: Final = 4
-    INT32: Final = 5
-    UINT32: Final = 6
-    FLOAT32: Final = 7
-    FLOAT64: Final = 8
+    INT8: ClassVar[Literal[1]]
+    UINT8: ClassVar[Literal[2]]
+    INT16: ClassVar[Literal[3]]
+    UINT16: ClassVar[Literal[4]]
+    INT32: ClassVar[Literal[5]]
+    UINT32: ClassVar[Literal[6]]
+    FLOAT32: ClassVar[Literal[7]]
+    FLOAT64: ClassVar[Literal[8]]
     name: str
     offset: int
     datatype: int
@@ -406,8 +406,8 @@ class PointField(base.Message):
     def __init__(self, *, name: str = ..., offset: int = ..., datatype: int = ..., count: int = ...) -> None: ...
 
 class Range(base.Message):
-    ULTRASOUND: Final = 0
-    INFRARED: Final = 1
+    ULTRASOUND: ClassVar[Literal[0]]
+    INFRARED: ClassVar[Literal[1]]
     header: std_msgs.Header
     radiation_type: int
     field_of_view: float

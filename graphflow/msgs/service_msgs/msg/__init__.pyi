@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +11,10 @@ from graphflow.msgs import base
 from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
 
 class ServiceEventInfo(base.Message):
-    REQUEST_SENT: Final = 0
-    REQUEST_RECEIVED: Final = 1
-    RESPONSE_SENT: Final = 2
-    RESPONSE_RECEIVED: Final = 3
+    REQUEST_SENT: ClassVar[Literal[0]]
+    REQUEST_RECEIVED: ClassVar[Literal[1]]
+    RESPONSE_SENT: ClassVar[Literal[2]]
+    RESPONSE_RECEIVED: ClassVar[Literal[3]]
     event_type: int
     stamp: builtin_interfaces.Time
     client_gid: npt.NDArray[np.uint8]

@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -28,20 +28,20 @@ class Plane(base.Message):
     def __init__(self, *, coef: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...) -> None: ...
 
 class SolidPrimitive(base.Message):
-    BOX: Final = 1
-    SPHERE: Final = 2
-    CYLINDER: Final = 3
-    CONE: Final = 4
-    PRISM: Final = 5
-    BOX_X: Final = 0
-    BOX_Y: Final = 1
-    BOX_Z: Final = 2
-    SPHERE_RADIUS: Final = 0
-    CYLINDER_HEIGHT: Final = 0
-    CYLINDER_RADIUS: Final = 1
-    CONE_HEIGHT: Final = 0
-    CONE_RADIUS: Final = 1
-    PRISM_HEIGHT: Final = 0
+    BOX: ClassVar[Literal[1]]
+    SPHERE: ClassVar[Literal[2]]
+    CYLINDER: ClassVar[Literal[3]]
+    CONE: ClassVar[Literal[4]]
+    PRISM: ClassVar[Literal[5]]
+    BOX_X: ClassVar[Literal[0]]
+    BOX_Y: ClassVar[Literal[1]]
+    BOX_Z: ClassVar[Literal[2]]
+    SPHERE_RADIUS: ClassVar[Literal[0]]
+    CYLINDER_HEIGHT: ClassVar[Literal[0]]
+    CYLINDER_RADIUS: ClassVar[Literal[1]]
+    CONE_HEIGHT: ClassVar[Literal[0]]
+    CONE_RADIUS: ClassVar[Literal[1]]
+    PRISM_HEIGHT: ClassVar[Literal[0]]
     type: int
     dimensions: npt.NDArray[np.float64]
     polygon: geometry_msgs.Polygon

@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 from graphflow import times
 from graphflow.msgs import base
@@ -31,10 +31,10 @@ class StatisticDataPoint(base.Message):
     def __init__(self, *, data_type: int = ..., data: float = ...) -> None: ...
 
 class StatisticDataType(base.Message):
-    STATISTICS_DATA_TYPE_UNINITIALIZED: Final = 0
-    STATISTICS_DATA_TYPE_AVERAGE: Final = 1
-    STATISTICS_DATA_TYPE_MINIMUM: Final = 2
-    STATISTICS_DATA_TYPE_MAXIMUM: Final = 3
-    STATISTICS_DATA_TYPE_STDDEV: Final = 4
-    STATISTICS_DATA_TYPE_SAMPLE_COUNT: Final = 5
+    STATISTICS_DATA_TYPE_UNINITIALIZED: ClassVar[Literal[0]]
+    STATISTICS_DATA_TYPE_AVERAGE: ClassVar[Literal[1]]
+    STATISTICS_DATA_TYPE_MINIMUM: ClassVar[Literal[2]]
+    STATISTICS_DATA_TYPE_MAXIMUM: ClassVar[Literal[3]]
+    STATISTICS_DATA_TYPE_STDDEV: ClassVar[Literal[4]]
+    STATISTICS_DATA_TYPE_SAMPLE_COUNT: ClassVar[Literal[5]]
     def __init__(self) -> None: ...

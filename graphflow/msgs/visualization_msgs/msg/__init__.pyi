@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -14,13 +14,13 @@ from graphflow.msgs.sensor_msgs import msg as sensor_msgs
 from graphflow.msgs.std_msgs import msg as std_msgs
 
 class ImageMarker(base.Message):
-    CIRCLE: Final = 0
-    LINE_STRIP: Final = 1
-    LINE_LIST: Final = 2
-    POLYGON: Final = 3
-    POINTS: Final = 4
-    ADD: Final = 0
-    REMOVE: Final = 1
+    CIRCLE: ClassVar[Literal[0]]
+    LINE_STRIP: ClassVar[Literal[1]]
+    LINE_LIST: ClassVar[Literal[2]]
+    POLYGON: ClassVar[Literal[3]]
+    POINTS: ClassVar[Literal[4]]
+    ADD: ClassVar[Literal[0]]
+    REMOVE: ClassVar[Literal[1]]
     header: std_msgs.Header
     ns: str
     id: int
@@ -73,19 +73,19 @@ class InteractiveMarker(base.Message):
     ) -> None: ...
 
 class InteractiveMarkerControl(base.Message):
-    INHERIT: Final = 0
-    FIXED: Final = 1
-    VIEW_FACING: Final = 2
-    NONE: Final = 0
-    MENU: Final = 1
-    BUTTON: Final = 2
-    MOVE_AXIS: Final = 3
-    MOVE_PLANE: Final = 4
-    ROTATE_AXIS: Final = 5
-    MOVE_ROTATE: Final = 6
-    MOVE_3D: Final = 7
-    ROTATE_3D: Final = 8
-    MOVE_ROTATE_3D: Final = 9
+    INHERIT: ClassVar[Literal[0]]
+    FIXED: ClassVar[Literal[1]]
+    VIEW_FACING: ClassVar[Literal[2]]
+    NONE: ClassVar[Literal[0]]
+    MENU: ClassVar[Literal[1]]
+    BUTTON: ClassVar[Literal[2]]
+    MOVE_AXIS: ClassVar[Literal[3]]
+    MOVE_PLANE: ClassVar[Literal[4]]
+    ROTATE_AXIS: ClassVar[Literal[5]]
+    MOVE_ROTATE: ClassVar[Literal[6]]
+    MOVE_3D: ClassVar[Literal[7]]
+    ROTATE_3D: ClassVar[Literal[8]]
+    MOVE_ROTATE_3D: ClassVar[Literal[9]]
     name: str
     orientation: geometry_msgs.Quaternion
     orientation_mode: int
@@ -108,12 +108,12 @@ class InteractiveMarkerControl(base.Message):
     ) -> None: ...
 
 class InteractiveMarkerFeedback(base.Message):
-    KEEP_ALIVE: Final = 0
-    POSE_UPDATE: Final = 1
-    MENU_SELECT: Final = 2
-    BUTTON_CLICK: Final = 3
-    MOUSE_DOWN: Final = 4
-    MOUSE_UP: Final = 5
+    KEEP_ALIVE: ClassVar[Literal[0]]
+    POSE_UPDATE: ClassVar[Literal[1]]
+    MENU_SELECT: ClassVar[Literal[2]]
+    BUTTON_CLICK: ClassVar[Literal[3]]
+    MOUSE_DOWN: ClassVar[Literal[4]]
+    MOUSE_UP: ClassVar[Literal[5]]
     header: std_msgs.Header
     client_id: str
     marker_name: str
@@ -162,8 +162,8 @@ class InteractiveMarkerPose(base.Message):
     ) -> None: ...
 
 class InteractiveMarkerUpdate(base.Message):
-    KEEP_ALIVE: Final = 0
-    UPDATE: Final = 1
+    KEEP_ALIVE: ClassVar[Literal[0]]
+    UPDATE: ClassVar[Literal[1]]
     server_id: str
     seq_num: int
     type: int
@@ -182,23 +182,23 @@ class InteractiveMarkerUpdate(base.Message):
     ) -> None: ...
 
 class Marker(base.Message):
-    ARROW: Final = 0
-    CUBE: Final = 1
-    SPHERE: Final = 2
-    CYLINDER: Final = 3
-    LINE_STRIP: Final = 4
-    LINE_LIST: Final = 5
-    CUBE_LIST: Final = 6
-    SPHERE_LIST: Final = 7
-    POINTS: Final = 8
-    TEXT_VIEW_FACING: Final = 9
-    MESH_RESOURCE: Final = 10
-    TRIANGLE_LIST: Final = 11
-    ARROW_STRIP: Final = 12
-    ADD: Final = 0
-    MODIFY: Final = 0
-    DELETE: Final = 2
-    DELETEALL: Final = 3
+    ARROW: ClassVar[Literal[0]]
+    CUBE: ClassVar[Literal[1]]
+    SPHERE: ClassVar[Literal[2]]
+    CYLINDER: ClassVar[Literal[3]]
+    LINE_STRIP: ClassVar[Literal[4]]
+    LINE_LIST: ClassVar[Literal[5]]
+    CUBE_LIST: ClassVar[Literal[6]]
+    SPHERE_LIST: ClassVar[Literal[7]]
+    POINTS: ClassVar[Literal[8]]
+    TEXT_VIEW_FACING: ClassVar[Literal[9]]
+    MESH_RESOURCE: ClassVar[Literal[10]]
+    TRIANGLE_LIST: ClassVar[Literal[11]]
+    ARROW_STRIP: ClassVar[Literal[12]]
+    ADD: ClassVar[Literal[0]]
+    MODIFY: ClassVar[Literal[0]]
+    DELETE: ClassVar[Literal[2]]
+    DELETEALL: ClassVar[Literal[3]]
     header: std_msgs.Header
     ns: str
     id: int
@@ -247,9 +247,9 @@ class MarkerArray(base.Message):
     def __init__(self, *, markers: Sequence[Marker | Mapping[str, object]] = ...) -> None: ...
 
 class MenuEntry(base.Message):
-    FEEDBACK: Final = 0
-    ROSRUN: Final = 1
-    ROSLAUNCH: Final = 2
+    FEEDBACK: ClassVar[Literal[0]]
+    ROSRUN: ClassVar[Literal[1]]
+    ROSLAUNCH: ClassVar[Literal[2]]
     id: int
     parent_id: int
     title: str

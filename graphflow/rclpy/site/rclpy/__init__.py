@@ -14,7 +14,9 @@ from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
+from graphflow.rclpy import tracebacks
 from rclpy.context import Context
+from rclpy.impl.spun import check_node
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -97,6 +99,7 @@ def init(
     if signal_handler_options is None:
         signal_handler_options = SignalHandlerOptions.ALL if context is None else SignalHandlerOptions.NO
     install_signal_handlers(signal_handler_options)
+    tracebacks.install()
     try:
         chosen.init(args, domain_id=domain_id)
     except BaseException:  # Ctrl-C included: signals must do what they did before
@@ -171,6 +174,7 @@ def create_node(
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
     """Run one callback of a node, waiting at most `timeout_sec` seconds for one that is ready."""
+    check_node(node, "spin_once")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False
     try:
@@ -183,6 +187,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
 
 def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the callbacks of a node until the context is shut down."""
+    check_node(node, "spin")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False
     try:
@@ -198,6 +203,7 @@ def spin_until_future_complete(
     node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
 ) -> None:
     """Run the callbacks of a node until a future is done, at most `timeout_sec` seconds."""
+    check_node(node, "spin_until_future_complete")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False
     try:

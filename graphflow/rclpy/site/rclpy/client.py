@@ -84,7 +84,7 @@ class Client(ServiceEnd):
     def call_async(self, request: Any) -> Future[Any]:
         """Send a request; the future has the response once a thread that spins has taken it.
 
-        A request without a server is never answered: `wait_for_service` before. Errors as for `call`.
+        A request without a server is never answered, which is told: `wait_for_service` before. Errors as for `call`.
         """
         if not isinstance(request, self.srv_type.Request):
             made = f"{self.srv_type.__name__}.Request()"

@@ -15,7 +15,8 @@ from weakref import WeakMethod, ref
 
 from graphflow.errors import GraphflowError
 from graphflow.rclpy.life import Life
-from graphflow.runtime.args import meant, missed
+from graphflow.runtime import unrun
+from graphflow.runtime.args import cut_off, meant, missed
 from graphflow.runtime.rosout import log_level, setup_console
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
 from rclpy.handle import Handle
@@ -24,6 +25,7 @@ from rclpy.impl.rcutils_logger import RcutilsLogger
 
 logger = logging.getLogger("graphflow")
 _ALREADY = "failed to shutdown: rcl_shutdown already called on the given context"
+unrun.watch()
 
 
 class Context(AbstractContextManager["Context"]):
@@ -56,6 +58,7 @@ class Context(AbstractContextManager["Context"]):
         Raises:
             RuntimeError: It has begun before, or an argument is wrong.
         """
+        unrun.made()
         words = list(sys.argv if args is None else args)
         for word in words:
             word.encode()
@@ -68,7 +71,8 @@ class Context(AbstractContextManager["Context"]):
                 life = Life(words, domain_id)
                 if life.args.unknown:
                     unknown = life.args.unknown
-                    raise UnknownROSArgsError(f"Found unknown ROS arguments: {unknown}{meant(unknown[0])}")
+                    hint = cut_off(unknown[0], words) or meant(unknown[0])
+                    raise UnknownROSArgsError(f"Found unknown ROS arguments: {unknown}{hint}")
                 if initialize_logging:
                     setup_console(is_quiet=not life.args.has_stdout)
                     level = log_level(life.args.log_level)

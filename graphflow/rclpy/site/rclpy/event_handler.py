@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from enum import IntEnum
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import rclpy.logging
 from graphflow.runtime.events import QosEvent
 from rclpy._rclpy_pybind11 import UnsupportedEventTypeError
 from rclpy.impl.passing import passed_on
-from rclpy.qos import QoSPolicyKind, qos_policy_name_from_kind
+from rclpy.qos import QoSPolicyKind
 from rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
@@ -227,7 +225,7 @@ class SubscriptionEventCallbacks:
     """What a subscription's events call.
 
     Args:
-        use_default_callbacks: Whether to log what does not fit, where no callback is given for that.
+        use_default_callbacks: Whether there are events of what does not fit, where no callback is given for that.
     """
 
     def __init__(
@@ -251,14 +249,12 @@ class SubscriptionEventCallbacks:
         subscription: Any,
         topic_name: str,
         bell: NodeBell | None = None,
-        logger_name: str = "event",
     ) -> list[EventHandler]:
         """The handlers of these callbacks."""
         kinds = QoSSubscriptionEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
-            incompatible_qos = incompatible_qos or partial(_warn_qos, logger_name, topic_name, _OFFERING)
-            incompatible_type = incompatible_type or partial(_warn_type, logger_name, topic_name)
+            incompatible_qos, incompatible_type = incompatible_qos or _logged, incompatible_type or _logged
         wanted = {
             kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
             kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: incompatible_qos,
@@ -293,14 +289,12 @@ class PublisherEventCallbacks:
         publisher: Any,
         topic_name: str,
         bell: NodeBell | None = None,
-        logger_name: str = "event",
     ) -> list[EventHandler]:
         """The handlers of these callbacks."""
         kinds = QoSPublisherEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
-            incompatible_qos = incompatible_qos or partial(_warn_qos, logger_name, topic_name, _REQUESTING)
-            incompatible_type = incompatible_type or partial(_warn_type, logger_name, topic_name)
+            incompatible_qos, incompatible_type = incompatible_qos or _logged, incompatible_type or _logged
         wanted = {
             kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
             kinds.RCL_PUBLISHER_LIVELINESS_LOST: self.liveliness,
@@ -319,19 +313,8 @@ def _handlers(wanted: dict[Any, Any], group: CallbackGroup, bell: NodeBell | Non
     ]
 
 
-_OFFERING = "New publisher discovered on topic '{}', offering incompatible QoS. No messages will be received from it."
-_REQUESTING = "New subscription discovered on topic '{}', requesting incompatible QoS. No messages will be sent to it."
-
-
-def _warn_qos(logger_name: str, topic: str, text: str, info: QoSRequestedIncompatibleQoSInfo) -> None:
-    policy = qos_policy_name_from_kind(info.last_policy_kind)
-    logger = rclpy.logging._root_logger.get_child(logger_name)
-    logger.warn(f"{text.format(topic)} Last incompatible policy: {policy}")
-
-
-def _warn_type(logger_name: str, topic: str, info: IncompatibleTypeInfo) -> None:
-    text = f"Incompatible type on topic '{topic}', no messages will be sent to it"
-    rclpy.logging._root_logger.get_child(logger_name).warn(text)
+def _logged(info: object) -> None:
+    """Nothing more: the endpoint itself logs what does not fit, with both nodes and what to change."""
 
 
 def __getattr__(name: str) -> Any:

@@ -23,6 +23,7 @@ from rclpy.impl.spinning import (
     Spinning,
     TimeoutException,
 )
+from rclpy.impl.spun import check_node
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
 
@@ -127,7 +128,8 @@ class Executor(AbstractContextManager["Executor"]):
             spinning.is_shutdown = True
 
     def add_node(self, node: Any) -> bool:
-        """Run a node's callbacks from now on; whether they were not before."""
+        """Run a node's callbacks from now on; whether they were not before. Raises TypeError for no node."""
+        check_node(node, "add_node")
         spinning = self._graphflow
         if node in spinning.nodes:
             return False
@@ -311,6 +313,9 @@ class MultiThreadedExecutor(Executor):
         if num_threads is None:
             affinity = getattr(os, "sched_getaffinity", None)
             num_threads = len(affinity(0)) if affinity is not None else os.cpu_count() or 2
+        if not isinstance(num_threads, int):
+            fault = f"num_threads must be a number of threads, got {num_threads!r}"
+            raise TypeError(f"{fault}: nodes are added by executor.add_node(node)")
         if num_threads == 1:
             warnings.warn(
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",

@@ -31,6 +31,7 @@ from rclpy.impl.arguments import explained
 from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
 from rclpy.impl.inner import Holdings, Inner, Known, none
+from rclpy.impl.overrides import as_parameters
 from rclpy.impl.parameter_methods import ParameterMethods
 from rclpy.impl.parameters import NodeParameters
 from rclpy.impl.passing import passed_on
@@ -99,8 +100,8 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         space = space if space.startswith("/") else f"/{space}"
         validate_node_name(node_name)
         validate_namespace(space)
-        names = Resolver(node_name, space, remaps)
         try:
+            names = Resolver(node_name, space, remaps)
             values = held.overrides_for(life.args, names) if use_global_arguments else {}
             values |= held.overrides_for(own, names)
         except GraphflowError as error:
@@ -111,13 +112,11 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         inner = self._graphflow = Inner(context, life, node, bell)
         life.nodes[self] = partial(_destroy, weakref.ref(self))
         self._graphflow_handle_of_node = Handle(partial(_close, life, node))
-        overrides: dict[str, Parameter[Any]] = {
-            name: Parameter(name, value=value) for name, (value, _) in values.items()
-        }
-        overrides |= {p.name: p for p in parameter_overrides or ()}
+        overrides = as_parameters(values) | {p.name: p for p in parameter_overrides or ()}
         inner.parameters = NodeParameters(
             overrides, self._graphflow_parameters_changed, allows_undeclared=allow_undeclared_parameters
         )
+        inner.parameters.sources = {name: source for name, (_, source) in values.items()}
         attend(life)
         self._graphflow_open_parameters(start_parameter_services)
         if enable_logger_service:
@@ -234,7 +233,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             _declare_qos_parameters(Publisher, self, name, qos, qos_overriding_options)
         inner = self._graphflow
         callbacks = event_callbacks or PublisherEventCallbacks()
-        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell, inner.logger.name)
+        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
         told = dispatcher(handlers)
         with self.handle:
             endpoint = held.add(
@@ -282,7 +281,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             _declare_qos_parameters(Subscription, self, name, qos, qos_overriding_options)
         inner = self._graphflow
         callbacks = event_callbacks or SubscriptionEventCallbacks()
-        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell, inner.logger.name)
+        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
         told, mark = dispatcher(handlers), _Mark(inner.bell)
         with self.handle:
             endpoint = held.add(
@@ -422,6 +421,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         self._graphflow.guards.append(made)
         return made
 
+    @explained
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """A rhythm for threads. Raises ValueError for a frequency that is not positive."""
         if frequency <= 0:

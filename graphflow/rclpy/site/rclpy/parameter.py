@@ -12,6 +12,7 @@ from graphflow.errors import GraphflowError
 from graphflow.graph import params_file
 from graphflow.graph.source import parse_value
 from rclpy.impl.passing import passed_on
+from rclpy.impl.value_fields import FIELDS, check
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -22,10 +23,6 @@ T = TypeVar("T")
 PARAMETER_SEPARATOR_STRING = "."
 AllowableParameterValue = Any
 
-_FIELDS = (
-    *("", "bool_value", "integer_value", "double_value", "string_value", "byte_array_value", "bool_array_value"),
-    *("integer_array_value", "double_array_value", "string_array_value"),
-)
 _ARRAYS = {bool: "BOOL_ARRAY", int: "INTEGER_ARRAY", float: "DOUBLE_ARRAY", str: "STRING_ARRAY", bytes: "BYTE_ARRAY"}
 _CODES = {"b": "INTEGER_ARRAY", "q": "INTEGER_ARRAY", "i": "INTEGER_ARRAY", "l": "INTEGER_ARRAY", "d": "DOUBLE_ARRAY"}
 
@@ -130,6 +127,11 @@ class Parameter(Generic[T]):
 
     def get_parameter_value(self) -> ParameterValue:
         """The value as rcl_interfaces/msg/ParameterValue."""
+        message = self._message()
+        check(self, message)
+        return message
+
+    def _message(self) -> ParameterValue:
         from rcl_interfaces.msg import ParameterValue
 
         if self._type_ is Parameter.Type.NOT_SET:
@@ -137,7 +139,7 @@ class Parameter(Generic[T]):
         value = self._value
         if self._type_.value > 4:
             value = value if isinstance(value, array.array) else list(value)
-        return ParameterValue(**{"type": self._type_.value, _FIELDS[self._type_.value]: value})
+        return ParameterValue(**{"type": self._type_.value, FIELDS[self._type_.value]: value})
 
     def to_parameter_msg(self) -> ParameterMessage:
         """The parameter as rcl_interfaces/msg/Parameter."""
@@ -166,11 +168,11 @@ def get_parameter_value(string_value: str) -> ParameterValue:
 
 def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
     """The value that a message holds: a list for an array. Raises RuntimeError for a type that there is not."""
-    if not 0 <= parameter_value.type < len(_FIELDS):
+    if not 0 <= parameter_value.type < len(FIELDS):
         raise RuntimeError(f"unexpected parameter type {parameter_value.type}")
     if not parameter_value.type:
         return None
-    value = getattr(parameter_value, _FIELDS[parameter_value.type])
+    value = getattr(parameter_value, FIELDS[parameter_value.type])
     return list(value) if parameter_value.type > 4 else value
 
 

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from graphflow.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
 from rclpy.duration import Duration
+from rclpy.impl.callers import stack_level
 
 _BEST_AVAILABLE_NS = 2**63 - 2
 _POLICIES = (
@@ -126,6 +127,15 @@ QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
 
 
+def _wanted(name: str, kind: type, value: object) -> str:
+    """Say what to write in place of a value of the wrong type."""
+    way = f"{kind.__name__}(seconds={value})" if kind is Duration else "10" if kind is int else ""
+    if issubclass(kind, Enum):
+        members = [member.name for member in kind]
+        way = f"{kind.__name__}.{str(value).upper() if str(value).upper() in members else members[1]}"
+    return f"{name} must be {'a' if kind is not int else 'an'} {kind.__name__}, got {value!r}: write {way}"
+
+
 class QoSProfile:
     """The policies of one endpoint.
 
@@ -174,7 +184,7 @@ class QoSProfile:
 
     @history.setter
     def history(self, value: HistoryPolicy) -> None:
-        assert isinstance(value, (HistoryPolicy, int))
+        assert isinstance(value, (HistoryPolicy, int)), _wanted("history", HistoryPolicy, value)
         self._history = HistoryPolicy(value)
 
     @property
@@ -183,7 +193,7 @@ class QoSProfile:
 
     @reliability.setter
     def reliability(self, value: ReliabilityPolicy) -> None:
-        assert isinstance(value, (ReliabilityPolicy, int))
+        assert isinstance(value, (ReliabilityPolicy, int)), _wanted("reliability", ReliabilityPolicy, value)
         self._reliability = ReliabilityPolicy(value)
 
     @property
@@ -192,7 +202,7 @@ class QoSProfile:
 
     @durability.setter
     def durability(self, value: DurabilityPolicy) -> None:
-        assert isinstance(value, (DurabilityPolicy, int))
+        assert isinstance(value, (DurabilityPolicy, int)), _wanted("durability", DurabilityPolicy, value)
         self._durability = DurabilityPolicy(value)
 
     @property
@@ -201,12 +211,12 @@ class QoSProfile:
 
     @depth.setter
     def depth(self, value: int) -> None:
-        assert isinstance(value, int)
+        assert isinstance(value, int), _wanted("depth", int, value)
         if self.history == HistoryPolicy.KEEP_LAST and value == 0:
             warnings.warn(
                 "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
-                "This will be interpreted as SYSTEM_DEFAULT",
-                stacklevel=2,
+                "This will be interpreted as SYSTEM_DEFAULT: write a depth, such as 10",
+                stacklevel=stack_level(),
             )
         if value < 0:
             raise ValueError("Depth must be greater than or equal to zero")
@@ -218,7 +228,7 @@ class QoSProfile:
 
     @lifespan.setter
     def lifespan(self, value: Duration) -> None:
-        assert isinstance(value, Duration)
+        assert isinstance(value, Duration), _wanted("lifespan", Duration, value)
         self._lifespan = value
 
     @property
@@ -227,7 +237,7 @@ class QoSProfile:
 
     @deadline.setter
     def deadline(self, value: Duration) -> None:
-        assert isinstance(value, Duration)
+        assert isinstance(value, Duration), _wanted("deadline", Duration, value)
         self._deadline = value
 
     @property
@@ -236,7 +246,7 @@ class QoSProfile:
 
     @liveliness.setter
     def liveliness(self, value: LivelinessPolicy) -> None:
-        assert isinstance(value, (LivelinessPolicy, int))
+        assert isinstance(value, (LivelinessPolicy, int)), _wanted("liveliness", LivelinessPolicy, value)
         self._liveliness = LivelinessPolicy(value)
 
     @property
@@ -245,7 +255,7 @@ class QoSProfile:
 
     @liveliness_lease_duration.setter
     def liveliness_lease_duration(self, value: Duration) -> None:
-        assert isinstance(value, Duration)
+        assert isinstance(value, Duration), _wanted("liveliness_lease_duration", Duration, value)
         self._liveliness_lease_duration = value
 
     @property

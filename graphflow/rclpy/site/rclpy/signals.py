@@ -96,13 +96,17 @@ def _caught(number: int, frame: FrameType | None) -> None:
         _thread.start_new_thread(_again, (number,))
         return
     _put_off.pop(number, None)
+    is_ending = not threading.main_thread().is_alive()  # the interpreter waits only for other threads to end
     for context in list(_watched):
         life = context.life
-        if life is not None and life.end():
+        if life is None or not life.end():
+            continue
+        if is_ending:  # there can be no new thread, and this one holds nothing
+            context.finish()
+        else:
             # What it calls may take long, or wait for what this thread holds; so does `Thread.start`.
             _thread.start_new_thread(context.finish, ())
     former = _former.get(number)
-    is_ending = not threading.main_thread().is_alive()  # the interpreter waits only for the network to be left
     if callable(former) and not is_ending:
         tracebacks.install()
         former(number, frame)

@@ -10,6 +10,9 @@ import weakref
 from collections.abc import Callable, Generator
 from typing import Any, Generic, Protocol, TypeVar
 
+from rclpy.impl import early_results
+from rclpy.impl.callers import caller
+
 T = TypeVar("T")
 
 
@@ -103,6 +106,8 @@ class Future(Generic[T]):
 
     def result(self) -> T | None:
         """The result; None as long as there is none. Raises the exception, if that was set."""
+        if not (self._is_done or self._is_cancelled):
+            early_results.check(caller(1))
         error = self.exception()
         if error is not None:
             raise error
@@ -225,7 +230,8 @@ class Task(Future[T]):
         try:
             if self._coroutine is None:
                 handler, self._handler = self._handler, None
-                result = handler(*self._args, **self._kwargs)
+                args = self._args  # errors are explained by it
+                result = handler(*args, **self._kwargs)
                 if not self._suspends(result):
                     self._end(result, None)
                     return

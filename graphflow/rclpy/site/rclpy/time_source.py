@@ -43,6 +43,11 @@ class TimeSource:
             self.attach_node(node)
 
     @property
+    def last_ns(self) -> int:
+        """graphflow's: the last time that came on /clock; 0 before there is one."""
+        return self._last.nanoseconds
+
+    @property
     def ros_time_is_active(self) -> bool:
         """Whether the clocks go by /clock."""
         return self._is_active

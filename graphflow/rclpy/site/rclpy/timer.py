@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy.wake import Wake
-from rclpy._rclpy_pybind11 import TimerCancelledError
+from rclpy._rclpy_pybind11 import RCLError, TimerCancelledError
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
@@ -37,6 +37,9 @@ class Timer:
     Args:
         callback: Takes nothing, or a `TimerInfo`.
         autostart: Whether it runs at once, or after its first `reset`.
+
+    Raises:
+        RCLError: The period is negative.
     """
 
     def __init__(
@@ -51,6 +54,8 @@ class Timer:
         bell: NodeBell | None = None,
     ) -> None:
         self._context = get_default_context() if context is None else context
+        if timer_period_ns < 0:
+            raise RCLError("Failed to create timer: timer period must be non-negative")
         self._clock, self._period_ns, self._bell = clock, int(timer_period_ns), bell
         self._is_canceled = not autostart
         self._lock = threading.Lock()

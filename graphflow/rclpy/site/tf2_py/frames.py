@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from dataclasses import dataclass, field
 
+from graphflow.names import did_you_mean
 from tf2_py.exceptions import ConnectivityException, ExtrapolationException, LookupException, TransformException
 from tf2_py.poses import IDENTITY, Pose
 
@@ -14,6 +15,8 @@ SAMPLES_BOUND = 20_000
 """Poses that are kept of one frame, whatever their times."""
 TOTAL_BOUND = 1_000_000
 """Poses that are kept of all."""
+SHOWN = 5
+"""Frames that an error names."""
 
 
 @dataclass(slots=True)
@@ -111,6 +114,17 @@ class Frames:
         """All of them."""
         return sorted({*self.histories, *self._parents})
 
+    def _unknown(self, frame: str, role: str) -> LookupException:
+        """The error for a frame that nobody has heard of, with those that there are."""
+        error = LookupException(f'"{frame}" passed to lookupTransform argument {role} does not exist. ')
+        names = self.names()
+        known = f"the frames known so far are {', '.join(names[:SHOWN])}" if names else "no frame is known so far"
+        error.add_note(
+            f"note: {known}{' ...' if len(names) > SHOWN else ''}{did_you_mean(frame, names)}; "
+            "frames come after a while: catch tf2_ros.TransformException, and try again"
+        )
+        return error
+
     def find(self, target: str, source: str, stamp: int) -> tuple[Pose, int]:
         """The pose of `source` in `target`, and its time.
 
@@ -124,7 +138,7 @@ class Frames:
             return IDENTITY, stamp or (self.latest_common(target, source) if self.has(target) else 0)
         for frame, role in ((target, "target_frame"), (source, "source_frame")):
             if not self.has(frame):
-                raise LookupException(f'"{frame}" passed to lookupTransform argument {role} does not exist. ')
+                raise self._unknown(frame, role)
         if stamp == 0:
             stamp = self.latest_common(target, source)
         ups = {source: IDENTITY}

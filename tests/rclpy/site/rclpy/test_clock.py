@@ -8,6 +8,7 @@ import time
 import pytest
 
 import rclpy
+from graphflow.rclpy.wake import Wake
 from rclpy.clock import Clock, ClockChange, JumpThreshold, ROSClock, TimeJump
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
@@ -92,12 +93,19 @@ def test_a_sleep_lasts_until_its_time_has_come() -> None:
 
 
 @pytest.mark.parametrize("cause", ["shutdown", "change"])
-def test_a_sleep_is_cut_off(cause: str) -> None:
+def test_a_sleep_is_cut_off(cause: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """By the end of the context, or when simulated time begins; then it says that its time has not come."""
     rclpy.init()
     clock = ROSClock()
     cut = rclpy.shutdown if cause == "shutdown" else lambda: clock._set_ros_time_is_active(True)
-    threading.Timer(0.02, cut).start()
+    wait = Wake.wait
+
+    def cut_and_wait(self: Wake, timeout: float | None = None) -> bool:
+        monkeypatch.undo()
+        threading.Thread(target=cut).start()
+        return wait(self, timeout)
+
+    monkeypatch.setattr(Wake, "wait", cut_and_wait)
     assert not clock.sleep_for(Duration(seconds=30))
 
 

@@ -23,6 +23,7 @@ from rclpy.exceptions import (
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from tests.cases import slow
 
 
 def test_a_node_needs_a_context() -> None:
@@ -135,6 +136,7 @@ def test_parameters_may_be_declared_from_outside(node: Node) -> None:
     assert other.describe_parameter("a").dynamic_typing
 
 
+@slow
 def test_an_executor_does_not_keep_a_node(node: Node) -> None:
     """That nobody else has."""
     executor = SingleThreadedExecutor()

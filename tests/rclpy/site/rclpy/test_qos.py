@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from graphflow.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
@@ -22,8 +24,9 @@ def test_a_profile_needs_a_depth_or_another_history() -> None:
         QoSProfile(depth=1, speed=3)
     with pytest.raises(ValueError, match="greater than or equal to zero"):
         QoSProfile(depth=-1)
-    with pytest.warns(UserWarning, match="zero depth"):
+    with pytest.warns(UserWarning, match="zero depth") as warned:
         QoSProfile(depth=0)
+    assert [warning.filename for warning in warned] == [__file__]  # the line that gives it
 
 
 def test_profiles_are_compared_by_their_policies() -> None:
@@ -111,3 +114,25 @@ def test_former_names_of_values(policy: type[qos.QoSPolicyEnum], former: str, na
     with pytest.warns(UserWarning, match=f"it is {policy.__name__}.{name} now"):
         assert getattr(policy, former) is policy[name]
     assert not hasattr(policy, f"{former}_NOT")
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        (
+            {"durability": "transient_local"},
+            "must be a DurabilityPolicy, got 'transient_local': write DurabilityPolicy.TRANS",
+        ),
+        (
+            {"reliability": "fast"},
+            "reliability must be a ReliabilityPolicy, got 'fast': write ReliabilityPolicy.RELIABLE",
+        ),
+        ({"deadline": 0.5}, "deadline must be a Duration, got 0.5: write Duration(seconds=0.5)"),
+        ({"depth": "1"}, "depth must be an int, got '1': write 10"),
+    ],
+)
+def test_values_of_other_types(given: dict[str, Any], text: str) -> None:
+    """They are refused with what to write."""
+    with pytest.raises(AssertionError) as caught:
+        QoSProfile(**{"depth": 1, **given})
+    assert text in str(caught.value)

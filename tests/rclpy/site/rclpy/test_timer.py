@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import ROSClock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.node import Node
@@ -124,3 +125,9 @@ def test_a_rate_is_cut_off_by_the_end_of_the_context(node: Node) -> None:
         rate.sleep()
     with pytest.raises(ROSInterruptException):
         rate.sleep()
+
+
+def test_a_negative_period(node: Node) -> None:
+    """Is refused, as by rcl."""
+    with pytest.raises(RCLError, match="timer period must be non-negative"):
+        node.create_timer(-1.0, lambda: None)

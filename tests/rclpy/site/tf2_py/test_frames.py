@@ -127,3 +127,17 @@ def test_nobody_can_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     frames.clear()
     assert frames.names() == []
     assert frames.put("base", "odom", S, at(0), is_static=False)
+
+
+def test_a_frame_that_is_not_known(frames: Frames) -> None:
+    """The error has a note with the nearest of those that are."""
+    names = frames.names()
+    for asked, known in (
+        (frames, f"the frames known so far are {', '.join(names[:5])}"),
+        (Frames(1), "no frame is known"),
+    ):
+        with pytest.raises(LookupException) as caught:
+            asked.find(f"{names[0]}x", names[1], 0)
+        [note] = caught.value.__notes__
+        assert note.startswith(f"note: {known}")
+        assert (f"did you mean '{names[0]}'?" in note) is (asked is frames)

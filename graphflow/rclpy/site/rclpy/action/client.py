@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 import uuid
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
 from rclpy.impl.arguments import explained
+from rclpy.impl.callers import caller
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
 
 __all__ = ["ActionClient", "ClientGoalHandle"]
+
+logger = logging.getLogger("graphflow")
 
 
 class ClientGoalHandle:
@@ -80,7 +84,12 @@ class ClientGoalHandle:
         return self._action_client._graphflow_block_on(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
-        """The future has `status` and `result` when it has ended."""
+        """The future has `status` and `result` when it has ended; both are empty for a goal that was rejected."""
+        if not self.accepted and (asked := caller(1)) is not None:
+            text = (
+                "%s: the goal was rejected, and has no result: look at goal_handle.accepted before get_result_async()"
+            )
+            logger.warning(text, asked.place)
         return self._action_client._graphflow_result_of(self)
 
 

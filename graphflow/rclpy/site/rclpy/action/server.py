@@ -18,11 +18,12 @@ from graphflow.machines.goal import GoalStatus as Status
 from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.life import LOOP
+from graphflow.rclpy.tracebacks import shorten
 from graphflow.runtime.threaded import Asked, ThreadedPublisher, ThreadedService
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending
-from rclpy.impl.arguments import explained, must_return
+from rclpy.impl.arguments import described, explained, must_return
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
@@ -271,12 +272,14 @@ class ActionServer(Waitable):
                 answer = await await_or_execute(self._goal_callback, request.goal)
             except Exception as error:
                 self._logger.error(f"Error raised in goal callback: {error}")
-                traceback.print_exc()
+                shorten(error)
+                traceback.print_exception(error)
                 with sending():
                     self._graphflow_goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
                 raise
             if not isinstance(answer, GoalResponse):
-                self._logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
+                way = must_return(self._goal_callback, "GoalResponse.ACCEPT", answer)
+                self._logger.warning(f"Goal request callback did not return a GoalResponse type. Rejecting goal: {way}")
         accepted = answer is GoalResponse.ACCEPT
         stamp = self._node.get_clock().now().to_msg()
         handle = None
@@ -306,17 +309,19 @@ class ActionServer(Waitable):
         self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: ServerGoalHandle
     ) -> None:
         self._logger.debug(f"Executing goal with ID {bytes(goal_handle.goal_id.uuid).hex()}")
+        way = f": {described(execute_callback)} returned without goal_handle.succeed()"
         try:
             result = await await_or_execute(execute_callback, goal_handle)
         except Exception as error:
-            result = self._action_type.Result()
+            way, result = "", self._action_type.Result()
             self._logger.error(f"Error raised in execute callback: {error}")
-            traceback.print_exc()
+            shorten(error)
+            traceback.print_exception(error)
         if not isinstance(result, self._action_type.Result):
             raise AssertionError(must_return(execute_callback, f"a {self._action_type.__name__}.Result()", result))
         if goal_handle.is_active:
             shown = bytes(goal_handle.goal_id.uuid).hex()
-            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {shown}")
+            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {shown}{way}")
             goal_handle.abort()
         self._logger.debug(f"Goal with ID {bytes(goal_handle.goal_id.uuid).hex()} finished")
         carrier = self._action_type.Impl.GetResultService
@@ -383,12 +388,12 @@ class ActionServer(Waitable):
                 self._graphflow_results.answer(asked, messages.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
         goal._graphflow_asked.append(asked)
-        goal._result._when_done(partial(self._graphflow_answer_result, asked, goal))
+        goal._result._when_done(partial(self._graphflow_answer_result, asked, goal._result))  # no reference to the goal
 
-    def _graphflow_answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:
+    def _graphflow_answer_result(self, asked: Asked, result: Future[Any]) -> None:
         if self._graphflow_is_open:
             with sending():
-                self._graphflow_results.answer(asked, messages.encode(goal._result.result()))
+                self._graphflow_results.answer(asked, messages.encode(result.result()))
 
     def notify_goal_done(self) -> None:
         """A goal has ended: results are kept from then on for their time."""
@@ -414,7 +419,8 @@ class ActionServer(Waitable):
     def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
         """Publish feedback on a goal. Raises TypeError if it is none of the action's."""
         if not isinstance(feedback, self._action_type.Feedback):
-            raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}")
+            way = f"write publish_feedback({self._action_type.__name__}.Feedback(...))"
+            raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}: {way}")
         message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
         if self._graphflow_is_open:
             with sending():

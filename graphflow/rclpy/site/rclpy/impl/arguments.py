@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import inspect
 import logging
-import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from itertools import combinations, permutations
-from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
-from graphflow.deadlock.user_code import is_users
-from graphflow.errors import Place
-from rclpy.qos import QoSProfile
+from graphflow.deadlock.user_code import short_place
+from graphflow.msgs import registry
+from graphflow.msgs.registry import KINDS
+from rclpy.impl import repeats
+from rclpy.impl.callers import caller
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyEnum, QoSProfile, ReliabilityPolicy
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -38,10 +39,14 @@ _PARAMETERS: dict[str, tuple[str, Callable[[object], bool]]] = {
     "action_type": ("an action class", _is_interface("Goal")),
     "qos_profile": ("a QoSProfile or a depth", lambda value: isinstance(value, (QoSProfile, int))),
     "timer_period_sec": ("a number of seconds", lambda value: isinstance(value, (int, float))),
+    "frequency": ("a number of hertz", lambda value: isinstance(value, (int, float))),
+    "parameter_list": ("a list of parameters", lambda value: isinstance(value, Iterable)),
     **dict.fromkeys(("topic", "srv_name", "action_name"), ("a name", lambda value: isinstance(value, str))),
     **dict.fromkeys(("callback", "execute_callback"), ("a function or method", _is_callback)),
 }
 """The kinds of values that calls take, by parameter."""
+_WRITTEN = {"parameter_list": "[Parameter('name', value=...)]"}
+"""Arguments as a call has them, where the name of the parameter does not say it."""
 
 
 def explained(call: Callable[P, T]) -> Callable[P, T]:
@@ -58,14 +63,18 @@ def explained(call: Callable[P, T]) -> Callable[P, T]:
             try:
                 given = signature.bind_partial(*args, **kwargs).arguments
             except TypeError:
-                raise error from None
+                raise error.with_traceback(None) from None
             fault = _fault(name, {word: given[word] for word in needed if word in given}, needed)
+            fault = fault or _no_group(name, given.get("callback_group"))
             if not fault:
                 raise
             kind = next(kind for kind in (TypeError, AttributeError, RuntimeError) if isinstance(error, kind))
             raise kind(fault) from None
         if "callback" in needed and signature.bind(*args, **kwargs).arguments["callback"] is None:
             _warn(name)
+        if "qos_profile" in signature.parameters:
+            _check_depth(name, signature.bind(*args, **kwargs).arguments.get("qos_profile"))
+        repeats.count(args[0], name, made)
         return made
 
     return checked
@@ -87,8 +96,34 @@ def _fault(name: str, given: Mapping[str, Any], needed: list[str]) -> str:
     if any("callback" in word for word in wrong):
         return _no_callback(name, next(given[word] for word in wrong if "callback" in word))
     word = wrong[0]
-    expected = f"{name}({', '.join(needed)})"
+    way = _class_meant(word, given[word])
+    if way:
+        return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: {way}"
+    expected = f"{name}({', '.join(_WRITTEN.get(word, word) for word in needed)})"
     return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: write {expected}"
+
+
+def _class_meant(word: str, value: object) -> str:
+    """Say how the class of an interface is given, in place of something else; empty if that is not known."""
+    if not word.endswith("_type"):
+        return ""
+    if isinstance(value, str):
+        names = [f"{p}/{kind}/{n}" for p in registry.packages() for kind in KINDS for n in registry.names_in(p, kind)]
+        found = next((n for n in names if value in (n, n.replace("/", "."), n.rpartition("/")[2])), "")
+        package, _, base = found.replace("/", ".").rpartition(".")
+        return f"give the class: from {package} import {base}" if found else ""
+    for part, (kind, calls) in _USES.items():
+        if isinstance(value, type) and hasattr(value, part):
+            return f"{value.__name__} is {kind}: use {calls}"
+    return ""
+
+
+_USES = {
+    "Goal": ("an action", "ActionServer or ActionClient"),
+    "Request": ("a service", "create_service or create_client"),
+    "SCHEMA": ("a message", "create_publisher or create_subscription"),
+}
+"""Kinds of interface classes, by an attribute that no other kind has, and the calls that take them."""
 
 
 def _no_callback(name: str, value: object) -> str:
@@ -97,6 +132,18 @@ def _no_callback(name: str, value: object) -> str:
         f"{name} was given {given} as its callback: give it the method itself, without parentheses, as in self.method; "
         "self.method() calls it at once, and gives what it returns"
     )
+
+
+def _no_group(name: str, value: object) -> str:
+    """The fault of what is given as a callback group; empty if it is one, or none."""
+    if value is None or (hasattr(value, "beginning_execution") and not isinstance(value, type)):
+        return ""
+    if isinstance(value, (int, QoSProfile)):
+        thing = name.removeprefix("create_")
+        return f"a {thing} has no depth: leave out {_shown(value)}, which is taken for its callback group"
+    made = value.__name__ if isinstance(value, type) else "MutuallyExclusiveCallbackGroup"
+    given = f"the class {made}" if isinstance(value, type) else repr(value)
+    return f"callback_group of {name} must be a callback group, got {given}: make one, as in {made}()"
 
 
 def _fits(word: str, value: object) -> bool:
@@ -116,10 +163,22 @@ def _shown(value: object) -> str:
 
 def _warn(name: str) -> None:
     """Tell that a call was given None as its callback, which ROS 2 takes; not where graphflow itself does that."""
-    frame = sys._getframe(2)
-    if is_users(frame.f_code.co_filename):
-        place = Place(Path(frame.f_code.co_filename).name, frame.f_lineno)
-        logger.warning("%s (%s)", _no_callback(name, None), place)
+    asked = caller(2)
+    if asked is not None:
+        logger.warning("%s (%s)", _no_callback(name, None), asked.place)
+
+
+_POLICIES = {DurabilityPolicy: "durability", HistoryPolicy: "history", ReliabilityPolicy: "reliability"}
+
+
+def _check_depth(name: str, qos: object) -> None:
+    """Tell that a policy was given in the place of a depth, as which ROS 2 takes its number."""
+    asked = caller(2) if isinstance(qos, QoSPolicyEnum) else None
+    if asked is not None and isinstance(qos, QoSPolicyEnum):
+        policy = f"{type(qos).__name__}.{qos.name}"
+        text = "%s takes %s for a depth of %d: write QoSProfile(depth=10, %s=%s) (%s)"
+        word = _POLICIES.get(type(qos), "liveliness")
+        logger.warning(text, name, policy, int(qos), word, policy, asked.place)
 
 
 class Unmade:
@@ -129,7 +188,7 @@ class Unmade:
         if node is None:
             return self
         code = getattr(owner.__init__, "__code__", None)  # type: ignore[misc]  # which class it is does not matter
-        place = f" ({Place(Path(code.co_filename).name, code.co_firstlineno)})" if code is not None else ""
+        place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
         name = owner.__name__
         raise AttributeError(
             f"{name} is no node yet: {name}.__init__{place} must call super().__init__('node_name') before all else"
@@ -138,7 +197,12 @@ class Unmade:
 
 def must_return(callback: Any, what: str, value: object) -> str:
     """The sentence for a callback that has returned something else than `what`."""
+    given = "None" if value is None else type(value).__name__
+    return f"{described(callback)} must return {what}, and returned {given}"
+
+
+def described(callback: Any) -> str:
+    """A callback with its line: `tick (lamp.py:12)`."""
     code = getattr(callback, "__code__", None)
-    place = f" ({Place(Path(code.co_filename).name, code.co_firstlineno)})" if code is not None else ""
-    name = getattr(callback, "__name__", type(callback).__name__)
-    return f"{name}{place} must return {what}, and returned {'None' if value is None else type(value).__name__}"
+    place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
+    return f"{getattr(callback, '__name__', type(callback).__name__)}{place}"

@@ -18,6 +18,7 @@ from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.impl.buffers import BufferWait, buffer_wait
 from rclpy.impl.locks import Entering, entered_at, function_of
+from rclpy.impl.openings import tries_forever
 from rclpy.impl.stacks import Level
 from rclpy.task import Future
 from rclpy.timer import Rate, Timer
@@ -75,6 +76,8 @@ def blocked(level: Level) -> Blocked:
     users = level.innermost
     if users is None:
         return Blocked()
+    if (client := _polled_client(users)) is not None:
+        return Blocked(service=_service_of(client))
     return Blocked(future=_polled(users), lock=entered_at(users) if users is level.frames[-1] else None)
 
 
@@ -114,23 +117,32 @@ def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
 
 def _polled(frame: Frame) -> Future[Any] | None:
     """The future that the innermost loop around a line asks, if that is all that ends the loop."""
+    loop = _loop_around(frame)
+    if loop is None:
+        return None
+    asked = [*_asked(loop.test)]
+    if asked:
+        return _future(asked[0], frame) if len(asked) == 1 and _asks_alone(loop) else None
+    if not (isinstance(loop.test, ast.Constant) or ast.unparse(loop.test) in ("rclpy.ok()", "ok()")):
+        return None
+    choices = [n for n in loop.body if isinstance(n, ast.If) and [*_asked(n.test)]]
+    if (
+        len(choices) != 1
+        or isinstance(choices[0].test, ast.BoolOp)
+        or _leaves([n for n in loop.body if n is not choices[0]])
+    ):
+        return None
+    return _future(next(_asked(choices[0].test)), frame)
+
+
+def _loop_around(frame: Frame) -> ast.While | None:
+    """The innermost loop around a line."""
     try:
         function = function_of(frame)
     except Unknown:
         return None
     loops = [n for n in ast.walk(function) if isinstance(n, ast.While) and _spans(n, frame.f_lineno)]
-    if not loops:
-        return None
-    loop = loops[-1]
-    asked = [*_asked(loop.test)]
-    if asked:
-        return _value(asked[0], frame) if len(asked) == 1 and not _leaves(loop.body) else None
-    if not (isinstance(loop.test, ast.Constant) or ast.unparse(loop.test) in ("rclpy.ok()", "ok()")):
-        return None
-    choices = [n for n in loop.body if isinstance(n, ast.If) and [*_asked(n.test)]]
-    if len(choices) != 1 or _leaves([n for n in loop.body if n is not choices[0]]):
-        return None
-    return _value(next(_asked(choices[0].test)), frame)
+    return loops[-1] if loops else None
 
 
 def _asked(test: ast.expr) -> Iterator[ast.expr]:
@@ -147,20 +159,44 @@ def _asked(test: ast.expr) -> Iterator[ast.expr]:
                 yield owner
 
 
+def _asks_alone(loop: ast.While) -> bool:
+    """Whether only the answer that a loop asks for, or the end of the program, ends it: no clock and no counter."""
+    is_both = isinstance(loop.test, ast.BoolOp) and isinstance(loop.test.op, ast.And)
+    parts = loop.test.values if is_both else [loop.test]  # type: ignore[attr-defined]
+    others = [part for part in parts if not ast.unparse(part).endswith("ok()") and not [*_asked(part)]]
+    nested = [node for part in parts for node in ast.walk(part) if isinstance(node, ast.BoolOp)]
+    return not (others or nested or _leaves(loop.body))
+
+
 def _leaves(body: list[ast.stmt]) -> bool:
     """Whether statements may leave the loop that they are in."""
     return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
 
 
-def _value(expression: ast.expr, frame: Frame) -> Future[Any] | None:
-    """The future that a name, or an attribute of one, is."""
-    found: Any = None
+def _future(expression: ast.expr, frame: Frame) -> Future[Any] | None:
+    found = _value(expression, frame)
+    return found if isinstance(found, Future) else None
+
+
+def _value(expression: ast.expr, frame: Frame) -> Any:
+    """The value of a name, or of an attribute of one; None where that is not known."""
     match expression:
         case ast.Name(id=name):
-            found = frame.f_locals.get(name, frame.f_globals.get(name))
+            return frame.f_locals.get(name, frame.f_globals.get(name))
         case ast.Attribute(value=ast.Name(id=owner), attr=name):
-            found = getattr(frame.f_locals.get(owner), "__dict__", {}).get(name)
-    return found if isinstance(found, Future) else None
+            return getattr(frame.f_locals.get(owner), "__dict__", {}).get(name)
+    return None
+
+
+def _polled_client(frame: Frame) -> Client | ActionClient | None:
+    """The client that the innermost loop around a line asks for its server, until that is there."""
+    loop = _loop_around(frame)
+    for node in ast.walk(loop.test) if loop is not None and tries_forever(frame) else ():
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner, attr="service_is_ready" | "server_is_ready")):
+                found = _value(owner, frame)
+                return found if isinstance(found, (Client, ActionClient)) else None
+    return None
 
 
 def _spans(node: ast.stmt, line: int) -> bool:

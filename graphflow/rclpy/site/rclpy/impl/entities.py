@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from graphflow.deadlock.frames import Frame, awaited, suspended
 from graphflow.deadlock.source import ANSWERED
 from graphflow.deadlock.user_code import is_ours
-from graphflow.errors import ClosedError
+from graphflow.errors import ClosedError, ServerLost
 from graphflow.machines.wait_graph import goal_id
 from graphflow.runtime.threaded import Asked, read_request
 from rclpy.action.client import ActionClient
@@ -106,7 +106,8 @@ def _requests(endpoint: Any) -> tuple[tuple[str, ...], int]:
 
 
 def _answers(endpoint: Any) -> tuple[tuple[str, ...], int]:
-    items = list(endpoint.inbox.items)
+    # That a call is lost is no answer: whoever takes it, the future of the call is never done.
+    items = [answered for answered in list(endpoint.inbox.items) if not isinstance(answered.error, ServerLost)]
     try:
         return tuple(endpoint.call_id(answered.sequence) for answered in items), len(items)
     except ClosedError:

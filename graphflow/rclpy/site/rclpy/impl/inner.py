@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,7 @@ class Inner:
         self.guards: list[GuardCondition] = []
         self.waitables: list[Waitable] = []
         self.executor: Callable[[], Any] = none
+        self.begun = time.monotonic()
         self.times_added = 0
         """How often it was added to an executor."""
         self.group: CallbackGroup = MutuallyExclusiveCallbackGroup()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from typing import Any, NamedTuple
@@ -17,6 +18,8 @@ _MAKERS = {"create_service": 1, "ActionServer": 2}
 """Calls that make servers, and the position of the name among their arguments."""
 _NAMES = {"srv_name", "action_name"}
 _ACTION = "/_action/"
+_ASKS = re.compile(r"\.(wait_for_s|service_is_ready|server_is_ready)")
+"""How code asks a client for its server."""
 
 
 class Opening(NamedTuple):
@@ -88,7 +91,7 @@ def opening_of(
         found = handlers_above(name, methods, node) if methods else None
     except Unknown:
         return None
-    handlers = frozenset[str]() if found is None else found.handlers
+    handlers = frozenset[str]() if found is None or found.parts else found.handlers
     return Opening(handlers, is_own) if handlers or is_own else None
 
 
@@ -107,7 +110,7 @@ def tries_forever(frame: Frame) -> bool:
 
 def _is_endless(loop: ast.While) -> bool:
     parts = loop.test.values if isinstance(loop.test, ast.BoolOp) and isinstance(loop.test.op, ast.And) else [loop.test]
-    waits = [part for part in parts if isinstance(part, ast.UnaryOp) and "wait_for_s" in ast.unparse(part)]
+    waits = [part for part in parts if isinstance(part, ast.UnaryOp) and _ASKS.search(ast.unparse(part))]
     others = [part for part in parts if part not in waits and not ast.unparse(part).endswith("ok()")]
     leaving = [
         node

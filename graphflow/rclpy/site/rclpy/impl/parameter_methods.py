@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy import held
 from graphflow.rclpy.life import LOOP
 from graphflow.rclpy.parameter_answers import ParameterAnswers
+from rclpy.impl.arguments import explained
+from rclpy.impl.callers import caller
 from rclpy.impl.inner import Inner, Known
 from rclpy.impl.parameters import RELATIVE_TOLERANCE
 from rclpy.parameter import Parameter
@@ -16,6 +19,8 @@ from rclpy.time_source import TimeSource
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
+
+logger = logging.getLogger("graphflow")
 
 
 class ParameterMethods:
@@ -123,26 +128,43 @@ class ParameterMethods:
         """The parameters below a prefix, by the rest of their names."""
         return self._graphflow.parameters.with_prefix(prefix)
 
+    @explained
     def set_parameters(self, parameter_list: list[Parameter[Any]]) -> list[SetParametersResult]:
         """Set parameters one after the other. Raises ParameterNotDeclaredException; nothing was set then."""
-        return self._graphflow.parameters.set_each(parameter_list)
+        return self._graphflow_told(self._graphflow.parameters.set_each(parameter_list), parameter_list)
 
+    @explained
     def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
         """Set parameters, all or none. Raises ParameterNotDeclaredException."""
-        return self._graphflow.parameters.set_all(parameter_list)
+        return self._graphflow_told([self._graphflow.parameters.set_all(parameter_list)], parameter_list)[0]
+
+    def _graphflow_told(
+        self, results: list[SetParametersResult], given: Sequence[Parameter[Any]]
+    ) -> list[SetParametersResult]:
+        """Tell what was not set, if the code that has asked for it does not look."""
+        faults = [result.reason or "(the callback gave no reason)" for result in results if not result.successful]
+        asked = caller(3) if faults else None
+        if asked is not None and asked.drops_result:
+            names = ", ".join(p.name for p in given) if len(results) == 1 else "some parameters"
+            text = "%s: %s was not set, and the result, which says so, is not looked at: %s"
+            logger.warning(text, asked.place, names, "; ".join(faults))
+        return results
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
         """The names below prefixes, at most `depth` levels; 0 for any."""
         return self._graphflow.parameters.listed(prefixes, depth)
 
+    @explained
     def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], list[Parameter[Any]]]) -> None:
         """Before parameters are set, let `callback` say which are."""
         self._graphflow.parameters.before.insert(0, callback)
 
+    @explained
     def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], SetParametersResult]) -> None:
         """Before parameters are set, ask `callback` whether they may be."""
         self._graphflow.parameters.checks.insert(0, callback)
 
+    @explained
     def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], None]) -> None:
         """After parameters were set, tell `callback`."""
         self._graphflow.parameters.after.insert(0, callback)

@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from graphflow.names import nearest
 from rclpy.exceptions import (
     InvalidParameterTypeException,
     InvalidParameterValueException,
@@ -20,6 +21,7 @@ from rclpy.exceptions import (
     ParameterUninitializedException,
 )
 from rclpy.impl.arguments import must_return
+from rclpy.impl.overrides import remark
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 from rclpy.validate_parameter_name import validate_parameter_name
 
@@ -47,14 +49,27 @@ class NodeParameters:
 
     def __init__(self, overrides: Mapping[str, Parameter[Any]], told: Told, *, allows_undeclared: bool) -> None:
         self.overrides = dict(overrides)
+        self.sources: dict[str, str] = {}
+        """The sources of the overrides that come from the command line or a file."""
         self.allows_undeclared = allows_undeclared
         self.values: dict[str, Parameter[Any]] = {}
         self.descriptors: dict[str, ParameterDescriptor] = {}
+        self.names: set[str] = set()
+        """All that have ever been declared, or were refused when they were."""
         self.before: list[Callable[[list[Parameter[Any]]], Any]] = []
         self.checks: list[Callable[[list[Parameter[Any]]], Any]] = []
         self.after: list[Callable[[list[Parameter[Any]]], Any]] = []
         self._told = told
         self.lock = threading.RLock()
+
+    def _undeclared(self, names: Iterable[str] | str) -> ParameterNotDeclaredException:
+        """The error for parameters that were not declared, with the nearest that was."""
+        error = ParameterNotDeclaredException(names)
+        name = names if isinstance(names, str) else next(iter(names))
+        near = nearest(name, self.values)
+        way = f"did you mean {near!r}?" if near is not None else f"declare it first: declare_parameter({name!r}, 1.0)"
+        error.add_note(f"note: {way}")
+        return error
 
     # declaring
 
@@ -68,6 +83,7 @@ class NodeParameters:
             name, value, descriptor = self._read(given, index)
             full = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}" if namespace else name
             validate_parameter_name(full)
+            self.names.add(full)
             if not ignore_override and full in self.overrides:
                 value = self.overrides[full].value
                 if descriptor.type == Kind.BOOL.value and isinstance(value, str):
@@ -86,7 +102,12 @@ class NodeParameters:
             if not result.successful:
                 self.descriptors.pop(parameter.name, None)
                 if result.reason.startswith("Wrong parameter type"):
-                    raise InvalidParameterTypeException(parameter, Kind(descriptors[parameter.name].type))
+                    kind = Kind(descriptors[parameter.name].type)
+                    wrong = InvalidParameterTypeException(parameter, kind)
+                    if parameter.name in self.sources and not ignore_override:
+                        source = self.sources[parameter.name]
+                        wrong.add_note(f"note: {remark(parameter.name, parameter.value, source, kind)}")
+                    raise wrong
                 raise InvalidParameterValueException(parameter.name, parameter.value, result.reason)
         return [self.values[p.name] for p in wanted]
 
@@ -115,7 +136,7 @@ class NodeParameters:
                 '\t- Pass a name and a default value different to "PARAMETER NOT SET" (and optionally a descriptor).\n'
                 "\t- Pass a name and a parameter type.\n"
                 "\t- Pass a name and a descriptor with `dynamic_typing=True",
-                stacklevel=5,
+                stacklevel=4,
             )
             descriptor.dynamic_typing = True
         elif isinstance(second, Kind):
@@ -141,7 +162,7 @@ class NodeParameters:
     def undeclare(self, name: str) -> None:
         with self.lock:
             if name not in self.values:
-                raise ParameterNotDeclaredException(name)
+                raise self._undeclared(name)
             if self.descriptors[name].read_only:
                 raise ParameterImmutableException(name)
             former = {name: self.values.pop(name)}
@@ -156,7 +177,7 @@ class NodeParameters:
             if found is None:
                 if self.allows_undeclared:
                     return Parameter(name, Kind.NOT_SET, None)
-                raise ParameterNotDeclaredException(name)
+                raise self._undeclared(name)
             if found.type_ is Kind.NOT_SET and not self.descriptors[name].dynamic_typing:
                 raise ParameterUninitializedException(name)
             return found
@@ -173,7 +194,7 @@ class NodeParameters:
             return self.descriptors[name]
         if self.allows_undeclared:
             return ParameterDescriptor()
-        raise ParameterNotDeclaredException(name)
+        raise self._undeclared(name)
 
     def listed(self, prefixes: Sequence[str], depth: int) -> ListParametersResult:
         from rcl_interfaces.msg import ListParametersResult
@@ -200,7 +221,7 @@ class NodeParameters:
     def refuse_undeclared(self, parameters: Iterable[Parameter[Any]]) -> None:
         missing = [p.name for p in parameters if p.name not in self.values]
         if missing and not self.allows_undeclared:
-            raise ParameterNotDeclaredException(missing)
+            raise self._undeclared(missing)
 
     def set_each(self, parameters: Sequence[Parameter[Any]]) -> list[SetParametersResult]:
         for parameter in parameters:
@@ -265,7 +286,7 @@ class NodeParameters:
         """Change how a parameter is described; its value becomes `alternative`, if that is given."""
         if name not in self.values:
             if not self.allows_undeclared:
-                raise ParameterNotDeclaredException(name)
+                raise self._undeclared(name)
             return self.get(name).get_parameter_value()
         current = self.values[name]
         if self.descriptors[name].read_only:

@@ -160,6 +160,11 @@ class Spinning:
         """Whether some thread waits for something to do, or does something."""
         return bool(self._asking) or any(run.thread for run in list(self.running))
 
+    @property
+    def waits_forever(self) -> bool:
+        """Whether some thread waits for something to do without a limit."""
+        return any(timeout is None or timeout < 0 for timeout, _, _ in list(self._asking))
+
     # tasks
 
     def start(self, run: Run) -> None:

@@ -1,4 +1,4 @@
-"""Nodes that a spin has taken out of the executor that spins them, and left in none: nothing of theirs runs any more.
+"""Nodes that leave the executor that spins them, by another spin or by their own callback: nothing of theirs runs then.
 
 In ROS 2 they fall silent without a word.
 """
@@ -7,17 +7,18 @@ from __future__ import annotations
 
 import logging
 import sys
-from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from graphflow.deadlock.user_code import is_users
-from graphflow.errors import Place
+from graphflow.deadlock.user_code import short_place, users_frame
 from graphflow.rclpy.life import LOOP
 from rclpy.impl.stacks import is_in_run, stacks
 
+if TYPE_CHECKING:
+    from graphflow.rclpy.life import Life
+
 TELL_AFTER = 1.0
-"""Seconds within which somebody may spin the node again."""
+"""Seconds within which somebody may spin the node again, or end the spin."""
 _IN_A_CALLBACK = "do not spin in a callback: future.add_done_callback(...), or await it in an async def callback"
 logger = logging.getLogger("graphflow")
 
@@ -30,12 +31,9 @@ def watch(node: Any, former: Any, what: str) -> None:
         former: The executor that it was in before.
     """
     begin = sys._getframe()
-    frame: FrameType | None = begin
-    while frame is not None and not is_users(frame.f_code.co_filename):
-        frame = frame.f_back
-    if frame is None:
+    where = _users_place(begin)
+    if not where:
         return
-    where = f"{Place(Path(frame.f_code.co_filename).name, frame.f_lineno)} in {frame.f_code.co_name}"
     remedy = (
         _IN_A_CALLBACK
         if is_in_run(begin)
@@ -52,6 +50,35 @@ def watch(node: Any, former: Any, what: str) -> None:
             logger.error("%s", text)
 
     node._graphflow.life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, look), wait=False)
+
+
+def attend(life: Life) -> None:
+    """Tell it when a callback destroys the last node of its executor, and the spin goes on."""
+    life.on_leaving.append(_destroyed)
+
+
+def _destroyed(node: Any) -> None:
+    executor, begin = node.executor, sys._getframe()
+    if executor is None or executor.spinning.nodes or not is_in_run(begin):
+        return
+    place, name = _users_place(begin), node.get_fully_qualified_name()
+
+    def look() -> None:
+        spinning = executor.spinning
+        if not spinning.nodes and spinning.waits_forever and _is_spun(executor):
+            text = "%s destroyed %s, and its spin goes on without a node: to end it as well, raise SystemExit there"
+            logger.warning(text, place, name)
+
+    if place:
+        node._graphflow.life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, look), wait=False)
+
+
+def _users_place(begin: FrameType) -> str:
+    """The innermost line of the user's code that leads to a frame: `lamp.py:12 in tick`; empty for none."""
+    frame = users_frame(begin)
+    if frame is None:
+        return ""
+    return f"{short_place(frame.f_code.co_filename, frame.f_lineno)} in {frame.f_code.co_name}"
 
 
 def _is_spun(executor: Any) -> bool:

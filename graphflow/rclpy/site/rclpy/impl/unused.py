@@ -7,6 +7,7 @@ what they need, or when the first one leaves.
 from __future__ import annotations
 
 import logging
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 TELL_AFTER = 3.0
 """Seconds from the first time that a node is spun."""
+_EVERY_NODES = {"use_sim_time", "start_type_description_service"}
+"""Parameters that nodes have of themselves."""
 logger = logging.getLogger("graphflow")
 
 
@@ -49,6 +52,8 @@ class Unused:
     def _tell(self, leaving: Any = None) -> None:
         if not self._is_told:
             self._is_told = True
+            if isinstance(sys.exc_info()[1] or getattr(sys, "last_value", None), Exception):
+                return  # the program ends in an error, before it has made all that they are for
             nodes = [*self._nodes(), *([] if leaving is None else [leaving])]
             for text in (*self._remaps(nodes), *self._params(nodes), *self._strays(nodes)):
                 logger.warning("%s", text)
@@ -57,18 +62,22 @@ class Unused:
         resolvers = [node._graphflow.core.names for node in nodes]
         used = {rule for names in resolvers for rule in names.used}
         known = [name for node in nodes for name in _names(node)]
-        params = {name for node in nodes for name in node._graphflow.parameters.descriptors}
+        params = {name for node in nodes for name in node._graphflow.parameters.names}
         for rule in self._life.args.remaps:
             if rule not in used:
-                yield f"the remap {rule} matches no name of {_listed(nodes)}{_meant(rule, params, known)}"
+                own = {node.get_name() for node in nodes}
+                way = f"; to rename the node: -r __node:={rule.replacement}" if rule.match in own else ""
+                way = way or _meant(rule, params, known)
+                yield f"the remap {rule} matches no name of {_listed(nodes)}{way}"
 
     def _params(self, nodes: list[Any]) -> Iterator[str]:
         for target, name, value, _ in self._life.args.params:
             of = [n for n in nodes if target in (None, n.get_name(), n.get_fully_qualified_name())]
+            held = [n._graphflow.parameters for n in of]
             if target is not None and not of:
                 yield f"-p {target}:{name} is for no node here{did_you_mean(target, [n.get_name() for n in nodes])}"
-            elif not any(n._graphflow.parameters.allows_undeclared or n.has_parameter(name) for n in of):
-                known = [known for n in of for known in n._graphflow.parameters.descriptors if known != "use_sim_time"]
+            elif not any(params.allows_undeclared or name in params.names for params in held):
+                known = [known for params in held for known in params.names - _EVERY_NODES]
                 yield f"-p {name}:={value} sets nothing: {_listed(of)} declares no such parameter{_near(name, known)}"
 
     def _strays(self, nodes: list[Any]) -> Iterator[str]:

@@ -61,13 +61,12 @@ from rclpy.impl.entities import (
 )
 from rclpy.impl.group_rows import group_rows
 from rclpy.impl.groups import ATTEMPTS, called, executors, is_exclusive, threads_of
-from rclpy.impl.held_up import HeldUp
 from rclpy.impl.locks import Entering, holds, only_holder
 from rclpy.impl.openings import opening_of, tries_forever
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
 from rclpy.impl.subjects import Subject
-from rclpy.impl.unused import Unused
+from rclpy.impl.watches import Watches
 from rclpy.task import Future
 from rclpy.timer import Timer
 
@@ -90,13 +89,12 @@ class Waiting:
     def __init__(self, life: Life, context: Context) -> None:
         self._life, self.context = life, context
         self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
-        self._count = count(1)
-        self._lock = threading.RLock()
+        self._count, self._lock = count(1), threading.RLock()
         self._stood: dict[int, tuple[int, float]] = {}
         """Where each thread stands, and since when."""
         self._known: dict[tuple[int, int], float] = {}
         """When what stands still was last looked into: a frame and a line, or a run and its step."""
-        self._held_up, self._unused = HeldUp(life, self._is_told), Unused(life)
+        self.watches = Watches(life, context, self._is_told)
         LOOP.soon(self._look)
 
     def number_of(self, thing: Any) -> int:
@@ -116,7 +114,7 @@ class Waiting:
 
     def stalls(self) -> list[str]:
         """The callbacks that keep others waiting, and the nodes that nobody spins, as they were told."""
-        return self._held_up.texts
+        return self.watches.texts
 
     def waits(self) -> WaitGraph:
         """Who waits for whom. What is seen differently by a second look goes on."""
@@ -143,8 +141,7 @@ class Waiting:
             return
         clock = self.context.clock
         clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
-        self._held_up.look()
-        self._unused.look()
+        self.watches.look()
         now, places = time.monotonic(), standing()
         self._stood = {
             thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
@@ -166,7 +163,7 @@ class _Look:
 
     def __init__(self, waiting: Waiting) -> None:
         self._waiting, self._context = waiting, waiting.context
-        self._zid = self._context.session.zid
+        self._zid, self._now = self._context.session.zid, time.monotonic()
         self._nodes: list[Any] = list(waiting._life.nodes)
         self._owners = {entity: node for node in self._nodes for entity in entities_of(node)}
         self._roles = {entity: role_of(entity) for entity in self._owners}
@@ -187,7 +184,6 @@ class _Look:
         self._awaited = {one.thread for one in found}
         locks = [one.lock.lock for one in found if one.lock is not None]
         self._awaited |= {s.thread.ident for s in self._stacks for lock in locks if holds(s.levels[0].frames, lock)}
-        self._now = time.monotonic()
 
     def _id(self, thing: Any, prefix: str = "r") -> str:
         return f"{self._zid}:{prefix}{self._waiting.number_of(thing)}"
@@ -478,7 +474,7 @@ class _Look:
         own, tasks, subject = self._world(node)
         found = setters(level.frames, future, subject)
         others = [Subject(other) for other in self._nodes if other is not node]
-        is_known = found is not None and found.handlers and found.lock is None
+        is_known = found is not None and found.handlers and found.lock is None and not found.parts
         if found is None or not is_known or found.is_shared(subject, others):  # type: ignore[arg-type]
             return FREE
         self._pause = found.pause

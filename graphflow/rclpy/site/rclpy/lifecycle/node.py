@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import traceback
+import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +18,7 @@ from graphflow.machines.lifecycle import (
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
+from rclpy.impl.arguments import must_return
 from rclpy.impl.passing import passed_on
 from rclpy.lifecycle.managed_entity import ManagedEntity
 from rclpy.lifecycle.publisher import LifecyclePublisher
@@ -156,7 +158,7 @@ class LifecycleNodeMixin(ManagedEntity):
                 traceback.print_exc()
                 return Outcome.ERROR
             if not isinstance(answer, TransitionCallbackReturn):
-                raise TypeError(f"{hook}() return value must be of type TransitionCallbackReturn, got {answer!r}")
+                raise TypeError(must_return(getattr(entity, hook), "TransitionCallbackReturn.SUCCESS", answer))
             if answer is not TransitionCallbackReturn.SUCCESS:
                 return Outcome(answer.value)
         return Outcome.SUCCESS
@@ -213,6 +215,7 @@ class LifecycleNodeMixin(ManagedEntity):
         node: Any = self
         made: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
         self._managed_entities[made] = None
+        made._graphflow_node = weakref.ref(node)
         return made
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:

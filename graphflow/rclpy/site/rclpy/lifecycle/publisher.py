@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+from graphflow.machines.lifecycle import LifecycleState as State
+from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
 from rclpy.impl.passing import passed_on
 from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.publisher import Publisher
@@ -16,10 +19,36 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         SimpleManagedEntity.__init__(self)
         Publisher.__init__(self, *args, **kwargs)
 
-    @SimpleManagedEntity.when_enabled
+        self._graphflow_node: Callable[[], Any] = _none
+        self._graphflow_is_told = False
+
+    def on_activate(self, state: Any) -> TransitionCallbackReturn:
+        """Send from now on, and tell it again when nothing is sent."""
+        self._graphflow_is_told = False
+        return super().on_activate(state)
+
+    def _graphflow_tell(self, msg: Any) -> None:
+        """Warn, in the words of rclcpp, that nothing is sent; the first time that it is so."""
+        node = self._graphflow_node()
+        if node is None or self._graphflow_is_told:
+            return
+        self._graphflow_is_told = True
+        name, state = node.get_fully_qualified_name(), node._state_machine.state
+        steps = {State.UNCONFIGURED: ("configure", "activate"), State.INACTIVE: ("activate",)}.get(state, ())
+        way = " && ".join(f"graphflow lifecycle set {name} {step}" for step in steps)
+        node.get_logger().warning(
+            f"Trying to publish message on the topic '{self.topic_name}', but the publisher is not activated: "
+            f"{name} is {state.label}{f', to activate it: {way}' if way else ''}"
+        )
+
+    @SimpleManagedEntity.when_enabled(when_not_enabled=_graphflow_tell)
     def publish(self, msg: Any) -> None:
         """Send a message, while the node is active."""
         Publisher.publish(self, msg)
+
+
+def _none() -> None:
+    """No node."""
 
 
 def __getattr__(name: str) -> Any:

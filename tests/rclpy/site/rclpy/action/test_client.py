@@ -11,7 +11,7 @@ from example_interfaces.action import Fibonacci
 import rclpy
 from graphflow.rclpy import held
 from rclpy._rclpy_pybind11 import RCLError
-from rclpy.action import ActionClient, ActionServer
+from rclpy.action import ActionClient, ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
@@ -148,3 +148,20 @@ def test_feedback_is_asked_for_in_order(node: Node) -> None:
     """With answers, which come by another way; what is not waited for with them is not."""
     client = ActionClient(node, Fibonacci, "count")
     assert (client._graphflow_feedback.in_order, client._graphflow_status.in_order) == (True, False)
+
+
+def test_the_result_of_a_goal_that_was_rejected(node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture) -> None:
+    """Has nothing in it, as in ROS 2; that is told with the line."""
+    ActionServer(node, Fibonacci, "fib", succeed, goal_callback=lambda _: GoalResponse.REJECT)
+    client = ActionClient(node, Fibonacci, "fib")
+    sent = client.send_goal_async(Fibonacci.Goal())
+    spin(sent.done)
+    handle: Any = sent.result()
+    result = handle.get_result_async()
+    spin(result.done)
+    assert list(result.result().result.sequence) == []
+    [text] = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
+    assert text.startswith("test_client.py:")
+    assert text.endswith(
+        ": the goal was rejected, and has no result: look at goal_handle.accepted before get_result_async()"
+    )

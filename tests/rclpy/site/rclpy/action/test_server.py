@@ -136,3 +136,31 @@ def test_results_are_kept_for_their_time(node: Node, spin: Spinner) -> None:
     server.destroy()
     server.destroy()
     assert node.count_services("/fib/_action/send_goal") == 0
+
+
+def test_what_callbacks_leave_out(node: Node, spin: Spinner, capfd: pytest.CaptureFixture[str]) -> None:
+    """It is told with their line: the end of a goal, what was decided on it, and a feedback."""
+
+    def execute(goal: ServerGoalHandle) -> Any:
+        if goal.request.order:
+            goal.publish_feedback([1, 2])
+        return Fibonacci.Result()
+
+    def decide(goal: Any) -> Any:
+        return GoalResponse.ACCEPT if goal.order < 2 else None
+
+    ActionServer(node, Fibonacci, "fib", execute, goal_callback=decide)
+    client = ActionClient(node, Fibonacci, "fib")
+    for order in range(3):
+        sent: Any = client.send_goal_async(Fibonacci.Goal(order=order))
+        spin(sent.done)
+        if sent.result().accepted:
+            ended(spin, sent.result())
+    told = capfd.readouterr().err
+    aborted = [line for line in told.splitlines() if "assuming aborted" in line]
+    line = execute.__code__.co_firstlineno
+    assert aborted[0].endswith(f": execute (test_server.py:{line}) returned without goal_handle.succeed()")
+    assert "returned without" not in aborted[1]
+    assert "write publish_feedback(Fibonacci.Feedback(...))" in told
+    line = decide.__code__.co_firstlineno
+    assert f"decide (test_server.py:{line}) must return GoalResponse.ACCEPT, and returned None" in told

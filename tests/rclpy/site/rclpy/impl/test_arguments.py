@@ -13,9 +13,11 @@ from std_srvs.srv import Trigger
 
 import rclpy
 from rclpy.action import ActionClient, ActionServer
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.impl.arguments import must_return
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from tests.rclpy.conftest import Spinner
 
 
@@ -35,9 +37,30 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
     (lambda n: n.create_publisher(String, 10, "chat"), TypeError, "create_publisher(String, 'chat', 10)"),
     (lambda n: n.create_publisher(String, "chat"), TypeError, "create_publisher needs qos_profile, too"),
     (
-        lambda n: n.create_publisher("String", "chat", 10),
+        lambda n: n.create_publisher("Strung", "chat", 10),
         AttributeError,
-        "msg_type of create_publisher must be a message class, got 'String': write create_publisher(msg_type, topic, ",
+        "msg_type of create_publisher must be a message class, got 'Strung': write create_publisher(msg_type, topic, ",
+    ),
+    (
+        lambda n: n.create_publisher("std_msgs/msg/String", "chat", 10),
+        AttributeError,
+        "got 'std_msgs/msg/String': give the class: from std_msgs.msg import String",
+    ),
+    (
+        lambda n: n.create_subscription(Trigger, "chat", n.tick, 10),
+        RuntimeError,
+        "got Trigger: Trigger is a service: use create_service or create_client",
+    ),
+    (
+        lambda n: n.create_service(String, "chat", n.tick),
+        RuntimeError,
+        "String is a message: use create_publisher or create_subscription",
+    ),
+    (lambda n: n.create_client(Fibonacci, "a"), RuntimeError, "Fibonacci is an action: use ActionServer or"),
+    (
+        lambda n: n.create_timer(1.0, n.tick, 10),
+        AttributeError,
+        "a timer has no depth: leave out 10, which is taken for its callback group",
     ),
     (lambda n: n.create_subscription(String, "a", 10, n.tick), TypeError, "(String, 'a', self.tick, 10)"),
     (
@@ -59,6 +82,11 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
         "ActionServer(self, Fibonacci, 'a', self.tick)",
     ),
     (lambda n: ActionClient(Fibonacci, n, "a"), AttributeError, "ActionClient(self, Fibonacci, 'a')"),
+    (
+        lambda n: n.set_parameters(Parameter("gain", value=3.0)),
+        TypeError,
+        "must be a list of parameters, got Parameter: write set_parameters([Parameter('name', value=...)])",
+    ),
     (lambda _: Trigger(), NotImplementedError, "a request is made by Trigger.Request()"),
     (lambda _: Fibonacci(), NotImplementedError, "a goal is made by Fibonacci.Goal()"),
     (
@@ -78,6 +106,20 @@ def test_a_call_says_how_it_is_written(
         call(Lamp("lamp"))
 
 
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        (ReentrantCallbackGroup, "got the class ReentrantCallbackGroup: make one, as in ReentrantCallbackGroup()"),
+        ("reentrant", "got 'reentrant': make one, as in MutuallyExclusiveCallbackGroup()"),
+    ],
+)
+def test_what_is_no_callback_group(node: Any, given: object, text: str) -> None:
+    """It is told what to make."""
+    with pytest.raises((TypeError, AttributeError)) as caught:
+        node.create_timer(1.0, print, callback_group=given)
+    assert str(caught.value) == f"callback_group of create_timer must be a callback group, {text}"
+
+
 def test_other_faults_keep_their_words(node: Node) -> None:
     """Where every argument is of the right kind, the error is ROS 2's."""
     with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
@@ -86,17 +128,24 @@ def test_other_faults_keep_their_words(node: Node) -> None:
         node.create_publisher(String, "chat", -1)
 
 
-@pytest.mark.parametrize("what", ["timer", "service"])
+@pytest.mark.parametrize("what", ["create_timer", "create_service", "add_on_set_parameters_callback"])
 def test_no_callback_where_ros_takes_it(node: Node, caplog: pytest.LogCaptureFixture, what: str) -> None:
     """It is told with the line; a rate, which has none, is not."""
-    if what == "timer":
-        node.create_timer(1.0, None)
-    else:
-        node.create_service(Trigger, "a", None)  # type: ignore[arg-type]
+    arguments: dict[str, tuple[Any, ...]] = {"create_timer": (1.0, None), "create_service": (Trigger, "a", None)}
+    getattr(node, what)(*arguments.get(what, (None,)))
     node.create_rate(1.0)
     [text] = [record.getMessage() for record in caplog.records if "callback" in record.getMessage()]
-    assert text.startswith(f"create_{what} was given None as its callback: give it the method itself")
+    assert text.startswith(f"{what} was given None as its callback: give it the method itself")
     assert re.search(r"\(test_arguments\.py:\d+\)$", text)
+
+
+def test_a_policy_where_a_depth_belongs(node: Node, caplog: pytest.LogCaptureFixture) -> None:
+    """It is told what the number means; ROS 2 takes it."""
+    node.create_publisher(String, "chat", ReliabilityPolicy.BEST_EFFORT)
+    node.create_publisher(String, "chat", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
+    [text] = [record.getMessage() for record in caplog.records]
+    assert text.startswith("create_publisher takes ReliabilityPolicy.BEST_EFFORT for a depth of 2: write QoSProfile(")
+    assert re.search(r"\(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT\) \(test_arguments\.py:\d+\)$", text)
 
 
 class Unmade(Node):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from typing import Any
 
 import pytest
@@ -46,6 +47,22 @@ class Own:
             if self.future.done():
                 break
 
+    def gives_up(self) -> Any:
+        until = time.monotonic() + 60
+        while rclpy.ok() and not self.future.done() and time.monotonic() < until:
+            yield
+
+    def gives_up_in_the_end(self) -> Any:
+        while not (self.future.done() or self.lock.locked()):
+            yield
+
+    def looks_at_the_clock(self) -> Any:
+        until = time.monotonic() + 60
+        while True:
+            yield
+            if self.future.done() or time.monotonic() > until:
+                break
+
     def asks_two(self) -> Any:
         while not (self.future.done() or self.future.done()):
             yield
@@ -62,7 +79,7 @@ def test_a_loop_waits_for_the_future_that_it_asks(node: Node) -> None:
         assert wait_of(steps).future is own.future
 
 
-@pytest.mark.parametrize("way", ["has_two_ends", "asks_two"])
+@pytest.mark.parametrize("way", ["has_two_ends", "asks_two", "gives_up", "gives_up_in_the_end", "looks_at_the_clock"])
 def test_a_loop_with_more_ends_than_one_waits_for_nothing_known(node: Node, way: str) -> None:
     """Any of them may come."""
     own = Own()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 from example_interfaces.action import Fibonacci
@@ -10,7 +11,7 @@ from std_srvs.srv import Trigger
 
 from graphflow.deadlock.source import ANSWERED
 from rclpy.action import ActionClient, ActionServer
-from rclpy.impl.entities import after_answers, role_of
+from rclpy.impl.entities import after_answers, arrived, role_of
 from rclpy.node import Node
 
 
@@ -48,3 +49,15 @@ def test_who_is_told_of_an_answer(node: Node) -> None:
     late = client.call_async(Trigger.Request())
     late.add_done_callback(node.destroy_timer)
     assert list(after_answers(client, node)) == [ANSWERED, "destroy_timer"]
+
+
+def test_a_call_that_is_lost_has_no_answer(node: Node) -> None:
+    """So whoever waits for one is in no deadlock with who would take it, and keeps nothing waiting."""
+    client, actions = node.create_client(Trigger, "ask"), ActionClient(node, Fibonacci, "count")
+    client.call_async(Trigger.Request())
+    actions.send_goal_async(Fibonacci.Goal())
+    limit = time.monotonic() + 10.0
+    while not (client._endpoint.inbox.items and actions._graphflow_goals.inbox.items):
+        assert time.monotonic() < limit
+        time.sleep(0.01)
+    assert arrived(client) == arrived(actions) == ((), 0)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import inspect
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import pytest
+from example_interfaces.action import Fibonacci
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 import rclpy
 from graphflow.deadlock.search import Search
-from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.action import ActionClient, ActionServer
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl import held_up, waiting
 from rclpy.node import Node
 
@@ -118,6 +121,35 @@ def test_a_timer_that_keeps_itself(node: Node, caplog: Caplog) -> None:
     assert "MultiThreadedExecutor" not in told(caplog)[0]
 
 
+def test_a_goal_whose_result_is_asked_for(node: Node, caplog: Caplog) -> None:
+    """That waits for the end as it should: nothing is told before a request to cancel waits, or a new goal."""
+    may_end, server_node = threading.Event(), rclpy.create_node("server")
+
+    def execute(goal_handle: Any) -> Any:
+        may_end.wait(LIMIT)
+        goal_handle.succeed()
+        return Fibonacci.Result()
+
+    server = ActionServer(server_node, Fibonacci, "fib", execute)
+    client = ActionClient(node, Fibonacci, "fib")
+    with spun(server_node), spun(node):
+        try:
+            sent: Any = client.send_goal_async(Fibonacci.Goal())
+            until(sent.done)
+            result = sent.result().get_result_async()
+            until(lambda: server._graphflow_results.inbox.items)
+            time.sleep(0.5)
+            assert told(caplog) == []
+            sent.result().cancel_goal_async()
+            until(lambda: told(caplog))
+        finally:
+            may_end.set()
+        until(result.done)
+    text = told(caplog)[0]
+    assert text.startswith("action execute of /server has been running for ")
+    assert "and keeps a request to cancel waiting: return from it soon" in text
+
+
 def test_a_callback_in_a_deadlock(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Is told as that alone; and one for which nothing waits, not at all."""
     asked = []
@@ -142,6 +174,49 @@ class Endless(Node):
         super().__init__("endless")
         while not may_end.wait(0.01):
             self.get_logger().debug("tick")
+
+
+class Spins(Node):
+    """Spins in its timer, and in `__init__` where that is asked for."""
+
+    def __init__(self, *, in_init: bool) -> None:
+        super().__init__("spins")
+        if in_init:
+            rclpy.spin(self)
+        self.create_timer(0.01, self.tick)
+
+    def tick(self) -> None:
+        rclpy.spin(self)
+
+
+def test_a_callback_that_spins(network: Any, caplog: Caplog) -> None:
+    """Keeps its group: told with the line."""
+    rclpy.init()
+    node = Spins(in_init=False)
+    with in_thread(lambda: until_shut_down(lambda: rclpy.spin(node))):
+        until(lambda: told(caplog))
+        rclpy.shutdown()
+    [text] = told(caplog)
+    line = Spins.tick.__code__.co_firstlineno + 1
+    assert f", now in test_held_up.py:{line} in tick, and is due again: it spins there; have it return" in text
+
+
+def test_an_init_that_spins(network: Any, caplog: Caplog) -> None:
+    """Told with the line, if it comes before there is anything to be called."""
+    rclpy.init()
+    with in_thread(lambda: until_shut_down(lambda: Spins(in_init=True))):
+        until(lambda: told(caplog))
+        rclpy.shutdown()
+    [text] = told(caplog)
+    line = Spins.__init__.__code__.co_firstlineno + 3
+    assert text.startswith(f"Spins.__init__ does not return: it spins in test_held_up.py:{line} in __init__, and ")
+    assert text.endswith("call rclpy.spin(node) after it")
+
+
+def until_shut_down(fn: Callable[[], object]) -> None:
+    """Call what spins, to the end of the context."""
+    with suppress(ExternalShutdownException):
+        fn()
 
 
 def test_an_init_that_does_not_return(node: Node, caplog: Caplog) -> None:
@@ -213,9 +288,14 @@ def test_a_node_that_ends_without_having_been_spun(node: Node, caplog: Caplog) -
     was_spun = Node("spun")
     was_spun.create_service(Trigger, "spun", answer)
     rclpy.spin_once(was_spun, timeout_sec=0)
+    own = inspect.currentframe()
+    assert own is not None
     rclpy.shutdown()
-    line = answer.__code__.co_firstlineno
+    ended, line = own.f_lineno - 1, answer.__code__.co_firstlineno
     assert [text.partition(" could")[0] for text in told(caplog)] == [
-        f"/{name} ends, and nobody has ever spun it, so that service answer (test_held_up.py:{line})"
-        for name in ("destroyed", "left")
+        f"{why}, so that service answer (test_held_up.py:{line})"
+        for why in (
+            "/destroyed ends, and nobody has ever spun it",
+            f"rclpy is shut down in test_held_up.py:{ended} before anybody has spun /left",
+        )
     ]

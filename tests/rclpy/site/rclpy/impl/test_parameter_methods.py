@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from rcl_interfaces.msg import ParameterEvent
+from rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
 
 from rclpy.exceptions import ParameterNotDeclaredException
@@ -86,3 +86,32 @@ def test_changes_are_published(node: Node, spin: Spinner) -> None:
     told = [(e.new_parameters, e.changed_parameters, e.deleted_parameters) for e in events]
     assert [[p.name for p in part] for event in told for part in event if part] == [["a"], ["a"], ["a"]]
     assert events[0].node == "/node"
+
+
+def test_values_that_are_refused_while_nobody_looks(
+    node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Told with the line; not where the result is used, or was asked for by another node."""
+    node.declare_parameter("n", 5)
+    wrong: Parameter[Any] = Parameter("n", value="seven")
+    node.set_parameters([wrong])
+    node.set_parameters_atomically([wrong, wrong])
+    results = node.set_parameters([wrong])
+    assert not results[0].successful
+    asked = SetParametersAtomically.Request(parameters=[wrong.to_parameter_msg()])
+    answer = node.create_client(SetParametersAtomically, "node/set_parameters_atomically").call_async(asked)
+    spin(answer.done)
+    line = test_values_that_are_refused_while_nobody_looks.__code__.co_firstlineno + 6
+    why = "was not set, and the result, which says so, is not looked at: Wrong parameter type, expected 'Type.INTEGER'"
+    first, second = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
+    assert first.startswith(f"test_parameter_methods.py:{line}: n {why}")
+    assert second.startswith(f"test_parameter_methods.py:{line + 1}: n, n {why}")
+
+
+def test_values_that_are_refused_without_a_reason(node: Node, caplog: pytest.LogCaptureFixture) -> None:
+    """Told to be so."""
+    node.declare_parameter("n", 5)
+    node.add_on_set_parameters_callback(lambda parameters: SetParametersResult(successful=False))
+    node.set_parameters([Parameter("n", value=6)])
+    (text,) = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
+    assert text.endswith("is not looked at: (the callback gave no reason)")

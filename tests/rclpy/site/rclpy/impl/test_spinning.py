@@ -26,7 +26,7 @@ def test_tasks_come_first_then_timers_then_what_has_arrived(node: Node) -> None:
         order.append("timer")
         timer.cancel()
 
-    timer = node.create_timer(0.0001, tick)
+    timer = node.create_timer(1e-6, tick)
     guard.trigger()
     for _ in range(2):
         publisher.publish(String())

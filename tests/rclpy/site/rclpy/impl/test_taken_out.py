@@ -5,13 +5,13 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import pytest
 
 import rclpy
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl import taken_out
 from rclpy.node import Node
 from rclpy.task import Future
@@ -102,3 +102,53 @@ def test_a_node_that_is_spun_again(
         rclpy.spin_once(node, timeout_sec=0.01)
     until(lambda: looks)
     assert told(caplog) == []
+
+
+@pytest.mark.parametrize("limit", [None, 0.02])
+def test_a_callback_that_destroys_its_node(
+    node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, limit: float | None
+) -> None:
+    """It is told where the spin waits for ever; a loop of the program's own may end by itself."""
+    monkeypatch.setattr(taken_out, "TELL_AFTER", 0.05)
+    looks, is_spun = [], taken_out._is_spun
+
+    def look(executor: Any) -> bool:
+        looks.append(executor)
+        return is_spun(executor)
+
+    monkeypatch.setattr(taken_out, "_is_spun", look)
+    done = threading.Event()
+
+    def tick() -> None:
+        node.destroy_node()  # here
+        done.set()
+
+    def spin() -> None:
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not (limit and done.is_set() and waited):
+            executor.spin_once(limit)
+
+    waited: list[bool] = []
+    node.create_timer(0.01, tick)
+    thread = threading.Thread(target=lambda: suppressed(spin))
+    thread.start()
+    assert done.wait(10)
+    if limit is None:
+        until(lambda: "goes on without a node" in caplog.text)
+    else:
+        time.sleep(0.2)
+        assert not looks
+    waited.append(True)
+    rclpy.try_shutdown()
+    thread.join(10)
+    [*texts] = [r.getMessage() for r in caplog.records if "without a node" in r.getMessage()]
+    line = tick.__code__.co_firstlineno + 1
+    text = f"test_taken_out.py:{line} in tick destroyed /node, and its spin goes on without a node: to end it"
+    assert [t.partition(" as well")[0] for t in texts] == ([text] if limit is None else [])
+
+
+def suppressed(fn: Callable[[], Any]) -> None:
+    """Call `fn` until the context is shut down."""
+    with suppress(ExternalShutdownException):
+        fn()

@@ -9,6 +9,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 import rclpy
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.impl import unused
 from rclpy.impl.unused import Unused
 from rclpy.node import Node
@@ -34,6 +35,7 @@ def told(caplog: Caplog) -> list[str]:
     ("line", "text"),
     [
         ("-r lihgt:=sun", "the remap lihgt:=sun matches no name of /lamp; did you mean 'light'?"),
+        ("-r lamp:=sun", "the remap lamp:=sun matches no name of /lamp; to rename the node: -r __node:=sun"),
         ("-r level:=3", "the remap level:=3 matches no name of /lamp; to set the parameter: -p level:=3"),
         ("-r lamp:lihgt:=sun", "the remap lamp:lihgt:=sun matches no name of /lamp; did you mean 'light'?"),
         ("-p levle:=3", "-p levle:=3 sets nothing: /lamp declares no such parameter; did you mean 'level'?"),
@@ -72,4 +74,28 @@ def test_what_is_free(caplog: Caplog) -> None:
     """A node that takes undeclared parameters has all."""
     rclpy.init(args=["--ros-args", "-p", "colour:=3"])
     Node("free", allow_undeclared_parameters=True).destroy_node()
+    assert told(caplog) == []
+
+
+def test_a_declaration_that_is_refused(caplog: Caplog) -> None:
+    """It is no missing one; nor is one that was taken back."""
+    rclpy.init(args=["--ros-args", "-p", "level:=high", "-p", "colour:=red"])
+    with pytest.raises(InvalidParameterTypeException):
+        Lamp()
+    node = Node("other")
+    node.declare_parameter("colour", "blue")
+    node.undeclare_parameter("colour")
+    node.destroy_node()
+    assert told(caplog) == []
+
+
+def test_a_program_that_ends_in_an_error(caplog: Caplog) -> None:
+    """Has not made all that its arguments are for."""
+    rclpy.init(args=["--ros-args", "-p", "colour:=red", "-r", "lihgt:=sun"])
+    node = Lamp()
+    with pytest.raises(ZeroDivisionError):
+        try:
+            1 / 0  # noqa: B018
+        finally:
+            node.destroy_node()
     assert told(caplog) == []

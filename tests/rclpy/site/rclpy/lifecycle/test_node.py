@@ -87,3 +87,19 @@ def test_others_ask_and_change_the_state(node: Node, spin: Spinner) -> None:
     assert len(call(srv.GetAvailableTransitions, "get_transition_graph").available_transitions) == 25
     spin(lambda: len(events) == 4)
     assert [event.goal_state.label for event in events] == ["configuring", "inactive", "activating", "active"]
+
+
+def test_a_callback_that_returns_nothing() -> None:
+    """It is named with its line."""
+
+    class Lamp(LifecycleNode):
+        def on_configure(self, state: Any) -> Any:
+            """Return nothing."""
+
+    rclpy.init()
+    lamp = Lamp("lamp")
+    line = Lamp.on_configure.__code__.co_firstlineno
+    with pytest.raises(TypeError) as caught:
+        lamp.trigger_configure()
+    text = f"on_configure (test_node.py:{line}) must return TransitionCallbackReturn.SUCCESS, and returned None"
+    assert str(caught.value) == text

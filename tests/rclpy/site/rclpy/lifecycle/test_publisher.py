@@ -1,5 +1,6 @@
 """Publishers of nodes that have a life cycle."""
 
+import pytest
 from std_msgs.msg import String
 
 import rclpy
@@ -22,3 +23,23 @@ def test_it_sends_while_the_node_is_active() -> None:
     assert taken[0].data == "b"
     assert subscription.handle.take_message(String, False) is None  # type: ignore[attr-defined]
     assert node.destroy_lifecycle_publisher(publisher)
+
+
+def test_a_publisher_that_is_not_active(capfd: pytest.CaptureFixture[str]) -> None:
+    """Warns once, in rclcpp's words and with the next step, until the node has been active."""
+    rclpy.init()
+    node = LifecycleNode("lamp")
+    publisher = node.create_lifecycle_publisher(String, "light", 1)
+    steps = (node.trigger_configure, node.trigger_activate, node.trigger_deactivate, node.trigger_shutdown)
+    for step in (None, *steps):
+        if step is not None:
+            step()
+        publisher.publish(String())
+        publisher.publish(String())
+    words = "Trying to publish message on the topic '/light', but the publisher is not activated: /lamp is"
+    found = [line.partition(": ")[2] for line in capfd.readouterr().err.splitlines() if words in line]
+    configure, activate = (f"graphflow lifecycle set /lamp {step}" for step in ("configure", "activate"))
+    assert found == [
+        f"{words} unconfigured, to activate it: {configure} && {activate}",
+        f"{words} inactive, to activate it: {activate}",
+    ]

@@ -1,0 +1,50 @@
+"""Commands on a graph file, whose arguments are `NAME:=VALUE`: what is said where one is written as an option."""
+
+from __future__ import annotations
+
+import click
+
+from graphflow.names import nearest
+
+OF_NODES = {
+    "--params-file": "Parameters of a file are given where a node is written in the graph file: params_file: FILE.yaml",
+    "--ros-args": "ROS arguments are for one node, started by run. A graph file has params: and remap: for each node",
+}
+"""Options of `run` that concern one node, and what a graph file has in their place."""
+
+
+class GraphCommand(click.Command):
+    """A command that tells how an argument of the graph is written where it does not know an option."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        try:
+            return super().parse_args(ctx, list(args))
+        except click.NoSuchOption as error:
+            text = as_argument(error.option_name, args)
+            known = [word for param in self.params for word in param.opts]
+            if error.option_name in OF_NODES:
+                raise click.NoSuchOption(error.option_name, OF_NODES[error.option_name], ctx=ctx) from None
+            if text is None or nearest(error.option_name, known, cutoff=0.85) is not None:
+                raise
+            message = f"No such option {error.option_name!r}. An argument of the graph is written {text}"
+            raise click.NoSuchOption(
+                error.option_name, f"{message}; up GRAPH --show-args lists them.", ctx=ctx
+            ) from None
+
+
+def as_argument(option: str, words: list[str]) -> str | None:
+    """An option that a command does not know as an argument of a graph, with its value; None where it cannot be one.
+
+    Args:
+        option: As in `--rate`.
+        words: The command line.
+    """
+    name = option.lstrip("-").replace("-", "_")
+    if not name.isidentifier():
+        return None
+    for place, word in enumerate(words):
+        before, equals, after = word.partition("=")
+        if before == option:
+            following = words[place + 1] if words[place + 1 :] and not words[place + 1].startswith("-") else "VALUE"
+            return following if ":=" in following else f"{name}:={after if equals else following}"
+    return f"{name}:=VALUE"

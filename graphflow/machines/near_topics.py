@@ -1,0 +1,95 @@
+"""Topics with nobody at the other end, and the topic that was probably meant: one of the same type and a near name."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Mapping, Sequence
+from itertools import islice
+
+from graphflow.machines.matching import COUNTERPARTS
+from graphflow.names import MAX_LENGTH, is_hidden, nearest
+from graphflow.wire.liveliness import Entity, Kind
+
+EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
+"""Topics that many nodes have, and whose other end may be missing."""
+CUTOFF = 0.75
+"""How alike two words are of which one may be the other misspelt."""
+COMPARED = 500
+"""Names that one is compared with: other processes announce as many as they like, and each takes up to 0.1 ms."""
+
+ByType = Mapping[tuple[Kind, str], list[Entity]]
+"""Endpoints by kind and type."""
+
+
+def by_type(entities: Iterable[Entity], types: Container[str]) -> ByType:
+    """The endpoints of topics of some types that somebody may mean, by kind and type."""
+    found: dict[tuple[Kind, str], list[Entity]] = {}
+    for entity in entities:
+        if entity.type not in types or entity.kind not in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
+            continue
+        if len(entity.name) <= MAX_LENGTH and not is_everybodys(entity.name):
+            found.setdefault((entity.kind, entity.type), []).append(entity)
+    return found
+
+
+def is_everybodys(topic: str) -> bool:
+    """Whether a topic belongs to ROS or graphflow, and nobody writes its name."""
+    return topic in EVERYBODYS or is_hidden(topic)
+
+
+def did_you_mean_topic(own: Entity, there: ByType) -> str:
+    """Say that nobody is at the other end of a publisher or subscription, and which topic was probably meant.
+
+    Returns:
+        Empty if there is somebody, or no such topic.
+    """
+    kind = COUNTERPARTS[own.kind]
+    others = there.get((kind, own.type), ())
+    if any(other.name == own.name for other in others):
+        return ""
+    used = {e.name for k in (own.kind, kind) for e in there.get((k, own.type), ()) if _is_of_one_node(e, own)}
+    # In the order in which they came, so that a crowd of names hides none that was there before it.
+    names = dict.fromkeys(e.name for e in others if e.name not in used and not is_hidden(e.node_name))
+    near = [name for name in islice(names, COMPARED) if is_near(own.name, name)]
+    best = nearest(own.name, sorted(near), cutoff=0.0)
+    if best is None:
+        return ""
+    first, *more = sorted({e.node_name for e in others if e.name == best and not is_hidden(e.node_name)})
+    who = f"{first} and {len(more)} more" if more else first
+    if own.kind is Kind.PUBLISHER:
+        verbs, end = "listens to", f"to which {who} listen{'' if more else 's'}"
+    else:
+        verbs, end = "publishes", f"which {who} publish{'' if more else 'es'}"
+    return f"nobody {verbs} {own.name} [{own.type}]; did you mean {best!r}, {end}?"
+
+
+def _is_of_one_node(entity: Entity, other: Entity) -> bool:
+    return (entity.zid, entity.nid) == (other.zid, other.nid)
+
+
+def is_near(name: str, other: str) -> bool:
+    """Whether one name may be written for the other: misspelt, in other case, or with a namespace missing or added."""
+    return (
+        name.casefold() == other.casefold() or name.endswith(other) or other.endswith(name) or is_misspelt(name, other)
+    )
+
+
+def is_misspelt(name: str, other: str) -> bool:
+    """Whether two names differ in one part, by a few letters. Numbers, single letters and added words are no mistakes.
+
+    So `cmd_vl` is `cmd_vel`, while `cmd_vel_nav` is another topic, as `turtle2` and `goal_b` are.
+    """
+    ours, theirs = name.split("/"), other.split("/")
+    apart = [pair for pair in zip(ours, theirs, strict=False) if pair[0] != pair[1]]
+    if len(ours) != len(theirs) or len(apart) != 1:
+        return False
+    [(a, b)] = apart
+    if a.strip("0123456789") == b.strip("0123456789") or _is_another(a.split("_"), b.split("_")):
+        return False
+    return nearest(a, [b], cutoff=CUTOFF) is not None
+
+
+def _is_another(ours: Sequence[str], theirs: Sequence[str]) -> bool:
+    """Whether words differ on purpose: some are added, or one letter stands for another thing."""
+    if len(ours) != len(theirs):
+        return {*ours} >= {*theirs} or {*theirs} >= {*ours}
+    return all(a == b or len(a) == len(b) == 1 for a, b in zip(ours, theirs, strict=True))

@@ -1,0 +1,121 @@
+"""Sentences for mistakes in programs that use rclpy, by what an error says: attributes, texts, and calls."""
+
+from __future__ import annotations
+
+ATTRIBUTES = {
+    "method.debug method.info method.warn method.warning method.error method.fatal function.info": (
+        "it is called first: write get_logger().info(...)"
+    ),
+    "Timer.stop Timer.shutdown": "a timer is stopped by timer.cancel(), and started again by timer.reset()",
+    "Timer.start": "a timer runs from create_timer on; after timer.cancel(), timer.reset() starts it again",
+    "Time.seconds Time.secs Time.sec Time.to_sec Duration.seconds Duration.secs Duration.sec Duration.to_sec": (
+        "write .nanoseconds / 1e9"
+    ),
+    "Time.nanosec Time.nsecs Duration.nanosec Duration.nsecs": "write .nanoseconds",
+    "Rate.period Timer.period": "the period of a timer is timer.timer_period_ns, in nanoseconds",
+    "T.create_action_server": 'write ActionServer(self, Type, "name", self.execute), from rclpy.action',
+    "T.create_action_client": 'write ActionClient(self, Type, "name"), from rclpy.action',
+    "T.logger T.log T.loginfo": "write get_logger().info(...)",
+    "T.publish": "a publisher publishes: self.publisher = self.create_publisher(...), then self.publisher.publish(...)",
+    "T.get_param T.param": 'write get_parameter("name").value',
+    "T.now": "write get_clock().now()",
+    "T.advertise": "write create_publisher(Type, topic, 10)",
+    "T.create_subscriber T.subscribe": "write create_subscription(Type, topic, callback, 10)",
+    "RcutilsLogger.info_once RcutilsLogger.warn_once RcutilsLogger.warning_once RcutilsLogger.error_once": (
+        "once is an argument: get_logger().info(..., once=True)"
+    ),
+    "RcutilsLogger.info_throttle RcutilsLogger.warn_throttle RcutilsLogger.warning_throttle": (
+        "the seconds between two are an argument: get_logger().info(..., throttle_duration_sec=1.0)"
+    ),
+    "ClientGoalHandle.result ClientGoalHandle.get_result": (
+        "the result comes later: goal_handle.get_result_async().add_done_callback(self.done), and there "
+        "future.result().result"
+    ),
+    "Client.wait_for_server": "of a service it is wait_for_service()",
+    "Client.send_goal Client.send_goal_async": "of a service it is call_async(request)",
+    "ActionClient.call ActionClient.call_async": "of an action it is send_goal_async(goal)",
+    "ActionClient.wait_for_service": "of an action it is wait_for_server()",
+}
+"""By the class of an object, `T` for nodes, and an attribute that it has not."""
+
+TEXTS: dict[str, str] = {
+    r'can only concatenate str \(not "(?:int|float|bool)"\)': "put it into the text: f'... {{value}}', or str(value)",
+    r"no running event loop": (
+        "callbacks of rclpy run without asyncio: make a timer for a pause, and await futures of rclpy alone"
+    ),
+    r"context is invalid|rcl_shutdown already called|[Cc]ontext must be initialized": (
+        "rclpy has been shut down before, which Ctrl-C does, too: publish before, and end with rclpy.try_shutdown()"
+    ),
+    r"cannot use Destroyable": (
+        "it was destroyed before, by itself or with its node: use it before, and call destroy_node() last"
+    ),
+    r"Context\.init\(\) must only be called once": "call rclpy.init() once, before the first node is made",
+    r"property '(\w+)' of '\w+' object has no setter|(handle) cannot be modified": (
+        "every node has '{0}' already: choose another name for the attribute"
+    ),
+    r"(?:operand type\(s\) for -:|not supported between instances of) 'Time' and 'Time'": (
+        "one of them is a message: rclpy.time.Time.from_msg(stamp) makes a time of it"
+    ),
+    r"operand.*'(?:Time|Duration)'|not supported between.*'(?:Time|Duration)'": (
+        "of a time or a duration take the seconds: .nanoseconds / 1e9"
+    ),
+    r"(?:operand|not supported between).*'Parameter'|^(?!parameter_list).*, got Parameter: write": (
+        "a parameter has its value in .value"
+    ),
+    r"Type 'Type\.DOUBLE' and value '(-?\d+)' do not agree": "a DOUBLE is a float: write {0}.0",
+    r"Type 'Type\.INTEGER' and value '(-?\d+)\.\d*' do not agree": "an INTEGER is an int: write {0}",
+    r"given value is not one of the allowed types '<class '(\w+)'>'": (
+        "give a value, or a type as in declare_parameter('name', Parameter.Type.DOUBLE)"
+    ),
+    r"given value is not one of the allowed types '\{": (
+        "a dictionary is a parameter for each key: declare_parameters('gains', [('p', 1.0), ('i', 0.1)])"
+    ),
+    r"given value is not one of the allowed types": (
+        "a parameter is a bool, an int, a float, a str, bytes, or a list of one of them"
+    ),
+    r"not a list of one of the allowed types": (
+        "all elements are of one type, as in [1.0, 2.5], and none is a list: lists in lists are parameters of their own"
+    ),
+    r"Third element (.*) at index .* is not a ParameterDescriptor": (
+        "the third argument is a ParameterDescriptor(description={0!r}), from rcl_interfaces.msg"
+    ),
+    r"parameter must be instance of type": "write set_parameters([Parameter('name', value=6)])",
+    r"History and/or depth settings are required|KEEP_LAST without a depth": (
+        "give it a depth: QoSProfile(depth=10, ...)"
+    ),
+    r"descriptor '__init__' (?:requires a 'super' object|of 'super' object needs)": (
+        "super is called: write super().__init__('node_name')"
+    ),
+    r"object\.__init__\(\) takes exactly one argument": "the class derives from nothing: write class Name(Node):",
+    r"rclpy\.\w+\(\) argument after \* must be an iterable": (
+        "the arguments of a thread are a tuple: Thread(target=rclpy.spin, args=(node,))"
+    ),
+    r"could not convert string to float: ''": (
+        "an empty text is no number; of a parameter take .value, since .string_value is empty unless it is a string"
+    ),
+}
+"""By a pattern in an error's text; the sentence may have its groups."""
+
+CALLS = {
+    "Node.__init__": (
+        "write super().__init__('node_name', namespace='...') in the __init__ of your class: without self, and all but "
+        "the name by keyword"
+    ),
+    "QoSProfile.__init__": "policies go by name: QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)",
+    "RcutilsLogger": "one text is logged: get_logger().info(f'... {value}')",
+    "init": "write rclpy.init(), or rclpy.init(args=sys.argv)",
+    "ParameterMethods.declare_parameters": "write declare_parameters('', [('a', 1), ('b', 2)])",
+}
+"""How functions are called, by their name or class, where their arguments alone do not say it."""
+
+GIVEN = {
+    "Service._do": "request, response",
+    "Service._do_async": "request, response",
+    "Subscription._do": "message",
+    "Subscription._do_async": "message",
+    "_type_of": "message",
+    "await_or_execute": "goal_handle",
+    "NodeParameters._set": "parameters",
+    "NodeParameters.set_all": "parameters",
+}
+"""Arguments that graphflow's functions give to callbacks."""

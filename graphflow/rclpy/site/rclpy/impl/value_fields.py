@@ -1,0 +1,59 @@
+"""Fields of a parameter's value that are not of its type: `get_parameter_value().double_value` of an integer.
+
+They have their defaults, 0.0 here; ROS 2 says nothing of it.
+"""
+
+from __future__ import annotations
+
+import logging
+from types import CodeType
+from typing import Any
+
+from rclpy.impl.callers import Caller, caller
+
+FIELDS = (
+    *("", "bool_value", "integer_value", "double_value", "string_value", "byte_array_value", "bool_array_value"),
+    *("integer_array_value", "double_array_value", "string_array_value"),
+)
+"""The field of each type, by the numbers of rcl_interfaces/msg/ParameterType."""
+_EXAMPLES = ("", False, 0, 0.0, "", [b"\0"], [False], [0], [0.0], [""])
+_seen: set[tuple[CodeType, int, int]] = set()
+"""The calls that have been looked at, each with a type."""
+SEEN_BOUND = 1000
+"""Calls that are remembered; further ones, as of a program that compiles code again and again, are not looked at."""
+logger = logging.getLogger("graphflow")
+
+
+def check(parameter: Any, message: Any) -> None:
+    """Tell if the code that asks for a value reads a field that is not of its type, once for each line and type.
+
+    Args:
+        message: The value, as rcl_interfaces/msg/ParameterValue.
+    """
+    asked = caller(2)
+    if asked is None or len(_seen) >= SEEN_BOUND:
+        return
+    call = (asked.frame.f_code, asked.frame.f_lasti, message.type)
+    if call not in _seen:
+        _seen.add(call)
+        _tell(asked, parameter, message)
+
+
+def _tell(asked: Caller, parameter: Any, message: Any) -> None:
+    read, own = asked.reads, FIELDS[message.type]
+    if "type" in read or own in read:  # the code distinguishes types
+        return
+    for field in sorted(read & set(FIELDS[1:])):
+        value = getattr(message, field)
+        value = list(value) if field.endswith("_array_value") else value
+        if own:
+            text = f"{parameter.name} is {_a(parameter.type_.name)}: .{own} has it, .{field} is {value!r}"
+        else:
+            example = f"declare_parameter({parameter.name!r}, {_EXAMPLES[FIELDS.index(field)]!r})"
+            text = f"{parameter.name} has no value, so that .{field} is {value!r}: give it one, as in {example}"
+        logger.warning("%s: %s", asked.place, text)
+
+
+def _a(type_name: str) -> str:
+    words = type_name.lower().replace("_", " ")
+    return f"an {words}" if words.startswith("i") else f"a {words}"

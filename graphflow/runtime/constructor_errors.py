@@ -1,0 +1,67 @@
+"""Errors of messages that were given other arguments than their fields: what to write instead.
+
+Messages are made in C, whose error does not say of which class: that is read from the line that made it.
+"""
+
+from __future__ import annotations
+
+import ast
+import linecache
+import re
+from types import FrameType, ModuleType, TracebackType
+from typing import Any
+
+from graphflow.msgs.base import Action, Message, Service, name_of, no_field
+
+_UNKNOWN = re.compile(r"Unexpected keyword argument '(\w+)'\Z")
+_BY_POSITION = "Extra positional arguments provided"
+
+
+def better_text(error: TypeError) -> str:
+    """A better text for the error of a message's constructor; empty for other errors."""
+    unknown = _UNKNOWN.match(str(error))
+    if not unknown and str(error) != _BY_POSITION:
+        return ""
+    cls = _called(error.__traceback__)
+    if not (isinstance(cls, type) and issubclass(cls, Message)):
+        return ""
+    if unknown:
+        return no_field(cls, unknown[1])
+    example = f"{cls.SCHEMA.fields[0].name}=..." if cls.SCHEMA.fields else ""
+    return f"{name_of(cls)} takes its fields by name: {cls.__name__.rpartition('_')[2]}({example})"
+
+
+def _called(trace: TracebackType | None) -> Any:
+    """The object whose call raised an error, if a name stands for it; else None."""
+    if trace is None:
+        return None
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    line, end_line, start, end = list(trace.tb_frame.f_code.co_positions())[trace.tb_lasti // 2]
+    if line is None or end_line is None:
+        return None
+    lines = linecache.getlines(trace.tb_frame.f_code.co_filename, trace.tb_frame.f_globals)[line - 1 : end_line]
+    encoded = [text.encode() for text in lines]
+    if not encoded:
+        return None
+    encoded[-1] = encoded[-1][:end]
+    encoded[0] = encoded[0][start:]
+    try:
+        call = ast.parse(b"(" + b"".join(encoded) + b")", mode="eval").body
+    except SyntaxError:  # the file has changed
+        return None
+    return _named(call.func, trace.tb_frame) if isinstance(call, ast.Call) else None
+
+
+def _named(expression: ast.expr, frame: FrameType) -> Any:
+    """The value of a name, or of a dotted one, in a module. No code of the user's runs for it."""
+    match expression:
+        case ast.Name(name):
+            return frame.f_globals.get(name)
+        case ast.Attribute(owner, name):
+            thing = _named(owner, frame)
+            is_plain = isinstance(thing, ModuleType) or (
+                isinstance(thing, type) and issubclass(thing, (Message, Service, Action))
+            )
+            return vars(thing).get(name) if is_plain else None
+    return None

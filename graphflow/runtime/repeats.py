@@ -1,0 +1,61 @@
+"""Endpoints and timers that a node makes again and again, such as a publisher in each run of a timer."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Hashable
+
+from graphflow.deadlock.user_code import users_frame
+from graphflow.errors import Place
+from graphflow.runtime.host import Host, Part
+
+MANY = 10
+"""So many of one kind and name, made after the start and not closed, are told."""
+
+
+class Repeats:
+    """The parts that one node has made since its start and not closed, by kind and name."""
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._made: dict[Part, Hashable] = {}
+        self._alike: Counter[Hashable] = Counter()
+        self._told: set[Hashable] = set()
+
+    def made(self, part: Part) -> None:
+        """Count a part, and tell when there are many like it."""
+        if part.is_inner:
+            return
+        self._made[part] = key = _key(part)
+        self._alike[key] += 1
+        alike = self._alike[key]
+        if alike >= MANY and key not in self._told and (place := _place()) is not None:
+            self._told.add(key)
+            text = (
+                "%s is there %d times by now, made last in %s: make it once, in __init__, or close the former one first"
+            )
+            self._host.log.warning(text, _name(part), alike, place)
+
+    def closed(self, part: Part) -> None:
+        """Count it no more."""
+        key = self._made.pop(part, None)
+        if key is not None:
+            self._alike[key] -= 1
+            if not self._alike[key]:
+                del self._alike[key]
+
+
+def _name(part: Part) -> str:
+    return part.title or str(getattr(part, "name", ""))
+
+
+def _key(part: Part) -> Hashable:
+    """The key under which parts are alike; lambdas share a name, so that of a timer has its period."""
+    return type(part), _name(part), getattr(part, "period", None)
+
+
+def _place() -> Place | None:
+    """The user's line that has led here; None if it was in another thread, as rclpy's are, which tells it itself."""
+    frame = users_frame(sys._getframe(1))
+    return None if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)

@@ -1,0 +1,79 @@
+"""Functions and methods that a program names and does not call, read from its source."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+_RUNNERS = ("run", "running", "init", "spin")
+"""Names of functions by which a program runs nodes."""
+_METHODS = (
+    *("cancel", "reset", "destroy", "destroy_node", "shutdown", "try_shutdown"),
+    *("succeed", "abort", "canceled", "execute", "stop", "close"),
+)
+"""Methods of nodes and their parts that are called without arguments."""
+_LAUNCH = "generate_launch_description"
+"""The function by which a launch file is known."""
+
+
+def uncalled(source: str, file: str) -> str:
+    """Why a program has run nothing, as a sentence: nothing calls its `main()`, or what else of it runs nodes.
+
+    Args:
+        source: Its text.
+        file: Its name for the sentence.
+
+    Returns:
+        The empty text where something does, or where that cannot be told.
+    """
+    try:
+        module = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return ""
+    for line, text in _other_names(module):
+        return f"{file}:{line}: __name__ is never {text!r}, so nothing runs; write: if __name__ == '__main__':"
+    statements = {id(node.value): node.lineno for node in ast.walk(module) if isinstance(node, ast.Expr)}
+    names = [node for node in ast.walk(module) if isinstance(node, ast.Name)]
+    used = {name.id for name in names if id(name) not in statements}
+    used |= {node.value for node in ast.walk(module) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    functions = [node for node in module.body if isinstance(node, _FUNCTIONS) and not node.decorator_list]
+    idle = [function for function in functions if function.name not in used]  # a decorator may keep and call it
+    for function in idle:
+        if function.name == _LAUNCH:
+            return f"{file}:{function.lineno}: {_LAUNCH}() makes it a launch file; write: graphflow launch {file}"
+    for function in sorted(idle, key=lambda f: f.name != "main"):
+        if function.name != "main" and not _runs_nodes(function):
+            continue
+        call = f"{function.name}()"
+        call = f"asyncio.run({call})" if isinstance(function, ast.AsyncFunctionDef) else call
+        for name in names:
+            if name.id == function.name:
+                return f"{file}:{name.lineno}: {name.id} without parentheses calls nothing; write: {call}"
+        way = f"add as the last line: if __name__ == '__main__': {call}"
+        return f"{file}:{function.lineno}: {function.name}() is defined and never called; {way}"
+    return ""
+
+
+def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """The lines that name a method and do nothing else, such as `self.timer.cancel`, each with what to write."""
+    for node in ast.walk(code):
+        match node:
+            case ast.Expr(value=ast.Attribute(attr=name) as method) if name in _METHODS:
+                shown = ast.unparse(method)
+                yield node.lineno, f"{shown} without parentheses calls nothing; write: {shown}()"
+
+
+def _other_names(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Texts other than `__main__` that the name of the module is compared with, and the line of each."""
+    for node in module.body:
+        match node:
+            case ast.If(
+                test=ast.Compare(left=ast.Name("__name__"), ops=[ast.Eq()], comparators=[ast.Constant(value=str(name))])
+            ) if name not in ("__main__", "__mp_main__"):  # the second is its name in a process of multiprocessing
+                yield node.lineno, name
+
+
+def _runs_nodes(function: ast.AST) -> bool:
+    called = [node.func for node in ast.walk(function) if isinstance(node, ast.Call)]
+    return any((getattr(f, "attr", None) or getattr(f, "id", None)) in _RUNNERS for f in called)

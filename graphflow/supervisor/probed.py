@@ -1,0 +1,16 @@
+"""The answer of a process that has imported node classes, read where none of them, nor what runs nodes, is imported."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from graphflow.errors import Place, Problem
+from graphflow.interface import Interface
+
+
+def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
+    """What `interfaces` returned, as Interfaces and Problems."""
+    return {
+        path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
+        for path, value in data.items()
+    }

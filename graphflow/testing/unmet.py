@@ -1,0 +1,100 @@
+"""Causes of a test's failure: messages that were on their way, time, topics and services that no node has."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from graphflow.deadlock.frames import awaited, code_of
+from graphflow.deadlock.openings import place_of
+from graphflow.executor import clock as executor_clock
+from graphflow.names import did_you_mean
+from graphflow.runtime.core import NodeCore, core_of
+from graphflow.runtime.timer import Timer
+from graphflow.wire.liveliness import Kind
+
+if TYPE_CHECKING:
+    from graphflow.testing.graph import Graph
+
+_ACTION = "/_action/"
+"""Stands in the names of the services that an action consists of, behind the action's."""
+
+
+async def unmet(graph: Graph) -> list[str]:
+    """A sentence for each. To be called where the test has failed; what is on its way arrives meanwhile."""
+    cores = [core_of(node) for node in graph.nodes if node is not graph.tester and node.is_running]
+    before = [len(tap) for _, tap in graph.taps]
+    has_stood_still = not graph.clock.monotonic_ns() and any(map(_waits_for_time, cores))
+    found = [*_sleepers(cores), *_unserved(cores)]
+    await graph.settle()
+    for (topic, tap), count in zip(graph.taps, before, strict=False):
+        if len(tap) > count:
+            came = f"{len(tap) - count} message{'s' if len(tap) - count > 1 else ''} of {topic}"
+            found.append(f"{came} came after the test had ended: await graph.settle() before it looks at them")
+    found += _strangers(graph, cores)
+    if has_stood_still:
+        found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
+    return found
+
+
+def _tasks(core: NodeCore) -> Iterator[Any]:
+    """The tasks of a node, and the runs of its handlers."""
+    yield from core.tasks
+    for runner in core.runners:
+        yield from runner.active
+
+
+def _waits_for_time(core: NodeCore) -> bool:
+    """Whether a node has timers, or waits by its clock."""
+    if any(isinstance(part, Timer) for part in core.parts):
+        return True
+    waits = [code_of(part) for task in _tasks(core) for part in awaited(task.get_coro())]
+    return any(code is not None and code.co_filename == executor_clock.__file__ for code in waits)
+
+
+def _sleepers(cores: list[NodeCore]) -> Iterator[str]:
+    """Tasks and handlers that wait in real time."""
+    for core in cores:
+        for task in _tasks(core):
+            if any(code_of(part) is asyncio.sleep.__code__ for part in awaited(task.get_coro())):
+                where = place_of(task)
+                yield (
+                    f"{core.full_name} waits{where and ' ' + where} for real time, which a test does not: write "
+                    "await self.clock.sleep(...) in place of asyncio.sleep"
+                )
+
+
+def _unserved(cores: list[NodeCore]) -> Iterator[str]:
+    """Services and actions that nodes wait for, and that nobody offers."""
+    offered = {
+        e.name.partition(_ACTION)[0]: e.name.startswith(f"{core.full_name}/")
+        for core in cores
+        for e in core.endpoints
+        if e.kind is Kind.SERVICE
+    }
+    known = [name for name, is_nodes_own in offered.items() if not is_nodes_own]
+    for core in cores:
+        ledger = core.context.ledger
+        waits = [opening.service for opening in ledger.openings.values()]
+        for name in sorted({wait.partition(_ACTION)[0] for wait in waits} - offered.keys()):
+            hint = did_you_mean(name, known, hidden=offered)
+            yield f"{core.full_name} waits for {name}, which no node of the test offers{hint}"
+
+
+def _strangers(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
+    """Topics that only the test itself publishes or listens to."""
+    if graph.tester is None or len(cores) < len(graph.nodes) - 1:
+        return  # some that had them may have ended
+    tester = graph.tester
+    for kind, other, verb, done in (
+        (Kind.SUBSCRIPTION, Kind.PUBLISHER, "publishes", "taps"),
+        (Kind.PUBLISHER, Kind.SUBSCRIPTION, "listens to", "publishes"),
+    ):
+        known = {e.name for core in cores for e in core.endpoints if e.kind is other} - _OF_EVERY_NODE
+        own = {e.name for e in tester.endpoints if e.kind is other}
+        for name in sorted({e.name for e in tester.endpoints if e.kind is kind} - known - own - _OF_EVERY_NODE):
+            yield f"no node {verb} {name}, which the test {done}{did_you_mean(name, known)}"
+
+
+_OF_EVERY_NODE = {"/rosout", "/parameter_events"}

@@ -1,0 +1,40 @@
+"""The clipboard, by a program where there is one: many terminals ignore the escape sequence that Textual writes."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+
+LIMIT = 2.0
+"""Seconds that such a program may take."""
+
+
+def program() -> tuple[str, ...]:
+    """The words of a program that copies what it reads; none where only the terminal can."""
+    candidates: list[tuple[bool, tuple[str, ...]]] = [
+        (bool(os.environ.get("TMUX")), ("tmux", "load-buffer", "-w", "-")),
+        (bool(os.environ.get("WAYLAND_DISPLAY")), ("wl-copy",)),
+        (bool(os.environ.get("DISPLAY")), ("xclip", "-selection", "clipboard")),
+        (bool(os.environ.get("DISPLAY")), ("xsel", "--clipboard", "--input")),
+        (sys.platform == "darwin", ("pbcopy",)),
+    ]
+    return next((words for fits, words in candidates if fits and shutil.which(words[0])), ())
+
+
+def copy_by(words: tuple[str, ...], text: str) -> str:
+    """Have a program copy a text; returns why it could not, empty if it did. Blocks for `LIMIT` at most."""
+    try:
+        # Programs of X11 and Wayland stay to answer for the selection: nobody waits for their output.
+        done = subprocess.run(
+            words,
+            input=text.encode(),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            timeout=LIMIT,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"{words[0]}: {error}"
+    return f"{words[0]} ended with {done.returncode}" if done.returncode else ""

@@ -1,0 +1,109 @@
+"""The commands typed in consoles, and those that forms stand for: kept for this user from one console to the next."""
+
+from __future__ import annotations
+
+import logging
+import os
+import shlex
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from graphflow.errors import GraphflowError
+from graphflow.folders import state_root
+from graphflow.graph.source import parse_value
+from graphflow.reading import found_text
+
+KEPT = 1000
+"""Commands kept; the file may hold four times as many before it is cut."""
+LONGEST = 2_000
+"""Characters of a command; longer ones are not kept."""
+
+logger = logging.getLogger("graphflow.console")
+
+
+def history_file() -> Path:
+    """The file of this user's commands."""
+    return state_root() / ".history"
+
+
+def without_program(line: str) -> str:
+    """A command without the program's name, which ROS's users type as `ros2`."""
+    line = line.strip()
+    first, _, rest = line.partition(" ")
+    return rest.strip() if first in ("graphflow", "gf", "ros2") else line
+
+
+class History:
+    """Commands without the word `graphflow`, the oldest first.
+
+    Several consoles may write one file: each adds lines at its end, and reads those of all when it starts.
+
+    Args:
+        file: Where they are kept; None to forget them with the console.
+    """
+
+    def __init__(self, file: Path | None = None) -> None:
+        self._file = file
+        self._lines: list[str] | None = None
+
+    @property
+    def lines(self) -> list[str]:
+        """All commands; read when they are wanted first."""
+        if self._lines is None:
+            self._lines = self._read()
+        return self._lines
+
+    def add(self, line: str) -> None:
+        """Take in a command, unless it is the one before again."""
+        line = without_program(line)
+        if not line or "\n" in line or len(line) > LONGEST or line == (self.lines or [""])[-1]:
+            return
+        self.lines.append(line)
+        del self.lines[:-KEPT]
+        if self._file is None:
+            return
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            with open(
+                os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "a", encoding="utf-8"
+            ) as file:
+                file.write(f"{line}\n")
+        except OSError as error:
+            self._file = None
+            logger.warning("commands are forgotten with this console: %s", error)
+
+    def requests(self, *words: str) -> list[dict[str, Any]]:
+        """The values, written in YAML, of the commands that begin with these words: `service call /spawn TYPE`."""
+        found: list[dict[str, Any]] = []
+        for line in self.lines:
+            if not line.startswith(words[0]):
+                continue
+            try:
+                *before, values = shlex.split(line)
+                value = parse_value(values) if before == [*words] else None
+            except (ValueError, GraphflowError):  # typed by hand, and wrong
+                continue
+            if isinstance(value, dict):
+                found.append(value)
+        return found
+
+    def _read(self) -> list[str]:
+        if self._file is None:
+            return []
+        try:
+            lines = found_text(self._file, errors="replace").split("\n")[:-1]
+            if len(lines) > 4 * KEPT:
+                self._cut(lines[-KEPT:])
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            logger.warning("commands of earlier consoles cannot be read: %s", error)
+            return []
+        return lines[-KEPT:]
+
+    def _cut(self, lines: list[str]) -> None:
+        assert self._file is not None
+        with tempfile.NamedTemporaryFile("w", dir=self._file.parent, delete=False, encoding="utf-8") as fresh:
+            fresh.writelines(f"{line}\n" for line in lines)
+        os.replace(fresh.name, self._file)

@@ -1,0 +1,48 @@
+"""Arguments of graphs on the command line."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.cli.arguments import as_argument
+from tests.conftest import Machine
+
+
+@pytest.mark.parametrize(
+    ("option", "words", "argument"),
+    [
+        ("--rate", ["g.yaml", "--rate", "2.0"], "rate:=2.0"),
+        ("--rate", ["g.yaml", "--rate=2.0"], "rate:=2.0"),
+        ("--max-rate", ["--max-rate", "--no-console"], "max_rate:=VALUE"),
+        ("-r", ["g.yaml", "-r2"], "r:=VALUE"),
+        ("-p", ["g.yaml", "-p", "rate:=2.0"], "rate:=2.0"),
+        ("--2", ["--2"], None),
+    ],
+)
+def test_options_as_arguments(option: str, words: list[str], argument: str | None) -> None:
+    """With the value that was given."""
+    assert as_argument(option, words) == argument
+
+
+@pytest.mark.parametrize("verb", ["up", "launch", "check", "plan", "explain"])
+def test_an_argument_as_an_option(machine: Machine, verb: str) -> None:
+    """Is told as it is written."""
+    text = machine.look(verb, "talker_listener", "--rate", "2.0", code=2)
+    assert "No such option '--rate'. An argument of the graph is written rate:=2.0; up GRAPH --show-args" in text
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--params-file", "p.yaml"], "where a node is written in the graph file: params_file: FILE.yaml"),
+        (["--ros-args", "-p", "rate:=2.0"], "A graph file has params: and remap: for each node"),
+    ],
+)
+def test_options_of_nodes(machine: Machine, words: list[str], told: str) -> None:
+    """What a graph file has in their place is told."""
+    assert told in machine.look("check", "talker_listener", *words, code=2)
+
+
+def test_a_misspelt_option(machine: Machine) -> None:
+    """Is one."""
+    assert "Did you mean '--json'?" in machine.look("up", "talker_listener", "--jso", code=2)

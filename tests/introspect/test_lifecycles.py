@@ -1,0 +1,46 @@
+"""Life cycles, asked for and changed by others."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from graphflow import LifecycleNode, Node
+from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
+from graphflow.introspect.view import View
+from graphflow.msgs.lifecycle_msgs.srv import ChangeState
+from graphflow.testing import Graph
+
+
+class Asked(View):
+    """Answers everything, and remembers what it was asked."""
+
+    def __init__(self, **answer: Any) -> None:
+        self.answer, self.asked = SimpleNamespace(**answer), list[tuple[str, str, Any]]()
+
+    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
+        self.asked.append((name, type_name.rpartition("/")[2], request))
+        return self.answer
+
+
+def test_what_is_asked() -> None:
+    """The services of ROS 2."""
+    view = Asked(current_state="active", available_transitions=["deactivate"], success=True)
+    assert state(view, "/lived", 1.0) == "active"
+    assert transitions(view, "/lived", 1.0) == transitions(view, "/lived", 1.0, everything=True) == ["deactivate"]
+    assert change(view, "/lived", {"id": 4}, 1.0) is True
+    assert [(name, type_) for name, type_, _ in view.asked] == [
+        ("/lived/get_state", "GetState"),
+        ("/lived/get_available_transitions", "GetAvailableTransitions"),
+        ("/lived/get_transition_graph", "GetAvailableTransitions"),
+        ("/lived/change_state", "ChangeState"),
+    ]
+    assert view.asked[-1][2].transition.id == 4
+
+
+async def test_who_has_a_life_cycle(graph: Graph) -> None:
+    """Nodes that can be asked to change their state; a service of that type elsewhere is none."""
+    plain = Node("plain")
+    plain.create_service(ChangeState, "/elsewhere/change_state", lambda _: ChangeState.Response())
+    await graph.start(LifecycleNode("lived"), plain)
+    assert managed_nodes(plain.context.cache) == ["/lived"]

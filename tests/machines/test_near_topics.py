@@ -1,0 +1,97 @@
+"""Topics with nobody at the other end, and those that were probably meant."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.machines.near_topics import COMPARED, by_type, did_you_mean_topic, is_misspelt, is_near
+from graphflow.names import MAX_LENGTH
+from graphflow.wire.liveliness import Entity, Kind
+
+TWIST = "geometry_msgs/msg/Twist"
+
+
+def endpoint(kind: Kind, node: str, name: str, type_: str = TWIST) -> Entity:
+    return Entity(0, node, 1, hash((kind, name)) % 1000, kind, "/", node, name, type_)
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "near"),
+    [
+        ("/turtle1/cmd_vl", "/turtle1/cmd_vel", True),
+        ("/turtle1/cmdvel", "/turtle1/cmd_vel", True),
+        ("/turtle1/CMD_VEL", "/turtle1/cmd_vel", True),
+        ("/turtle/pose", "/turtl/pose", True),
+        ("/cmd_vel", "/turtle1/cmd_vel", True),
+        ("/turtle1/cmd_vel", "/cmd_vel", True),
+        ("/vel", "/cmd_vel", False),
+        ("/turtle2/cmd_vel", "/turtle1/cmd_vel", False),
+        ("/cmd_vel_nav", "/cmd_vel", False),
+        ("/left/image", "/right/image", False),
+        ("/goal_a", "/goal_b", False),
+        ("/a/scan", "/b/scan", False),
+    ],
+)
+def test_near_names(name: str, other: str, near: bool) -> None:
+    """Are those that one may write for the other; names that differ on purpose are not."""
+    assert is_near(name, other) is near
+    assert is_near(other, name) is near
+
+
+def test_other_case_is_misspelt() -> None:
+    """As far as it is a few letters, as anywhere; a missing namespace is not."""
+    assert is_misspelt("/turtle1/Pose", "/turtle1/pose")
+    assert not is_misspelt("/pose", "/turtle1/pose")
+
+
+def test_what_was_meant() -> None:
+    """Is the nearest topic of the same type that has the other end, with who is there."""
+    own = endpoint(Kind.PUBLISHER, "circle", "/cmd_vel")
+    there = by_type(
+        [
+            own,
+            endpoint(Kind.SUBSCRIPTION, "turtlesim", "/turtle1/cmd_vel"),
+            endpoint(Kind.SUBSCRIPTION, "other", "/a/much/longer/cmd_vel"),
+            endpoint(Kind.SUBSCRIPTION, "log", "/cmd_vl", "std_msgs/msg/String"),
+            endpoint(Kind.PUBLISHER, "mux", "/cmd_ve"),
+            endpoint(Kind.SUBSCRIPTION, "_graphflow_7", "/cmd_vell"),
+        ],
+        {TWIST, "std_msgs/msg/String"},
+    )
+    assert did_you_mean_topic(own, there) == (
+        f"nobody listens to /cmd_vel [{TWIST}]; did you mean '/turtle1/cmd_vel', to which /turtlesim listens?"
+    )
+
+
+def test_what_was_meant_by_a_subscription() -> None:
+    """Is told in its words; of several nodes one is named."""
+    own = endpoint(Kind.SUBSCRIPTION, "base", "/cmd_vl")
+    there = by_type([own, *(endpoint(Kind.PUBLISHER, node, "/cmd_vel") for node in ("b", "a", "c"))], {TWIST})
+    assert did_you_mean_topic(own, there) == (
+        f"nobody publishes /cmd_vl [{TWIST}]; did you mean '/cmd_vel', which /a and 2 more publish?"
+    )
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        endpoint(Kind.SUBSCRIPTION, "turtlesim", "/cmd_vel"),
+        endpoint(Kind.SUBSCRIPTION, "turtlesim", "/pose"),
+        endpoint(Kind.SUBSCRIPTION, "relay", "/turtle1/cmd_vel"),
+    ],
+)
+def test_nothing_was_meant(other: Entity) -> None:
+    """Where somebody is there, no name is near, or the node uses the other topic itself."""
+    own = endpoint(Kind.PUBLISHER, "relay", "/cmd_vel")
+    assert did_you_mean_topic(own, by_type([own, other], {TWIST})) == ""
+
+
+def test_a_crowd_of_names() -> None:
+    """Costs so many comparisons at most, and hides no name that was there before; too long names do not count."""
+    own = endpoint(Kind.PUBLISHER, "circle", "/cmd_vel")
+    crowd = [endpoint(Kind.SUBSCRIPTION, "crowd", f"/other{i}") for i in range(COMPARED)]
+    meant = endpoint(Kind.SUBSCRIPTION, "turtlesim", "/cmd_vl")
+    long = endpoint(Kind.SUBSCRIPTION, "long", f"/{'a' * MAX_LENGTH}/cmd_vel")
+    assert did_you_mean_topic(own, by_type([own, meant, *crowd], {TWIST}))
+    assert did_you_mean_topic(own, by_type([own, *crowd, meant], {TWIST})) == ""
+    assert did_you_mean_topic(own, by_type([own, long], {TWIST})) == ""

@@ -1,0 +1,16 @@
+"""The hint for a mistake, for tests of each kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from graphflow.rclpy import hints
+
+
+def hint_of(fn: Callable[[], object]) -> str:
+    """The hint for what `fn` raises."""
+    try:
+        fn()
+    except BaseException as error:
+        return hints.hint(error)
+    raise AssertionError("nothing was raised")

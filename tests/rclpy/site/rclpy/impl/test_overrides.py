@@ -1,0 +1,71 @@
+"""Values of parameters from outside."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from rclpy.exceptions import InvalidParameterTypeException, ParameterNotDeclaredException
+from rclpy.impl.overrides import as_parameters, remark
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+Kind = Parameter.Type
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "written"),
+    [
+        (5, Kind.DOUBLE, "gain: 5.0"),
+        ("5,0", Kind.DOUBLE, "gain: 5.0"),
+        ("five", Kind.DOUBLE, ""),
+        (5.0, Kind.INTEGER, "gain: 5"),
+        (5.5, Kind.INTEGER, ""),
+        (7, Kind.STRING, "gain: '7'"),
+        (1, Kind.BOOL, "gain: true"),
+        ("maybe", Kind.BOOL, ""),
+        ("1.0, 2.0", Kind.DOUBLE_ARRAY, "gain: [1.0, 2.0]"),
+        ([1, 2], Kind.DOUBLE_ARRAY, "gain: [1.0, 2.0]"),
+        ([1, 2], Kind.STRING_ARRAY, "gain: ['1', '2']"),
+        ([1, "a"], Kind.INTEGER_ARRAY, ""),
+        ([1], Kind.STRING, ""),
+        (b"", Kind.BYTE_ARRAY, ""),
+    ],
+)
+def test_how_a_value_is_written(value: Any, kind: Parameter.Type, written: str) -> None:
+    """For the type that the parameter has; only where it was set for one that it cannot have."""
+    text = "gain is set in lamp.yaml:3" + (f": write {written}" if written else "")
+    assert remark("gain", value, "/home/lamp.yaml:3", kind) == text
+
+
+def test_the_command_line() -> None:
+    """A value with spaces or quotes stands in quotes."""
+    assert remark("gain", 7, "command line", Kind.DOUBLE) == "gain is set on the command line: write -p gain:=7.0"
+    assert remark("name", 7, "command line", Kind.STRING).endswith("""write -p "name:='7'\"""")
+
+
+def test_a_value_that_no_parameter_has() -> None:
+    """It is told where it is written, and as what it could be."""
+    with pytest.raises(TypeError) as caught:
+        as_parameters({"goal": ([1, 2.5], "lamp.yaml:3")})
+    assert caught.value.__notes__ == ["note: goal is set in lamp.yaml:3: write goal: [1.0, 2.5]"]
+
+
+def test_a_node_whose_parameter_is_of_another_type(network: Any) -> None:
+    """The error has the place and the form; one that is not declared has the nearest name, or the call."""
+    import rclpy
+
+    rclpy.init()
+    node = Node("lamp", cli_args=["--ros-args", "-p", "gain:=7"])
+    with pytest.raises(InvalidParameterTypeException) as wrong:
+        node.declare_parameter("gain", 1.0)
+    assert wrong.value.__notes__ == ["note: gain is set on the command line: write -p gain:=7.0"]
+    node.declare_parameter("speed", 1.0)
+    for name, way in (("sped", "did you mean 'speed'?"), ("x", "declare it first: declare_parameter('x', 1.0)")):
+        with pytest.raises(ParameterNotDeclaredException) as caught:
+            node.get_parameter(name)
+        assert caught.value.__notes__ == [f"note: {way}"]
+        with pytest.raises(ParameterNotDeclaredException) as caught:
+            node.set_parameters([Parameter(name, value=2.0)])
+        assert caught.value.__notes__ == [f"note: {way}"]

@@ -1,0 +1,61 @@
+"""What is given to be spun in place of a node."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+
+ROS: Any = rclpy
+
+
+class Lamp(Node):
+    """Is given as a class."""
+
+
+class Bulb:
+    """Is no node."""
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        (lambda n: Lamp, "spin needs a node, got the class Lamp: write spin(Lamp())"),
+        (lambda n: [n], "spin needs one node, got a list: add each to an executor by executor.add_node(node)"),
+        (
+            lambda n: SingleThreadedExecutor(),
+            "got a SingleThreadedExecutor: write executor.add_node(node), then executor",
+        ),
+        (
+            lambda n: Bulb(),
+            "spin needs a node, got a Bulb: write class Bulb(Node), and super().__init__('name') in its ",
+        ),
+        (lambda n: None, "spin needs a node, got a NoneType"),
+    ],
+)
+def test_what_is_no_node(node: Node, given: Any, text: str) -> None:
+    """It is refused with what to write."""
+    with pytest.raises(TypeError) as caught:
+        ROS.spin(given(node))
+    assert text in str(caught.value)
+
+
+@pytest.mark.parametrize("call", ["spin_once", "spin_until_future_complete", "add_node"])
+def test_all_that_takes_nodes(node: Node, call: str) -> None:
+    """Each says its own name."""
+    takes = SingleThreadedExecutor().add_node if call == "add_node" else getattr(ROS, call)
+    arguments: tuple[Any, ...] = (rclpy.Future(),) if call == "spin_until_future_complete" else ()
+    with pytest.raises(TypeError, match=f"^{call} needs a node, got the class Lamp"):
+        takes(Lamp, *arguments)
+
+
+def test_threads_that_are_no_number(node: Any) -> None:
+    """They are refused: it may be a node."""
+    with pytest.raises(TypeError) as caught:
+        MultiThreadedExecutor("4")  # type: ignore[arg-type]
+    text = "num_threads must be a number of threads, got '4': nodes are added by executor.add_node(node)"
+    assert str(caught.value) == text

@@ -1,0 +1,62 @@
+"""Next steps for errors about messages."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+from geometry_msgs.msg import Twist, Vector3
+from rcl_interfaces.msg import ParameterValue
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, Header, Int32
+
+from rclpy.clock import Clock
+from rclpy.parameter import Parameter
+from tests.rclpy.hinted import hint_of
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ("m.data = n / 2", "m.data is an int: write int(...) or //"),
+        ("m.data = 0.5 * n", "m.data is an int: write int(...)"),
+        ("m.data = words[1]  # the second", "write m.data = int(words[1])"),
+        ("m.data = Int32(data=1)", "Int32(data=1) is a message: write m.data = Int32(data=1).data"),
+        ("m.data = param", "a parameter has its value in .value: m.data = param.value"),
+        ("h.stamp = clock.now()", "write h.stamp = clock.now().to_msg()"),
+        ("h.stamp = time.time()", "write h.stamp = self.get_clock().now().to_msg()"),
+        ("h.stamp = n", "h.stamp is a Time: set its fields, as in h.stamp.sec = ..."),
+        ("h.frame_id = n", "write h.frame_id = str(n)"),
+        ("h.frame_id = None", ""),
+        ("t.linear = 2.0", "t.linear is a Vector3: set its fields, as in t.linear.x = ..."),
+        ("t.linear = Vector3", "that is a class and no message: write t.linear = Vector3()"),
+        ("t.linear = h", "t.linear is a Vector3, and was given a Header"),
+        ("t.linear.x = 2", "t.linear.x is a float: write 2.0"),
+        ("t.linear.x = n", "write t.linear.x = float(n)"),
+        ("t.linear.x = '2'", "write t.linear.x = float('2')"),
+        ("t.linear.x = None", ""),
+        ("m.data = 1 << 40", "it was given 1099511627776"),
+        ("b.data = 'yes'", "it was given 'yes': write True or False"),
+        ("j.name = ['a', 2]", "one of its elements is 2: write [str(v) for v in ...]"),
+        ("j.position = [1.0, 'b']", "one of its elements is 'b': write [float(v) for v in ...]"),
+        ("j.name = 'ab'", "it was given 'ab'"),
+        ("j.position = 3.0", "it was given 3.0: a list is wanted, write [3.0]"),
+        ("t.linear.theta = 1.0", "Vector3 has x, y, z"),
+        ("'heard ' + b", "b is a Bool, a message: take its field, b.data"),
+        ("2 * value", "value is a ParameterValue: write get_parameter('name').value in place of"),
+        ("2 * None", ""),
+        ("Int32(data=1.5)", "data is an int: write int(...)"),
+        ("Twist(linear=1.5)", "linear is a Vector3: set its fields, as in linear.x = ..."),
+    ],
+)
+def test_values_of_fields(tmp_path: Path, line: str, sentence: str) -> None:
+    """The line is shown as it should be."""
+    file = tmp_path / "wrong.py"
+    file.write_text(line)
+    known = {"m": Int32(), "h": Header(), "t": Twist(), "n": 3, "words": ["a", "7"], "clock": Clock()}
+    known |= {"b": Bool(), "j": JointState()}
+    known |= {"Int32": Int32, "Twist": Twist, "Vector3": Vector3, "param": Parameter("n", value=1)}
+    known |= {"time": time, "value": ParameterValue()}
+    found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
+    assert found.startswith(sentence) if sentence else found == ""

@@ -1,0 +1,46 @@
+"""Nodes of this machine in other domains, where a node is alone in its own."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from graphflow import Node, ServiceUnavailable
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.testing import Graph
+from tests.runtime.cast import running_in
+
+ALONE = "this domain, 0, has no other nodes; domain 7 has 1: "
+
+
+@pytest.mark.parametrize(
+    ("name", "way"),
+    [("n", "start it with GRAPHFLOW_DOMAIN=7 to join"), ("_graphflow_1", "graphflow --domain 7 ...")],
+)
+async def test_an_error_says_so(name: str, way: str, graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a service and of an action, with how a node, or a command, gets there."""
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "0")
+    node = Node(name)
+    adder, rabbits = node.create_client(AddTwoInts, "add"), node.create_action_client(Fibonacci, "fibonacci")
+    await graph.start(node)
+    for waiting in (adder.expect_ready(1.0), rabbits.expect_ready(1.0)):
+        async with running_in(graph, 7):
+            task = asyncio.create_task(waiting)
+            await graph.clock.advance(1.0)
+        with pytest.raises(ServiceUnavailable) as caught:
+            await task
+        assert str(caught.value).endswith(f"]; {ALONE}{way}")
+
+
+async def test_an_error_where_it_is_not_alone(graph: Graph) -> None:
+    """Says nothing of other domains."""
+    node = Node("n")
+    adder = node.create_client(AddTwoInts, "add")
+    await graph.start(node, Node("other"))
+    async with running_in(graph, 7):
+        task = asyncio.create_task(adder.expect_ready(1.0))
+        await graph.clock.advance(1.0)
+    with pytest.raises(ServiceUnavailable, match=r"AddTwoInts\]$"):
+        await task

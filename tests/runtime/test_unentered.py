@@ -1,0 +1,55 @@
+"""Context managers that are not entered."""
+
+from __future__ import annotations
+
+import inspect
+
+import pytest
+
+from graphflow import ActionClient, Node, running
+from graphflow.errors import DeclarationError
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.testing import Graph
+
+
+class Asker(Node):
+    goals = ActionClient(Fibonacci, "fibonacci")
+
+    def forget(self) -> None:
+        self.goals.send(Fibonacci.Goal(order=3))
+
+
+async def test_a_forgotten_async_with(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Is told with its line, of nodes and of goals."""
+    running(Asker())
+    node = Asker()
+    await graph.start(node)
+    node.forget()
+    line = inspect.getsourcelines(Asker.forget)[1] + 1
+    first, second = caplog.messages
+    assert first.startswith(f"{__file__}:")
+    assert first.endswith("does nothing until it is entered; write async with graphflow.running(asker): ...")
+    assert second.startswith(f"{__file__}:{line}: this does nothing until it is entered; write `async with client.send")
+
+
+def test_other_ways_to_enter(caplog: pytest.LogCaptureFixture) -> None:
+    """Are answered at once, and only once."""
+    block = running(Asker())
+    with pytest.raises(TypeError, match=r"write async with graphflow\.running\(asker\)"):
+        block.__enter__()  # type: ignore[attr-defined]
+    del block
+    assert caplog.messages == []
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (Asker, r"Asker is a class; make a node of it: Asker\(\)"),
+        ([], r"nodes are given one by one, as in running\(talker, listener\)"),
+        ("asker", "'asker' is not a node"),
+    ],
+)
+def test_what_is_no_node(given: Node, told: str) -> None:
+    """Is refused at the call."""
+    with pytest.raises(DeclarationError, match=told):
+        running(given)

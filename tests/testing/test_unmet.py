@@ -1,0 +1,94 @@
+"""What is said of a failing test."""
+
+from __future__ import annotations
+
+import asyncio
+
+from graphflow import ActionClient, Client, Node, Publisher, subscription, task, timer
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.testing import Graph
+from graphflow.testing.unmet import unmet
+
+
+class Talker(Node):
+    words = Publisher(String, "words")
+
+    @timer(1.0)
+    async def tick(self) -> None:
+        self.words.publish(String(data="a"))
+
+
+class Echo(Node):
+    out = Publisher(String, "out")
+
+    @subscription(String, "words")
+    async def heard(self, message: String) -> None:
+        self.out.publish(message)
+
+
+async def test_messages_on_their_way(graph: Graph) -> None:
+    """Are counted; a test that waits for them is told nothing."""
+    await graph.start(Echo())
+    heard, words = graph.tap(String, "/out"), graph.publisher(String, "/words")
+    words.publish(String(data="a"))
+    assert await unmet(graph) == [
+        "1 message of /out came after the test had ended: await graph.settle() before it looks at them"
+    ]
+    assert len(heard) == 1
+    assert await unmet(graph) == []
+
+
+async def test_names_that_no_node_has(graph: Graph) -> None:
+    """With the nearest; of nodes that have ended nothing is known."""
+    echo = Echo(namespace="/lab")
+    await graph.start(echo)
+    graph.tap(String, "/out")
+    graph.publisher(String, "/lab/wrods")
+    assert await unmet(graph) == [
+        "no node publishes /out, which the test taps; did you mean '/lab/out'?",
+        "no node listens to /lab/wrods, which the test publishes; did you mean '/lab/words'?",
+    ]
+    await graph.stop(echo)
+    assert await unmet(graph) == []
+
+
+async def test_a_clock_that_stands_still(graph: Graph) -> None:
+    """Is told where something waits for it, and as long as it was never advanced."""
+    await graph.start(Talker())
+    assert await unmet(graph) == [
+        "the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)"
+    ]
+    await graph.clock.advance(0.1)
+    assert await unmet(graph) == []
+
+
+async def test_waits_in_vain(graph: Graph) -> None:
+    """For services and actions that nobody offers, and for real time, each with its line."""
+
+    class Asker(Node):
+        adder = Client(AddTwoInts, "add")
+        goals = ActionClient(Fibonacci, "count")
+
+        @task
+        async def ask(self) -> None:
+            await self.adder.wait_ready()
+
+        @task
+        async def act(self) -> None:
+            await self.goals.wait_ready()
+
+        @task
+        async def sleep(self) -> None:
+            await asyncio.sleep(100.0)
+
+    await graph.start(Asker())
+    await graph.clock.advance(1.0)
+    line = Asker.sleep.__code__.co_firstlineno + 2
+    assert await unmet(graph) == [
+        f"/asker waits (test_unmet.py:{line} in sleep) for real time, which a test does not: write "
+        "await self.clock.sleep(...) in place of asyncio.sleep",
+        "/asker waits for /add, which no node of the test offers",
+        "/asker waits for /count, which no node of the test offers",
+    ]
