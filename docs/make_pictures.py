@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import html
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -39,6 +40,10 @@ FONTS = "DejaVu Sans Mono, Menlo, Consolas, monospace"
 PNG_WIDTH = 1200
 GAP = 4
 """Columns between two frames of a film."""
+PIECES = re.compile("[\u2800-\u28ff]+|(?! )[^\u2800-\u28ff]*[^ \u2800-\u28ff]")
+"""Braille patterns, or text without the spaces around it."""
+DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
+"""Column and line of each bit of a Braille pattern (Unicode, chapter 21.1)."""
 FRAME = 0.25
 """Seconds between two looks at the screen while it is recorded."""
 
@@ -129,7 +134,7 @@ def deadlock() -> None:
         t.press("C-b")
         film.run(1.2)
         t.press("g")
-        film.run_until("f gives", 10)
+        film.run_until("f  give", 10)
         film.run(5)
         take(t, "deadlock")
         t.press("f")
@@ -150,14 +155,15 @@ SCENES: dict[str, Callable[[], None]] = {"turtlesim": turtlesim, "goals": goals,
 
 
 def open_window(t: Terminal, content: str) -> None:
-    """Show something by the command line, and move it to a window of its own."""
+    """Show something by the command line, and move it to a window of its own, unless it needs one and has it."""
     t.press("C-b", ":")
     t.until("Any verb of graphflow")
     t.type(content)
     t.press("Enter")
     time.sleep(0.5)
-    t.press("C-b", "!")
-    time.sleep(0.5)
+    if f":{content.split()[0]}*" not in t.text:
+        t.press("C-b", "!")
+        time.sleep(0.5)
 
 
 # pictures
@@ -207,16 +213,32 @@ def row(line: Text) -> str:
             grounds.append(
                 f'<rect x="{x:.1f}" width="{w + 0.4:.1f}" height="{CELL_HEIGHT + 0.4:.1f}" fill="{ground}"/>'
             )
-        text = segment.text.strip()
-        if text:
-            x += (length - len(segment.text.lstrip())) * CELL_WIDTH
-            weight = ' font-weight="bold"' if style.bold else ""
+        weight = ' font-weight="bold"' if style.bold else ""
+        for piece in PIECES.finditer(segment.text):
+            text, x = piece[0], (at + piece.start()) * CELL_WIDTH
             texts.append(
-                f'<text x="{x:.1f}" y="{CELL_HEIGHT - 4:.0f}" textLength="{len(text) * CELL_WIDTH:.1f}" '
+                dots(text, x, ink)
+                if is_dots(text)
+                else f'<text x="{x:.1f}" y="{CELL_HEIGHT - 4:.0f}" textLength="{len(text) * CELL_WIDTH:.1f}" '
                 f'fill="{ink}"{weight}>{html.escape(text)}</text>'
             )
         at += length
     return "".join([*grounds, *texts])
+
+
+def is_dots(text: str) -> bool:
+    return "\u2800" <= text[0] <= "\u28ff"
+
+
+def dots(text: str, x: float, ink: str) -> str:
+    """Braille patterns as dots: few monospaced fonts have them, and those of other fonts are too wide."""
+    found = []
+    for i, letter in enumerate(text):
+        for bit, (column, line) in enumerate(DOTS):
+            if ord(letter) & 1 << bit:
+                cx, cy = x + (i + 0.25 + 0.5 * column) * CELL_WIDTH, (line + 0.5) * CELL_HEIGHT / 4
+                found.append(f"M{cx:.1f} {cy:.1f}h0")
+    return f'<path d="{"".join(found)}" stroke="{ink}" stroke-width="2" stroke-linecap="round"/>' if found else ""
 
 
 def hexed(colour: Color | None, usual: str) -> str:
