@@ -9,6 +9,7 @@ import json
 import os
 import struct
 import sys
+import threading
 import time
 from typing import Any
 
@@ -33,6 +34,7 @@ STATUS = (
 HEADER = b"\0\1\0\0"
 GID = os.urandom(16)
 LIMIT = 20.0
+CANCELED = 5
 
 config = zenoh.Config()
 for key, value in {
@@ -44,6 +46,7 @@ for key, value in {
     config.insert_json5(key, json.dumps(value))
 session: Any = zenoh.open(config)
 sequence = 0
+cancel_shown = threading.Event()
 
 
 def say(*words: object) -> None:
@@ -95,6 +98,8 @@ def heard_status(sample: Any) -> None:
     # GoalInfo is 16 + 8 bytes, the state one more, padded to 4 for the next entry's stamp.
     entries = [data[4 + 28 * i : 4 + 28 * i + 25] for i in range(count)]
     say("STATUS", *(f"{entry[:2].hex()}:{entry[24]}" for entry in entries))
+    if any(entry[24] == CANCELED for entry in entries):
+        cancel_shown.set()
 
 
 def send(goal_id: bytes, order: int) -> None:
@@ -125,5 +130,7 @@ say("CANCEL", answer[0], struct.unpack_from("<I", answer, 4)[0])
 answer = call(CANCEL, b"\x33" * 16 + struct.pack("<iI", 0, 0))
 say("CANCEL", answer[0], struct.unpack_from("<I", answer, 4)[0])
 result(b"\x33" * 16)
+# Topics and replies come on threads of their own: the last status may come after the results.
+assert cancel_shown.wait(LIMIT)
 say("DONE")
 os._exit(0)
