@@ -97,9 +97,11 @@ def run_on(kind: str, main: Coroutine[Any, Any, None]) -> None:
 
 
 def raw_session() -> zenoh.Session:
-    """A Zenoh session configured as graphflow's, in a process that treats memory likewise."""
+    """A Zenoh session configured as graphflow's, with Zenoh's shared memory, in a process that treats memory likewise."""
     keep_freed_memory()
-    return open_session(config("peer", connect=[rendezvous_endpoint()], listen="tcp/127.0.0.1:0"))
+    settings = config("peer", connect=[rendezvous_endpoint()], listen="tcp/127.0.0.1:0")
+    settings.insert_json5("transport/shared_memory/enabled", "true")
+    return open_session(settings)
 
 
 def wait_matched(declared: Any, limit: float = LIMIT) -> None:

@@ -8,7 +8,7 @@ from graphflow.names import nearest
 
 PREFIX = "GRAPHFLOW_"
 KNOWN = (
-    *("CONNECT", "DOMAIN", "LOG", "LOOP", "NET", "PORTABLE", "RACES", "RENDEZVOUS", "WIRE"),
+    *("CONNECT", "DOMAIN", "LOG", "LOOP", "NET", "PORTABLE", "RACES", "RENDEZVOUS", "SHARED_MEMORY", "WIRE"),
     *("PREFIX", "THEME"),  # of the console
     *("ENDS_WITH", "PYTHON"),  # between processes of graphflow's own
 )

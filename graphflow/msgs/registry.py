@@ -19,7 +19,7 @@ from graphflow.wire.codegen import FORMATS, Style, Types
 from graphflow.wire.described import DESCRIBING, VALUES_BOUND, verified
 from graphflow.wire.extent import extent
 from graphflow.wire.profile import wire_profile, wire_type
-from graphflow.wire.schema import PRIMITIVES, Action, Interface, Message, Service
+from graphflow.wire.schema import NUMERIC, PRIMITIVES, STRINGS, Action, Interface, Message, Service
 from graphflow.wire.typehash import referenced, type_hash
 
 KINDS = ("msg", "srv", "action")
@@ -325,6 +325,17 @@ def service_schema(name: str) -> Service:
             if service.name == name:
                 return service
     raise UnknownInterface(f"{name} is not a service")
+
+
+@cache
+def has_number_lists(name: str) -> bool:
+    """Whether a message type has arrays of numbers without a fixed size, as images and clouds have: it may be large."""
+    fields = message_schema(name).fields
+    return any(
+        f.type.array in ("unbounded", "bounded") if f.type.base in NUMERIC else has_number_lists(f.type.base)
+        for f in fields
+        if f.type.base not in STRINGS
+    )
 
 
 def whole_schema(name: str) -> Message:

@@ -24,6 +24,7 @@ from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.runtime.direct import Switchboard
 from graphflow.runtime.handover import Handover
 from graphflow.runtime.reasons import Reasons
+from graphflow.runtime.shared_memory import Readers
 from graphflow.runtime.twins import Twins
 from graphflow.runtime.unmatched import Unmatched
 from graphflow.transport.base import Closable, Session
@@ -77,6 +78,8 @@ class Context:
         """Calls to and from other graphflow processes."""
         self.handover = Handover()
         """Messages between nodes of this process."""
+        self.readers = Readers(session, domain)
+        """Subscriptions that read large messages from this process's memory."""
         self.reasons = Reasons(session, domain)
         """Why goals did not come to their end."""
         self.call_timeout = call_timeout

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from threading import get_ident
 from time import sleep
 from typing import Any, Generic, TypeVar
@@ -12,14 +13,16 @@ from graphflow.errors import ClosedError, EncodeError
 from graphflow.executor.runner import Runner
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
+from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, INFINITE_NS, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, SilenceTimer
 from graphflow.runtime.handover import Handed, Receiver
 from graphflow.runtime.host import Host
-from graphflow.transport.base import Payload, Sender
+from graphflow.transport.base import LargeSender, Payload, Sender
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
+from graphflow.wire.shared_memory import ring_key
 
 M = TypeVar("M", bound=Message)
 _pack = attachment.LAYOUT.pack
@@ -69,6 +72,9 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._order = _Order()
         self._codec = registry.codec(self.type_name)
         self._sender: Sender = _NOT_OPEN
+        self._put: Callable[..., None] = _NOT_OPEN.put
+        self._large: LargeSender | None = None
+        """Takes the place of the sender's `put` for types whose messages may be large."""
         self._gid = bytes(16)
         self._now_ns: Callable[[], int] = int
         self._deadline: SilenceTimer | None = None
@@ -76,6 +82,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._alive: Sender | None = None
         self._here: Sequence[Receiver] = ()
         """The subscriptions of this process that are handed what it publishes."""
+        self._unfollow: Callable[[], None] = _nothing
         self._paused: tuple[Sender, Sequence[Receiver]] | None = None
         """What it reaches when it is not paused; None while it is not."""
 
@@ -84,6 +91,9 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._gid, self._now_ns = self._announced().gid, self.host.context.clock.time_ns
         self._sender = session.open_sender(key, self.qos, only_others=True)
         self._declared.append(self._sender)
+        self._put = self._sender.put
+        if registry.has_number_lists(self.type_name):
+            self._share_memory(key)
         self._here = self.host.context.handover.receivers(key, self.qos.durability)
         if self.qos.deadline_ns != INFINITE_NS:
             self._deadline = self._silence_timer(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
@@ -91,6 +101,23 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._lease = self._silence_timer(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
             self._alive = session.open_sender(alive_key(self._announced()), DEFAULT)
             self._declared.append(self._alive)
+
+    def _share_memory(self, key: str) -> None:
+        context = self.host.context
+        self._large = context.session.open_large_sender(self._sender, ring_key(context.domain, key))
+        if self._large is not None:
+            self._declared.append(self._large)
+            self._put = self._large.put_parts
+            self._unfollow = context.readers.follow(self._look_for_readers)
+
+    def _look_for_readers(self) -> None:
+        if self._large is not None and self.entity is not None:
+            own = self.entity.zid
+            others = [entity for entity in self.matched.values() if entity.zid != own]
+            self._large.admit(self.host.context.readers.of(others))
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        self._look_for_readers()
 
     def _silence_timer(self, period_ns: int, silent: Callable[[], None]) -> SilenceTimer:
         timer = SilenceTimer(self.host.clock, period_ns, silent)
@@ -117,7 +144,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         if self._here:
             self._hand_over(message, sender)
         elif sender.is_wanted:
-            payload = self._codec.encode(message)
+            codec = self._codec
+            payload: Any = codec.encode(message) if self._large is None else codec.encode_parts(message)
             order = self._order
             if get_ident() != order.thread:
                 order.look_who_publishes()
@@ -126,10 +154,10 @@ class TopicPublisher(Endpoint, Generic[M]):
                 if order.is_shared:
                     order.is_sending = False
                     with order.lock:
-                        self._send(sender, payload)
+                        self._send(payload)
                 else:
                     self.published += 1
-                    sender.put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
+                    self._put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
             except Exception as error:
                 raise self._not_sent(error) from None
             finally:
@@ -145,15 +173,16 @@ class TopicPublisher(Endpoint, Generic[M]):
         if self._lease is not None:
             self._lease.touch()
 
-    def _send(self, sender: Sender, payload: Payload) -> None:
+    def _send(self, payload: Any) -> None:
         self.published += 1
-        sender.put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
+        self._put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
 
     def _hand_over(self, message: M, sender: Sender) -> None:
         """Give a copy to the subscriptions of this process, and send it if others want it."""
         clone, receivers = self._codec.clone, tuple(self._here)  # which may change: this may be another thread
         copy = clone(message)
-        payload = self._codec.encode(copy) if sender.is_wanted else None
+        encode: Callable[[M], Any] = self._codec.encode if self._large is None else self._codec.encode_parts
+        payload = encode(copy) if sender.is_wanted else None
         if get_ident() != self._order.thread:
             self._order.look_who_publishes()
         with self._order.lock:
@@ -164,9 +193,54 @@ class TopicPublisher(Endpoint, Generic[M]):
                 receiver.hand(handed)
             if payload is not None:
                 try:
-                    sender.put(payload, attachment=attachment.pack(*fields))
+                    self._put(payload, attachment=attachment.pack(*fields))
                 except Exception as error:
                     raise self._not_sent(error) from None
+
+    @contextmanager
+    def loan(self, **lengths: int) -> Iterator[M]:
+        """Fill a message in place, which is published at the end of the block: `with pub.loan(data=1000) as image:`.
+
+        The longest of its arrays lies where subscriptions of other processes read it, if that can be, and is not
+        copied any more. Write into it (`image.data[:] = ...`) and do not replace it; it cannot be written afterwards.
+        A block that raises publishes nothing. One loan at a time; a second one is an ordinary message.
+
+        Args:
+            lengths: The number of elements of its arrays of numbers, by field.
+
+        Raises:
+            EncodeError: The message has no such array.
+            ClosedError: The node is not running.
+        """
+        self._announced()
+        message, longest = self.type(), None
+        for name, count in lengths.items():
+            setattr(message, name, self._array(name, count))
+            if longest is None or getattr(message, name).nbytes > getattr(message, longest).nbytes:
+                longest = name
+        large, lent = self._large, None
+        if large is not None and longest is not None:
+            array = getattr(message, longest)
+            with self._order.lock:
+                lent = large.lend(array.dtype, array.size)
+            if lent is not None:
+                setattr(message, longest, lent)
+        try:
+            yield message
+            self.publish(message)
+        finally:
+            if large is not None and lent is not None:
+                with self._order.lock:
+                    large.take_back()
+
+    def _array(self, name: str, count: int) -> Any:
+        from graphflow.wire.arrays import DTYPES, zeros
+
+        field = next((f for f in self.type.SCHEMA.fields if f.name == name), None)
+        if field is None or field.type.array not in ("unbounded", "bounded") or field.type.base not in DTYPES:
+            arrays = [f.name for f in self.type.SCHEMA.fields if f.type.array and f.type.base in DTYPES]
+            raise EncodeError(f"{self.type_name} has no array of numbers {name!r} to lend{did_you_mean(name, arrays)}")
+        return zeros(field.type.base, count)
 
     def _not_sent(self, error: Exception) -> Exception:
         """The error to raise for one of the transport's, which is to be expected where another thread ends the node."""
@@ -189,7 +263,10 @@ class TopicPublisher(Endpoint, Generic[M]):
                 timer.move(self.host.clock)
 
     def statistics(self) -> dict[str, Any]:
-        return {"published": self.published, **super().statistics()}
+        """Messages published; of those with arrays also how many went through shared memory, and its bytes."""
+        large = self._large
+        shared = {} if large is None else {"in_memory": large.in_memory, "memory": large.memory}
+        return {"published": self.published, **shared, **super().statistics()}
 
     def get_subscription_count(self) -> int:
         """Number of subscriptions in the graph that get these messages."""
@@ -213,6 +290,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             if timer is not None:
                 timer.stop()
         self._sender, self._here, self._paused = _NOT_OPEN, (), None
+        self._unfollow()
         super().close()
 
 
@@ -229,6 +307,10 @@ class _NotOpen:
 
 
 _NOT_OPEN = _NotOpen()
+
+
+def _nothing() -> None:
+    """No readers are followed."""
 
 
 def alive_key(publisher: Entity) -> str:

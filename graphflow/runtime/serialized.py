@@ -12,11 +12,12 @@ from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.handover import Handed, Receiver
 from graphflow.runtime.host import Host
+from graphflow.runtime.shared_memory import RingReading
 from graphflow.runtime.subscriptions import unreadable
 from graphflow.transport.base import Inbox, Sender, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
-from graphflow.wire.liveliness import Kind
+from graphflow.wire.liveliness import Entity, Kind
 
 AT_ONCE = 64
 """Messages that are handed on before others have a turn of the loop."""
@@ -48,6 +49,7 @@ class RawSubscription(Endpoint):
         self._callback = callback
         self._inbox: Inbox | None = None
         self._read: Callable[[Any], tuple[bytes, bytes | None]] = unreadable
+        self._rings: RingReading | None = None
 
     @property
     def type_hash(self) -> str:
@@ -64,9 +66,17 @@ class RawSubscription(Endpoint):
         self._read = context.session.read
         self._inbox = open_inbox(self.qos, context.session.bell, self._arrived)
         # What nodes of this process publish comes by hand, as for other subscriptions.
-        ignore_local = self.qos.durability is Durability.VOLATILE
-        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, ignore_local=ignore_local))
+        is_volatile = self.qos.durability is Durability.VOLATILE
+        options = {"ignore_local": is_volatile, "in_order": is_volatile}
+        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, **options))
+        if is_volatile:
+            self._rings = context.readers.read(self._announced(), self._inbox)
+            self._declared += () if self._rings is None else (self._rings,)
         context.handover.join(key, self)
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        if self._rings is not None and not alive:
+            self._rings.forget_ended()
 
     def hand(self, handed: Handed) -> None:
         """Take a message of a publisher of this process."""
@@ -89,7 +99,7 @@ class RawSubscription(Endpoint):
                 info = MessageInfo._make(attachment.fields(beside or b""))
             except DecodeError:  # peers that send none, or one of another layout, are heard anyway
                 info = UNKNOWN
-            self._callback(payload, info)
+            self._callback(bytes(payload), info)
         if items:
             self.host.context.loop.call_soon(self._arrived)
 

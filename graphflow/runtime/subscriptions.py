@@ -21,7 +21,9 @@ from graphflow.runtime.events import OnEvent, SilenceTimer
 from graphflow.runtime.handover import Handed
 from graphflow.runtime.host import Host
 from graphflow.runtime.publishers import alive_key
-from graphflow.transport.base import BYTES_BOUND, Closable, DeepInbox, Inbox, open_inbox
+from graphflow.runtime.shared_memory import RingReading
+from graphflow.runtime.sources import Source
+from graphflow.transport.base import BYTES_BOUND, DeepInbox, Inbox, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
@@ -36,25 +38,6 @@ SOURCES_BOUND = 4096
 
 _NO_INFO = (0, 0, bytes(16))
 """Stands in for a missing attachment, or for one of another layout."""
-
-
-class _Source:
-    """One publisher as a subscription knows it."""
-
-    __slots__ = ("alive", "lease", "lifespan_ns", "needs_care", "sequence")
-
-    def __init__(self, lifespan_ns: int) -> None:
-        self.sequence = 0
-        self.lease: SilenceTimer | None = None
-        self.alive: Closable | None = None
-        self.expects(lifespan_ns)
-
-    def expects(self, lifespan_ns: int, lease: SilenceTimer | None = None) -> None:
-        """Set for how long its messages count, and the timer of its signs of life."""
-        self.lifespan_ns = lifespan_ns
-        self.lease = lease or self.lease
-        self.needs_care = lifespan_ns != INFINITE_NS or self.lease is not None
-        """Whether the time of each message matters."""
 
 
 class TopicSubscription(Endpoint, Generic[M]):
@@ -100,11 +83,12 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._inbox: Inbox | None = None
         self._taken = 0
         self._waiters: set[Future[None]] = set()
-        self._sources: dict[bytes, _Source] = {}
+        self._sources: dict[bytes, Source] = {}
         self._gaps = 0
         self._has_told_loss = self._has_told_full = False
         self._deadline: SilenceTimer | None = None
         self._echo: Echo | None = None
+        self._rings: RingReading | None = None
         self._wake: Callable[[], None] = _nothing
         """What a message has called when the subscription is not paused."""
 
@@ -135,8 +119,12 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._watch_deadline(self._inbox)
         # What nodes of this process publish comes by hand, unless it is wanted not at all.
         ignore_local = self._ignore_local or self.qos.durability is Durability.VOLATILE
-        options = {"ignore_local": ignore_local, "in_order": self.in_order}
+        is_large = self.qos.durability is Durability.VOLATILE and registry.has_number_lists(self.type_name)
+        options = {"ignore_local": ignore_local, "in_order": self.in_order or is_large}
         self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, **options))
+        if is_large:
+            self._rings = context.readers.read(self._announced(), self._inbox)
+            self._declared += () if self._rings is None else (self._rings,)
         if not self._ignore_local:
             context.handover.join(key, self)
 
@@ -205,9 +193,11 @@ class TopicSubscription(Endpoint, Generic[M]):
             source = self._sources.pop(other.gid, None)
             was_alive = source is None or source.lease is None or source.lease.is_running
             self._end(source)
+            if self._rings is not None:
+                self._rings.forget_ended()
         else:
             was_alive = False
-            source = self._sources.setdefault(other.gid, _Source(INFINITE_NS))
+            source = self._sources.setdefault(other.gid, Source(INFINITE_NS))
             source.expects(min(other.qos.lifespan_ns, self.qos.lifespan_ns))
             if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.lease_ns != INFINITE_NS:
                 self._watch_lease(other, source)
@@ -234,7 +224,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             rate,
         )
 
-    def _watch_lease(self, other: Entity, source: _Source) -> None:
+    def _watch_lease(self, other: Entity, source: Source) -> None:
         def silent() -> None:
             assert source.lease is not None
             if any(_gid_of(arrival, read) == other.gid for arrival in waiting.items):
@@ -267,7 +257,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._tell("liveliness_changed", change=change, current=len(self.matched) - silent, detail=node)
 
     @staticmethod
-    def _end(source: _Source | None) -> None:
+    def _end(source: Source | None) -> None:
         if source is not None and source.lease is not None and source.alive is not None:
             source.lease.stop()
             source.alive.close()
@@ -302,7 +292,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         if source is None:
             if len(self._sources) >= SOURCES_BOUND:  # invented senders must not fill the memory
                 return True
-            source = self._sources[gid] = _Source(self.qos.lifespan_ns)
+            source = self._sources[gid] = Source(self.qos.lifespan_ns)
         missing = sequence - source.sequence - 1
         if missing > 0 and source.sequence:
             self._count_missing(missing)

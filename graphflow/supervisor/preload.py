@@ -148,8 +148,8 @@ class _Preload:
         import graphflow.transport.takeover  # noqa: F401
         from graphflow.msgs import registry
         from graphflow.supervisor.rehearsal import rehearse
+        from graphflow.transport.latched import load_ext
         from graphflow.transport.malloc import keep_freed_memory
-        from graphflow.transport.zenoh import load_ext
 
         load_ext()  # Zenoh starts no thread before a session is opened
         for name in _WARM:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from graphflow.qos import History, Qos
@@ -109,6 +109,43 @@ class Arrival(Protocol):
     def attachment(self) -> bytes | None: ...
 
 
+class LargeSender(Closable, Protocol):
+    """A publication on one key whose large messages are read from shared memory where all receivers can."""
+
+    in_memory: int
+    """Messages that went through memory."""
+
+    @property
+    def memory(self) -> int:
+        """Bytes of memory that are kept for it."""
+
+    def admit(self, readers: Mapping[tuple[str, int], int] | None) -> None:
+        """Tell of the receivers.
+
+        Args:
+            readers: The depths of their queues, by session and entity, if all of them read the memory.
+        """
+
+    def put_parts(self, parts: tuple[list[Any], int], *, attachment: bytes) -> None:
+        """Send what `Codec.encode_parts` returns, without waiting."""
+
+    def lend(self, dtype: Any, count: int) -> Any:
+        """An array where the next message's may be, to be filled; None if it would have to be copied. One at a time."""
+
+    def take_back(self) -> None:
+        """End the loan."""
+
+
+class RingReceiver(Closable, Protocol):
+    """Where descriptors arrive, in the place of large messages."""
+
+    reader: tuple[int, int]
+    """By what others know that this process can read their memory: its id and a file of it."""
+
+    def forget_ended(self) -> None:
+        """Give back the memory of senders that have gone."""
+
+
 class Session(Protocol):
     """One process's place on the network."""
 
@@ -136,6 +173,23 @@ class Session(Protocol):
             in_order: Whether answers that were sent after a publication must not overtake it; for what is not sent
                 often. Not for TRANSIENT_LOCAL.
         """
+
+    def open_large_sender(self, sender: Sender, key: str) -> LargeSender | None:
+        """Send what is large through shared memory, and the rest by `sender`; None where memory cannot be shared.
+
+        Args:
+            key: That of the ring receivers.
+        """
+
+    def open_ring_receiver(self, key: str, eid: int, inbox: Inbox) -> RingReceiver | None:
+        """Put large messages into the inbox of a receiver that has `in_order`; None where memory cannot be shared.
+
+        Args:
+            eid: The subscription's number in its session.
+        """
+
+    def is_neighbour(self, zid: str, pid: int, fd: int) -> bool:
+        """Whether a session belongs to a process that can read this one's memory, as it says of itself."""
 
     def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> Closable:
         """Put every request on `key` into `inbox`, as `Request`s.
@@ -179,7 +233,10 @@ class Session(Protocol):
         """
 
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
-        """Payload and attachment of something that `open_receiver` put in an inbox."""
+        """Payload and attachment of something that a receiver put in an inbox.
+
+        A payload in shared memory is no `bytes`, but can be decoded and copied as one.
+        """
 
     def key_of(self, arrival: Any) -> str:
         """The key on which an arrival was published."""

@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 from weakref import WeakSet
 
 from graphflow.qos import Durability, Qos
-from graphflow.transport.base import Answer, Bell, Inbox, Payload
+from graphflow.transport.base import Answer, Bell, Inbox, LargeSender, Payload, RingReceiver, Sender
 
 _zids = itertools.count(1)
 
@@ -262,6 +262,15 @@ class MemorySession:
         for sender in self._network.senders_to(key):
             if not self._loop.is_closed():
                 self._loop.call_soon(sender.tell_changed)
+
+    def open_large_sender(self, sender: Sender, key: str) -> LargeSender | None:
+        return None
+
+    def open_ring_receiver(self, key: str, eid: int, inbox: Inbox) -> RingReceiver | None:
+        return None
+
+    def is_neighbour(self, zid: str, pid: int, fd: int) -> bool:
+        return False
 
     def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> _Declared:
         servers = self._network.servers.setdefault(key, [])

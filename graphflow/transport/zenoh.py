@@ -7,24 +7,24 @@ Data comes through Zenoh's default callback thread, one per subscription, which 
 the GIL; requests, replies and tokens come directly (see `foreign`), since the default would start a
 thread per declaration and per call. So does the feedback of actions, which a result must not overtake.
 
-Zenoh itself sends large messages through shared memory. Buffers from a pool of ours gain nothing at 1 MB and a quarter
-at 6 MB, no latency, and cost a pool in every process and allocations that fail under load.
+Large messages between processes of one user go through shared memory of ours (`large`): Zenoh's is slower, since it
+copies into and out of it, and its watchdogs wake every idle process 18 times a second. So Zenoh's is off, as in ROS 2.
 """
 
 from __future__ import annotations
 
-import asyncio
 import logging
+import os
 import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import zenoh
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.qos import Durability, Qos, Reliability
-from graphflow.transport.base import EARLY, Answer, Bell, DeepInbox, Inbox, Payload
+from graphflow.transport.base import EARLY, Answer, Bell, DeepInbox, Inbox, Payload, Sender
 from graphflow.transport.config import (
     QUERY_LIMIT_MS,
     close_at_exit,
@@ -33,19 +33,21 @@ from graphflow.transport.config import (
     open_session,
 )
 from graphflow.transport.foreign import at_once
+from graphflow.transport.large import RingReceiver, RingSender, receive
+from graphflow.transport.latched import AskingAgain, load_ext
 from graphflow.transport.loop import in_thread
 from graphflow.transport.questions import Questions
+from graphflow.transport.ring import RingReader, can_share, is_proved, number_of, open_proof
 
 OWN = "@graphflow/"
 """What the keys begin with that ROS 2 does not know."""
 ASKED_BOUND = 10_000
 """Tokens of an answer: other processes announce as many as they like."""
+COPIED_BELOW = 64 << 10
+"""Bytes of a message that has arrived in a buffer with others: Zenoh's are as large."""
 WATCHED_AT_ONCE = 64
 """Tokens that are taken in before others have a turn of the loop."""
 logger = logging.getLogger("graphflow.transport")
-
-ASK_AGAIN = (0.5, 2.0)
-"""Seconds from the sign of life of a publisher that keeps messages until it is asked for them again."""
 
 
 class _Declared:
@@ -113,48 +115,6 @@ class _KeepingSender(_Declared):
     def __init__(self, session: ZenohSession, publisher: Any) -> None:
         super().__init__(session, publisher)
         self.put = publisher.put
-
-
-class _AskingAgain:
-    """Asks publishers that have appeared for what they keep, a second and a third time.
-
-    The subscriber asks once, at the sign of life. Across routers that may come before there is a route to the
-    publisher, and the query ends at once, unanswered: after an outage, what was sent meanwhile would be lost.
-    A heartbeat that only this session hears makes the subscriber look for whatever it has missed.
-    """
-
-    def __init__(self, session: ZenohSession, key: str, inbox: Inbox) -> None:
-        self._raw, self._loop, self._inbox = session.raw, session.loop, inbox
-        self._last: dict[str, int] = {}
-        """The last sequence number heard, by publisher."""
-        self._timers: set[asyncio.TimerHandle] = set()
-        self._signs = session.watch(f"{key}/@adv/pub/**", self._changed)
-
-    def heard(self, sample: zenoh.Sample) -> None:
-        """A message has come. Runs on Zenoh's thread."""
-        source = sample.source_info
-        if source is not None:
-            self._last[f"{source.source_id.zid}/{source.source_id.eid}"] = source.source_sn
-        self._inbox.put(sample)
-
-    def _changed(self, token: str, is_there: bool) -> None:
-        if is_there:
-            self._timers = {timer for timer in self._timers if timer.when() > self._loop.time()}
-            self._timers |= {self._loop.call_later(after, self._ask, token) for after in ASK_AGAIN}
-
-    def _ask(self, token: str) -> None:
-        publisher = "/".join(token.split("/")[-3:-1])
-        # Numbers wrap around, and half are ahead: this one surely is, so the publisher answers with what it has.
-        ahead = (self._last.get(publisher, 0) + (1 << 30)) % (1 << 32)
-        try:
-            self._raw.put(token, ahead.to_bytes(4, "little"), allowed_destination=zenoh.Locality.SESSION_LOCAL)
-        except zenoh.ZError as error:  # the session is already closed
-            logger.debug("asking again: %s", error)
-
-    def undeclare(self) -> None:
-        for timer in self._timers:
-            timer.cancel()
-        self._signs.close()
 
 
 class _ZenohRequest:
@@ -265,6 +225,8 @@ class ZenohSession:
         self.loop = loop
         self.left: list[tuple[Any, ...]] | None = None
         """Declarations that the session's end will withdraw; kept, since Zenoh withdraws one that nobody refers to."""
+        self._proof = -1
+        """The file by which others know that this process is on their machine."""
 
     def open_sender(
         self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
@@ -301,7 +263,7 @@ class ZenohSession:
             return _Declared(self, self.raw.declare_subscriber(key, handler, allowed_origin=origin))
         ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
-        again = _AskingAgain(self, key, inbox) if reliable else None
+        again = AskingAgain(self.raw, self.loop, self.watch, key, inbox) if reliable else None
         subscriber = ext.declare_advanced_subscriber(
             self.raw,
             key,
@@ -312,6 +274,34 @@ class ZenohSession:
             allowed_origin=origin,
         )
         return _Declared(self, subscriber) if again is None else _Declared(self, subscriber, again)
+
+    def open_large_sender(self, sender: Sender, key: str) -> RingSender | None:
+        if not can_share() or isinstance(sender, _KeepingSender):
+            return None
+        raw = self.raw
+
+        def describe(descriptor: bytes, attachment: bytes) -> None:
+            raw.put(
+                key,
+                descriptor,
+                attachment=attachment,
+                congestion_control=zenoh.CongestionControl.DROP,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+
+        return RingSender(sender, describe)
+
+    def open_ring_receiver(self, key: str, eid: int, inbox: Inbox) -> RingReceiver | None:
+        if not can_share():
+            return None
+        if self._proof < 0:
+            self._proof = open_proof(self.zid)
+        rings = RingReader(number_of(self.zid, eid))
+        subscriber = self.raw.declare_subscriber(key, receive(rings, inbox), allowed_origin=zenoh.Locality.REMOTE)
+        return RingReceiver((os.getpid(), self._proof), rings, _Declared(self, subscriber))
+
+    def is_neighbour(self, zid: str, pid: int, fd: int) -> bool:
+        return is_proved(zid, pid, fd)
 
     def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> _Declared:
         def arrived(query: zenoh.Query) -> None:
@@ -423,40 +413,47 @@ class ZenohSession:
     async def close(self) -> None:
         await in_thread(lambda: close_session(self.raw))
         self.bell.close()
+        if self._proof >= 0:
+            os.close(self._proof)
 
 
 class _Bytes(bytes):
-    """A payload that is no longer Zenoh's."""
+    """An attachment that is no longer Zenoh's."""
 
     def to_bytes(self) -> bytes:
         return self
 
 
-class _Copied(NamedTuple):
+class _Copied:
     """A sample of which nothing is Zenoh's any more."""
 
-    payload: _Bytes
-    attachment: _Bytes | None
-    key_expr: str
+    __slots__ = ("_data", "attachment")
+
+    def __init__(self, data: bytes, beside: Any) -> None:
+        self._data = data
+        self.attachment = None if beside is None else _Bytes(beside.to_bytes())
+
+    @property
+    def payload(self) -> _Copied:
+        return self
+
+    def __len__(self) -> int:
+        return len(self._data)
+
+    def to_bytes(self) -> bytes:
+        return self._data
 
 
 def _copying(inbox: Inbox) -> Callable[[zenoh.Sample], None]:
-    """Puts copies into a queue that may hold many: a sample keeps alive the whole buffer that it has arrived in."""
+    """Puts copies into a queue that may hold many: a small sample keeps alive the whole buffer that it arrived in."""
 
     def put(sample: zenoh.Sample) -> None:
-        beside = sample.attachment
-        kept = None if beside is None else _Bytes(beside.to_bytes())
-        inbox.put(_Copied(_Bytes(sample.payload.to_bytes()), kept, str(sample.key_expr)))
+        payload = sample.payload
+        is_small = len(payload) < COPIED_BELOW
+        inbox.put(_Copied(payload.to_bytes(), sample.attachment) if is_small else sample)
 
     return put
 
 
 def _nothing() -> None:
     """Nothing is delivered any more."""
-
-
-def load_ext() -> Any:
-    """Advanced pub/sub; only TRANSIENT_LOCAL endpoints need it."""
-    import zenoh.ext
-
-    return zenoh.ext

@@ -20,10 +20,11 @@ from graphflow.errors import DecodeError
 from graphflow.wire.clone import Clone, compile_clone
 from graphflow.wire.codegen import HEADER, Types
 from graphflow.wire.decode import compile_decode
-from graphflow.wire.encode import compile_encode
+from graphflow.wire.encode import compile_encode, compile_encode_parts
 from graphflow.wire.schema import Message
 
 Encode = Callable[[Any], bytes]
+EncodeParts = Callable[[Any], tuple[list[Any], int]]
 Decode = Callable[[bytes], Any]
 
 
@@ -42,6 +43,11 @@ class Codec:
     @cached_property
     def encode(self) -> Encode:
         return compile_encode(self._message, self._types)
+
+    @cached_property
+    def encode_parts(self) -> EncodeParts:
+        """`encode_parts(message) -> (parts, size)`: the payload as buffers, of which arrays are the message's own."""
+        return compile_encode_parts(self._message, self._types)
 
     @cached_property
     def decode(self) -> Decode:

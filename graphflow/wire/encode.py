@@ -205,6 +205,15 @@ def compile_encode_part(message: Message, types: Types, parts: Parts) -> Any:
 
 
 def compile_encode(message: Message, types: Types) -> Callable[[Any], bytes]:
+    return cast("Callable[[Any], bytes]", _compile(message, types, "b''.join(parts)"))
+
+
+def compile_encode_parts(message: Message, types: Types) -> Callable[[Any], tuple[list[Any], int]]:
+    """The payload in parts, of a type that has an array."""
+    return cast("Callable[[Any], tuple[list[Any], int]]", _compile(message, types, "parts, p"))
+
+
+def _compile(message: Message, types: Types, result: str) -> Callable[..., Any]:
     code = Encoder(types, {})
     code.position = 0
     code.number("I", str(LITTLE))
@@ -219,7 +228,7 @@ def compile_encode(message: Message, types: Types) -> Callable[[Any], bytes]:
         code.line(f"return {layout}({', '.join(operands)})")
     else:
         code.flush()
-        code.line("return b''.join(parts)")
+        code.line(f"return {result}")
     code.depth -= 1
     # Any wrong value fails above in its own way; the slow path converts what can be converted and names what cannot.
     code.names["EncodeError"] = EncodeError
@@ -227,11 +236,11 @@ def compile_encode(message: Message, types: Types) -> Callable[[Any], bytes]:
     code.line("except Exception: pass")
     code.line("return again(m, is_copy)")
 
-    def again(m: Any, is_copy: bool) -> bytes:
+    def again(m: Any, is_copy: bool) -> Any:
         if is_copy:
             raise EncodeError(f"{message.name}: cannot encode {m!r}")
         return encode(types.checked(m), True)
 
     code.names["again"] = again
-    encode: Callable[[Any, bool], bytes] = code.compile("encode", "def encode(m, is_copy=False):", message.name)
-    return cast("Callable[[Any], bytes]", encode)
+    encode: Callable[..., Any] = code.compile("encode", "def encode(m, is_copy=False):", message.name)
+    return encode

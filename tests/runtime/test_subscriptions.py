@@ -23,7 +23,8 @@ from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import INFINITE_NS, Durability, History
 from graphflow.runtime.core import core_of
-from graphflow.runtime.subscriptions import TopicSubscription, _Source
+from graphflow.runtime.sources import Source
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.testing import Graph
 from graphflow.transport import base
 from graphflow.wire import attachment
@@ -395,7 +396,7 @@ async def test_the_short_way_of_a_message_is_the_general_one(
         each._read = lambda arrival: arrival
     gids = [bytes([i]) * 16 for i in range(3)]
     for each in (short, general):
-        each._sources[gids[0]] = _Source(lifespan_ns)
+        each._sources[gids[0]] = Source(lifespan_ns)
     invoke = short._invoker()
     sequences = dict.fromkeys(gids, 0)
     for _ in range(60):
