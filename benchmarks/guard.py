@@ -100,12 +100,17 @@ async def units(mark: Mark, count: int) -> None:
         request = AddTwoInts.Request(a=1, b=2)
 
         async def publish(publisher: Any, name: str, n: int) -> None:
-            real, publisher._sender = publisher._sender, Outbox()
+            real, outbox = publisher._sender, Outbox()
+            publisher._lengthen()
+            publisher._sender, publisher._put = outbox, outbox.put
+            publisher._shorten()
             mark("")
             for _ in range(n):
                 publisher.publish(message)
             mark("publish")
-            outbox, publisher._sender = publisher._sender, real
+            publisher._lengthen()
+            publisher._sender, publisher._put = real, real.put
+            publisher._shorten()
             for payload, attachment in outbox.sent:
                 real.put(payload, attachment=attachment)
             mark("")

@@ -103,6 +103,8 @@ class RunnerSpec:
         is_inner: Whether the handler belongs to graphflow, as every node's parameter services do.
         is_serial: Whether its runs exclude each other in any group; None: only when they run in no group.
         wants_results: Whether `finished` is called after runs that ended well, too.
+        begins_outside: Whether `invoke` runs nothing of the handler's, as it only makes a coroutine: so it may be
+            called outside of the run's context.
     """
 
     handler: str
@@ -115,6 +117,7 @@ class RunnerSpec:
     is_inner: bool = False
     is_serial: bool | None = None
     wants_results: bool = True
+    begins_outside: bool = False
 
 
 class Runner:
@@ -126,6 +129,7 @@ class Runner:
     """
 
     __slots__ = (
+        "_begins_outside",
         "_closed",
         "_context",
         "_finished",
@@ -167,7 +171,7 @@ class Runner:
         self._ledger, self._loop = ledger, ledger.loop
         # What every run needs, without going through the spec.
         self._invoke, self._finished, self._is_serial = spec.invoke, spec.finished, spec.is_serial
-        self._wants_results = spec.wants_results
+        self._wants_results, self._begins_outside = spec.wants_results, spec.begins_outside
         self._spare: Run | None = None
         """A run that ended in its first step and that nobody has kept: the next message's."""
         # Every run begins with the context variables of where the handler was made, never with those of an earlier run.
@@ -203,35 +207,93 @@ class Runner:
 
     def wake(self) -> None:
         """Run what the group allows of what may be in the queue."""
-        if self._waking or self._closed or self._scheduled:
-            return
-        group, active, items, ledger = self.group, self.active, self.items, self._ledger
-        self._waking = True
+        if not (self._waking or self._closed or self._scheduled):
+            self._run(BURST)
+
+    def _run(self, most: int, granted: HandlerGroup | None = None) -> None:
+        """Run the handler for one item after the other, each to its end or to its first suspension.
+
+        It is the step of every message, and long because each call in it would take a twentieth of one.
+
+        Args:
+            most: How many runs.
+            granted: The group that has given a slot for the first of them.
+        """
+        loop, ledger, items, active = self._loop, self._ledger, self.items, self.active
+        invoke, copy, begins_outside = self._invoke, self._context.copy, self._begins_outside
+        was_waking, self._waking = self._waking, True
         around, ledger.at_work = ledger.at_work, self
+        group: HandlerGroup | None
+        until = monotonic() + SLICE
         try:
-            until = monotonic() + SLICE
-            for _ in range(BURST):
-                if not items or self._closed:
+            for _ in range(most):
+                if granted is not None:
+                    group, granted = granted, None
+                elif not items or self._closed:
                     return
-                if active and (group is None if self._is_serial is None else self._is_serial):
-                    ledger.alert()
-                    return
-                # No runner asks for more slots than the group has: after a run it queues again, at the tail.
-                if group is not None and (self._fills(group) or not group.admit(self)):
-                    if group.when_full != "wait" and self.spec.kind != "reply":
-                        self._overflow(group)
-                    ledger.alert()
-                    return
-                self._begin(items.popleft(), group)
-                if monotonic() > until:
+                elif monotonic() > until:
                     break
-                group = self.group  # the handler may have moved itself
+                else:
+                    group = self.group  # the handler may have moved itself
+                    if active and (group is None if self._is_serial is None else self._is_serial):
+                        ledger.alert()
+                        return
+                    # No runner asks for more slots than the group has: after a run it queues again, at the tail.
+                    if group is not None and (self._fills(group) or not group.admit(self)):
+                        if group.when_full != "wait" and self.spec.kind != "reply":
+                            self._overflow(group)
+                        ledger.alert()
+                        return
+                self.runs += 1
+                self.at_hand = item = items.popleft()
+                context = copy()  # each run has its own
+                run: Run | None = None
+                error: BaseException | None = None
+                try:
+                    result = invoke(item) if begins_outside else context.run(invoke, item)
+                    if result is not None and (result.__class__ is CoroutineType or iscoroutine(result)):
+                        run = self._spare
+                        if run is None:
+                            run = Run(self, item, result, context, group)
+                        else:
+                            self._spare = None
+                            run._coroutine, run._context, run.item, run.group = result, context, item, group
+                            run.number = _next_number()
+                        active.add(run)
+                        # As `Activity.step`, without what cannot have happened before the first step.
+                        _enter_task(loop, run)  # type: ignore[arg-type]
+                        try:
+                            awaited = context.run(result.send, None)
+                        finally:
+                            _leave_task(loop, run)  # type: ignore[arg-type]
+                        run._wait_for(awaited)
+                        continue
+                except StopIteration as stop:
+                    if run is None:
+                        result, error = None, stop
+                    else:
+                        result = stop.value
+                except (KeyboardInterrupt, SystemExit) as exit_:
+                    if run is not None:
+                        run._end(None, exit_)
+                    raise
+                except BaseException as raised:
+                    result, error = None, raised
+                if run is not None:
+                    group = run.group
+                    active.discard(run)
+                    run._coroutine = run.item = None
+                    if getrefcount(run) == _ALONE and not run._cancel_requests and not getweakrefcount(run):
+                        self._spare = run
+                if error is not None or self._wants_results or group is not None or self._idle is not None:
+                    self._ended(group, item, result, error)
+                    error = None  # its traceback refers to this frame: leave no cycle for the garbage collector
         finally:
-            self._waking = False
+            self._waking = was_waking
             ledger.at_work, self.at_hand = around, None
-        if items:
+        if items and not was_waking and not self._scheduled:
             self._scheduled = True
-            self._loop.call_soon(self._go_on)
+            loop.call_soon(self._go_on)
 
     def _fills(self, group: HandlerGroup) -> bool:
         """Whether the runner's own runs hold all slots of the group; those that have released theirs do not count."""
@@ -277,14 +339,10 @@ class Runner:
     def granted(self, group: HandlerGroup) -> None:
         may_run = not self._closed and group is self.group and not (self._is_serial and self.active)
         if self.items and may_run:
-            around, self._ledger.at_work = self._ledger.at_work, self
-            try:
-                self._begin(self.items.popleft(), group)
-            finally:
-                self._ledger.at_work, self.at_hand = around, None
+            self._run(1 if self._waking or self._scheduled else BURST, group)
         else:
             group.give_back(self._loop)
-        self.wake()
+            self.wake()
 
     def move(self, group: HandlerGroup | None) -> None:
         """Take the slots of another group from the next run on; runs under way keep what they hold."""
@@ -295,55 +353,6 @@ class Runner:
         if group is not None:
             group.members.append(self)
         self._loop.call_soon(self.wake)
-
-    def _begin(self, item: Any, group: HandlerGroup | None) -> None:
-        """Run the handler in a context of its own, to its end or to its first suspension."""
-        self.runs += 1
-        self.at_hand = item
-        context = self._context.copy()
-        run: Run | None = None
-        error: BaseException | None = None
-        try:
-            result = context.run(self._invoke, item)
-            if result is not None and (result.__class__ is CoroutineType or iscoroutine(result)):
-                run = self._spare
-                if run is None:
-                    run = Run(self, item, result, context, group)
-                else:
-                    self._spare = None
-                    run._coroutine, run._context, run.item, run.group = result, context, item, group
-                    run.number = _next_number()
-                self.active.add(run)
-                # As `Activity.step`, without what cannot have happened before the first step.
-                _enter_task(self._loop, run)  # type: ignore[arg-type]
-                try:
-                    awaited = context.run(result.send, None)
-                finally:
-                    _leave_task(self._loop, run)  # type: ignore[arg-type]
-                run._wait_for(awaited)
-                self.at_hand = None
-                return
-        except StopIteration as stop:
-            if run is None:
-                result, error = None, stop
-            else:
-                result = stop.value
-        except (KeyboardInterrupt, SystemExit) as exit_:
-            self.at_hand = None
-            if run is not None:
-                run._end(None, exit_)
-            raise
-        except BaseException as raised:
-            result, error = None, raised
-        if run is not None:
-            group = run.group
-            self.active.discard(run)
-            run._coroutine = run.item = None
-            if getrefcount(run) == _ALONE and not run._cancel_requests and not getweakrefcount(run):
-                self._spare = run
-        if error is not None or self._wants_results or group is not None or self._idle is not None or not self._waking:
-            self._ended(group, item, result, error)
-        self.at_hand = error = None  # its traceback refers to this frame: leave no cycle for the garbage collector
 
     def _ended(self, group: HandlerGroup | None, item: Any, result: Any, error: BaseException | None) -> None:
         if error is not None and not isinstance(error, CancelledError):

@@ -35,9 +35,11 @@ class _Order:
     does, too.
     """
 
-    __slots__ = ("is_sending", "is_shared", "lock", "thread")
+    __slots__ = ("is_sending", "is_shared", "lock", "number", "thread")
 
     def __init__(self) -> None:
+        self.number = 0
+        """The last message's."""
         self.lock = threading.RLock()
         self.thread = 0
         """The first thread that has published."""
@@ -67,8 +69,6 @@ class TopicPublisher(Endpoint, Generic[M]):
     def __init__(self, host: Host, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
         super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
-        self.published = 0
-        """Messages sent since the start; also the last sequence number."""
         self._order = _Order()
         self._codec = registry.codec(self.type_name)
         self._sender: Sender = _NOT_OPEN
@@ -86,6 +86,11 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._paused: tuple[Sender, Sequence[Receiver]] | None = None
         """What it reaches when it is not paused; None while it is not."""
 
+    @property
+    def published(self) -> int:
+        """Messages sent since the start; also the last sequence number."""
+        return self._order.number
+
     def _open(self, key: str) -> None:
         session = self.host.context.session
         self._gid, self._now_ns = self._announced().gid, self.host.context.clock.time_ns
@@ -101,6 +106,41 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._lease = self._silence_timer(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
             self._alive = session.open_sender(alive_key(self._announced()), DEFAULT)
             self._declared.append(self._alive)
+        self._shorten()
+
+    def _shorten(self) -> None:
+        """Let `publish` be the usual case of itself, written out: the first thread sends a message of the type to other
+        processes, and nothing else has to be done. Whatever is unusual goes the general way.
+        """
+        if self._large is not None or self._deadline is not None or self._lease is not None:
+            return
+        general, type_, codec, order = self.publish, self.type, self._codec, self._order
+        sender, here, put, now_ns, gid = self._sender, self._here, self._put, self._now_ns, self._gid
+
+        def publish(message: M) -> None:
+            if here or message.__class__ is not type_ or get_ident() != order.thread or not sender.is_wanted:
+                general(message)
+                return
+            payload = codec.encode(message)
+            order.is_sending = True
+            try:
+                if order.is_shared:
+                    order.is_sending = False
+                    with order.lock:
+                        self._send(payload)
+                else:
+                    order.number += 1
+                    put(payload, attachment=_pack(order.number, now_ns(), 16, gid))
+            except Exception as error:
+                raise self._not_sent(error) from None
+            finally:
+                order.is_sending = False
+
+        self.publish = publish  # type: ignore[method-assign]
+
+    def _lengthen(self) -> None:
+        """Let `publish` look at everything again."""
+        self.__dict__.pop("publish", None)
 
     def _share_memory(self, key: str) -> None:
         context = self.host.context
@@ -156,7 +196,7 @@ class TopicPublisher(Endpoint, Generic[M]):
                     with order.lock:
                         self._send(payload)
                 else:
-                    self.published += 1
+                    self._order.number += 1
                     self._put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
             except Exception as error:
                 raise self._not_sent(error) from None
@@ -167,14 +207,14 @@ class TopicPublisher(Endpoint, Generic[M]):
             return
         else:
             self._announced()
-            self.published += 1
+            self._order.number += 1
         if self._deadline is not None:
             self._deadline.touch()
         if self._lease is not None:
             self._lease.touch()
 
     def _send(self, payload: Any) -> None:
-        self.published += 1
+        self._order.number += 1
         self._put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
 
     def _hand_over(self, message: M, sender: Sender) -> None:
@@ -186,7 +226,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         if get_ident() != self._order.thread:
             self._order.look_who_publishes()
         with self._order.lock:
-            self.published += 1
+            self._order.number += 1
             fields = (self.published, self._now_ns(), self._gid)
             handed = Handed(copy, fields, len(receivers), clone)
             for receiver in receivers:
@@ -275,6 +315,7 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     def pause(self, why: str) -> Runner | None:
         """Send nothing; what is published meanwhile is not sent later."""
+        self._lengthen()
         if self._paused is None:
             self._paused = (self._sender, self._here)
             self._sender, self._here = _NOT_OPEN, ()
@@ -283,9 +324,11 @@ class TopicPublisher(Endpoint, Generic[M]):
     def resume(self) -> Runner | None:
         if self._paused is not None:
             (self._sender, self._here), self._paused = self._paused, None
+            self._shorten()
         return super().resume()
 
     def close(self) -> None:
+        self._lengthen()
         for timer in (self._deadline, self._lease):
             if timer is not None:
                 timer.stop()

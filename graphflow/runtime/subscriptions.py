@@ -6,6 +6,7 @@ import asyncio
 import struct
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable
+from inspect import iscoroutinefunction
 from typing import Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, DecodeError
@@ -110,7 +111,13 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._inbox = open_inbox(self.qos, context.session.bell, _nothing)
             tell = (self._invoker(), self._finished, self.host.full_name)
             spec = RunnerSpec(
-                self._label, *tell, "subscription", self._refused, lambda: self.dropped, wants_results=False
+                self._label,
+                *tell,
+                "subscription",
+                self._refused,
+                lambda: self.dropped,
+                wants_results=False,
+                begins_outside=iscoroutinefunction(self._callback),
             )
             self.runner = self.host.runner(spec, self._inbox.items, self._group)
             self._inbox.ready = self.runner.wake

@@ -59,7 +59,7 @@ class ThreadedPublisher(TopicPublisher[Any]):
                 self._announced()
                 self.unheard += 1
             handed = self._codec.decode(payload) if here else None
-            self.published += 1
+            self._order.number += 1
             fields = (self.published, self._now_ns(), self._gid)
             if here:
                 message = Handed(handed, fields, len(here), self._codec.clone)

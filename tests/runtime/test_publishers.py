@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from random import Random
 from typing import Any
 
 import pytest
 
-from graphflow import EncodeError
+from graphflow import EncodeError, Qos
 from graphflow.errors import ClosedError
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.runtime import publishers
+from graphflow.runtime.core import core_of
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.testing import Graph
 from tests.runtime.cast import Speaker
 
@@ -100,3 +103,90 @@ def test_a_second_thread_waits_for_the_first(monkeypatch: pytest.MonkeyPatch) ->
     order.is_sending = True
     order.look_who_publishes()
     assert len(waited) == 3
+
+
+class Sent:
+    """A sender that keeps what it is given, is not always wanted, and sometimes fails."""
+
+    def __init__(self) -> None:
+        self.log: list[tuple[bytes, bytes]] = []
+        self.is_wanted, self.fails = True, False
+
+    def put(self, payload: Any, *, attachment: bytes) -> None:
+        if self.fails:
+            raise OSError("the network is down")
+        self.log.append((bytes(payload), attachment))
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+class Here:
+    """A subscription of the same process."""
+
+    def __init__(self) -> None:
+        self.log: list[Any] = []
+
+    def hand(self, handed: Any) -> None:
+        self.log.append((handed.fields, handed.take()))
+
+
+@pytest.mark.parametrize("seed", range(10))
+async def test_the_short_way_to_publish_is_the_general_one(graph: Graph, seed: int) -> None:
+    """Whatever comes: other types, wrong fields, other threads, listeners here and none, pauses, failures."""
+    node = Speaker()
+    await graph.start(node)
+    both = short, general = [TopicPublisher(core_of(node), String, "/x", Qos()) for _ in range(2)]
+    outs, heres = [Sent(), Sent()], [Here(), Here()]
+    for publisher, out in zip(both, outs, strict=True):
+        publisher.open()
+        publisher._lengthen()
+        publisher._sender, publisher._put, publisher._here = out, out.put, []
+        publisher._gid = bytes(16)
+    short._shorten()
+    assert "publish" in vars(short)
+    assert "publish" not in vars(general)
+    general._shorten = lambda: None  # type: ignore[method-assign]
+    random, wrong = Random(seed), String()
+    wrong.data = 5  # type: ignore[assignment]
+    with ThreadPoolExecutor(1) as other:
+        for step in range(80):
+            act = random.choice(
+                ["good"] * 8 + ["type", "field", "thread", "wanted", "fails", "here", "pause", "resume"]
+            )
+            answers = []
+            for publisher, out, here in zip(both, outs, heres, strict=True):
+                answers.append(_act(act, step, publisher, out, here, other, wrong))
+            assert answers[0] == answers[1], act
+            await graph.clock.advance(0.001)
+    assert outs[0].log == outs[1].log
+    assert heres[0].log == heres[1].log
+    assert short.published == general.published > 0
+    for publisher in both:
+        publisher.close()
+
+
+def _act(
+    act: str, step: int, publisher: Any, out: Sent, here: Here, other: ThreadPoolExecutor, wrong: String
+) -> str | None:
+    """Do one thing; returns the text of the error."""
+    message = {"type": Int32(), "field": wrong}.get(act, String(data=str(step)))
+    try:
+        match act:
+            case "thread":
+                other.submit(publisher.publish, message).result()
+            case "wanted":
+                out.is_wanted = not out.is_wanted
+            case "fails":
+                out.fails = not out.fails
+            case "here":
+                publisher._here[:] = [] if publisher._here else [here]
+            case "pause":
+                publisher.pause("it is tired")
+            case "resume":
+                publisher.resume()
+            case _:
+                publisher.publish(message)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return None
