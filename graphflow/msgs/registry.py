@@ -329,12 +329,16 @@ def service_schema(name: str) -> Service:
 
 @cache
 def has_number_lists(name: str) -> bool:
-    """Whether a message type has arrays of numbers without a fixed size, as images and clouds have: it may be large."""
-    fields = message_schema(name).fields
+    """Whether a message type has arrays of numbers without a fixed size, as images and clouds have: it may be large.
+
+    Arrays in the elements of lists do not count: those are many and small, as in parameters.
+    """
+    types = [field.type for field in message_schema(name).fields if field.type.base not in STRINGS]
     return any(
-        f.type.array in ("unbounded", "bounded") if f.type.base in NUMERIC else has_number_lists(f.type.base)
-        for f in fields
-        if f.type.base not in STRINGS
+        type_.array in ("unbounded", "bounded")
+        if type_.base in NUMERIC
+        else not type_.array and has_number_lists(type_.base)
+        for type_ in types
     )
 
 

@@ -14,8 +14,10 @@ import zenoh
 
 from graphflow.transport.base import Closable, Inbox, Sender
 from graphflow.transport.foreign import at_once
-from graphflow.transport.ring import LEAST_SLOTS, MOST_READERS, Ring, RingReader, number_of, slots_for
+from graphflow.transport.ring import LEAST_SLOTS, MOST_READERS, Ring, RingReader, can_share, number_of, slots_for
 from graphflow.wire.shared_memory import unpack
+
+__all__ = ["FROM", "RingReceiver", "RingSender", "can_share", "receive"]
 
 FROM = 64 << 10
 """Bytes from which on a message goes through memory; for a smaller one a copy more costs less than the ring."""

@@ -25,7 +25,6 @@ from __future__ import annotations
 
 import mmap
 import os
-import secrets
 import stat
 import struct
 from collections.abc import Collection, Sequence
@@ -135,7 +134,7 @@ class Ring:
     def __init__(self, slots: int, size: int) -> None:
         import fcntl
 
-        self._number = secrets.randbits(64)
+        self._number = int.from_bytes(os.urandom(8), "little")
         self._fd = os.memfd_create(_RING_NAME, os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         self.bytes = _SLOTS + slots * _stride(size)
         try:

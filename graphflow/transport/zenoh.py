@@ -18,7 +18,7 @@ import os
 import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import zenoh
 
@@ -33,11 +33,12 @@ from graphflow.transport.config import (
     open_session,
 )
 from graphflow.transport.foreign import at_once
-from graphflow.transport.large import RingReceiver, RingSender, receive
 from graphflow.transport.latched import AskingAgain, load_ext
 from graphflow.transport.loop import in_thread
 from graphflow.transport.questions import Questions
-from graphflow.transport.ring import RingReader, can_share, is_proved, number_of, open_proof
+
+if TYPE_CHECKING:  # only nodes with large messages load them
+    from graphflow.transport.large import RingReceiver, RingSender
 
 OWN = "@graphflow/"
 """What the keys begin with that ROS 2 does not know."""
@@ -276,6 +277,8 @@ class ZenohSession:
         return _Declared(self, subscriber) if again is None else _Declared(self, subscriber, again)
 
     def open_large_sender(self, sender: Sender, key: str) -> RingSender | None:
+        from graphflow.transport.large import RingSender, can_share
+
         if not can_share() or isinstance(sender, _KeepingSender):
             return None
         raw = self.raw
@@ -292,6 +295,9 @@ class ZenohSession:
         return RingSender(sender, describe)
 
     def open_ring_receiver(self, key: str, eid: int, inbox: Inbox) -> RingReceiver | None:
+        from graphflow.transport.large import RingReceiver, can_share, receive
+        from graphflow.transport.ring import RingReader, number_of, open_proof
+
         if not can_share():
             return None
         if self._proof < 0:
@@ -301,6 +307,8 @@ class ZenohSession:
         return RingReceiver((os.getpid(), self._proof), rings, _Declared(self, subscriber))
 
     def is_neighbour(self, zid: str, pid: int, fd: int) -> bool:
+        from graphflow.transport.ring import is_proved
+
         return is_proved(zid, pid, fd)
 
     def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> _Declared:

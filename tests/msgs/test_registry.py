@@ -298,3 +298,19 @@ def test_definitions_in_a_folder_of_another_name(tmp_path: Path, monkeypatch: py
     right = tmp_path / "msg" / "Light.msg"
     with pytest.raises(UnknownInterface, match=f"'reg_moved'; {tmp_path}/msgs/Light.msg must be {right}$"):
         registry.full_name("reg_moved/msg/Light")
+
+
+@pytest.mark.parametrize(
+    ("name", "has_them"),
+    [
+        ("sensor_msgs/msg/Image", True),
+        ("nav_msgs/msg/OccupancyGrid", True),
+        ("map_msgs/msg/ProjectedMap", True),
+        ("geometry_msgs/msg/PoseWithCovariance", False),
+        ("std_msgs/msg/String", False),
+        ("rcl_interfaces/msg/ParameterEvent", False),
+    ],
+)
+def test_lists_of_numbers(name: str, has_them: bool) -> None:
+    """In the message or in one that it has; neither of fixed size, nor in the elements of a list."""
+    assert registry.has_number_lists(name) is has_them
