@@ -34,6 +34,8 @@ class GraphCache:
         self._entities: dict[str, Entity] = {}
         self._of_node: dict[tuple[str, int], dict[str, None]] = {}
         """The tokens of each node: its own and those of its endpoints, in order."""
+        self._named: dict[str, dict[str, Entity]] = {}
+        """The endpoints of each name, by token: a process looks for those of each endpoint that it opens."""
         self.refused = 0
         """Tokens that are malformed, or beyond `TOKENS_BOUND`."""
         for token in tokens:
@@ -48,14 +50,14 @@ class GraphCache:
         The end of a node's token ends its endpoints too.
         """
         if not alive:
-            gone = self._entities.pop(token, None)
+            gone = self._pop(token)
             if gone is None:
                 return []
             changes, node = [GraphChange(gone, False)], (gone.zid, gone.nid)
             rest = self._of_node[node]
             del rest[token]
             if gone.kind is Kind.NODE:
-                changes += [GraphChange(self._entities.pop(t), False) for t in rest]
+                changes += [GraphChange(other, False) for t in rest if (other := self._pop(t)) is not None]
                 rest = {}
             if not rest:
                 del self._of_node[node]
@@ -67,8 +69,18 @@ class GraphCache:
             self.refused += 1
             return []
         self._entities[token] = entity
+        self._named.setdefault(entity.name, {})[token] = entity
         self._of_node.setdefault((entity.zid, entity.nid), {})[token] = None
         return [GraphChange(entity, True)]
+
+    def _pop(self, token: str) -> Entity | None:
+        entity = self._entities.pop(token, None)
+        if entity is not None:
+            same = self._named[entity.name]
+            del same[token]
+            if not same:
+                del self._named[entity.name]
+        return entity
 
     def __iter__(self) -> Iterator[Entity]:
         return iter(self._entities.values())
@@ -83,20 +95,17 @@ class GraphCache:
 
     def endpoints(self, kind: Kind, name: str | None = None, node: str | None = None) -> list[Entity]:
         """Endpoints of a kind, of one topic or service, of one node; in a stable order."""
-        found = [
-            e
-            for e in self
-            if e.kind is kind and (name is None or e.name == name) and (node is None or e.node_name == node)
-        ]
+        among = self if name is None else self._named.get(name, {}).values()
+        found = [e for e in among if e.kind is kind and (node is None or e.node_name == node)]
         return sorted(found, key=lambda e: (e.name, e.node_name, e.type, e.eid))
 
     def named(self, name: str) -> list[Entity]:
         """Every endpoint of one topic or service, of any kind."""
-        return sorted((e for e in self if e.name == name), key=lambda e: (e.kind, e.node_name, e.eid))
+        return sorted(self._named.get(name, {}).values(), key=lambda e: (e.kind, e.node_name, e.eid))
 
     def owners(self, name: str) -> list[Entity]:
         """The node tokens of everything called `name`."""
-        return [e for e in self if e.kind is Kind.NODE and e.node_name == name]
+        return [e for e in self._named.get("", {}).values() if e.node_name == name]
 
     def topics(self, *, hidden: bool = False) -> dict[str, list[str]]:
         """Types by topic, both sorted."""
