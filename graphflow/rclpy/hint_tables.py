@@ -103,6 +103,9 @@ CALLS = {
     ),
     "QoSProfile.__init__": "policies go by name: QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)",
     "RcutilsLogger": "one text is logged: get_logger().info(f'... {value}')",
+    "Executor.spin": "nodes are added first: executor.add_node(node), and then executor.spin()",
+    "Executor.__init__": "nodes are added to it: executor.add_node(node)",
+    "Executor.add_node": "each node is added by itself: executor.add_node(node)",
     "init": "write rclpy.init(), or rclpy.init(args=sys.argv)",
     "ParameterMethods.declare_parameters": "write declare_parameters('', [('a', 1), ('b', 2)])",
 }

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from graphflow.rclpy import tracebacks
 from rclpy.context import Context
-from rclpy.impl.spun import check_node
+from rclpy.impl.spun import check_executor, check_node
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -175,6 +175,7 @@ def create_node(
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
     """Run one callback of a node, waiting at most `timeout_sec` seconds for one that is ready."""
     check_node(node, "spin_once")
+    check_executor(executor, "spin_once")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False
     try:
@@ -188,6 +189,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
 def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the callbacks of a node until the context is shut down."""
     check_node(node, "spin")
+    check_executor(executor, "spin")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False
     try:
@@ -204,6 +206,7 @@ def spin_until_future_complete(
 ) -> None:
     """Run the callbacks of a node until a future is done, at most `timeout_sec` seconds."""
     check_node(node, "spin_until_future_complete")
+    check_executor(executor, "spin_until_future_complete")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False
     try:

@@ -8,6 +8,7 @@ from rclpy.client import Client
 from rclpy.exceptions import InvalidHandle
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.inner import Inner
+from rclpy.impl.undestroyed import tell
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 from rclpy.subscription import Subscription
@@ -36,8 +37,9 @@ class DestroyMethods:
         self._graphflow.bell.ready.pop(waitable, None)
         self._graphflow_look_again()
 
-    def _graphflow_destroy(self, things: list[Any], thing: Any) -> bool:
+    def _graphflow_destroy(self, things: list[Any], thing: Any, call: str) -> bool:
         if thing not in things:
+            tell(self, thing, call, depth=2)
             return False
         things.remove(thing)
         self._graphflow.bell.ready.pop(thing, None)
@@ -51,25 +53,27 @@ class DestroyMethods:
         return True
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
-        return self._graphflow_destroy(self._graphflow.publishers, publisher)
+        return self._graphflow_destroy(self._graphflow.publishers, publisher, "destroy_publisher")
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
-        return self._graphflow_destroy(self._graphflow.subscriptions, subscription)
+        return self._graphflow_destroy(self._graphflow.subscriptions, subscription, "destroy_subscription")
 
     def destroy_client(self, client: Client) -> bool:
-        return self._graphflow_destroy(self._graphflow.clients, client)
+        return self._graphflow_destroy(self._graphflow.clients, client, "destroy_client")
 
     def destroy_service(self, service: Service) -> bool:
-        return self._graphflow_destroy(self._graphflow.services, service)
+        return self._graphflow_destroy(self._graphflow.services, service, "destroy_service")
 
     def destroy_timer(self, timer: Timer) -> bool:
-        return self._graphflow_destroy(self._graphflow.timers, timer)
+        return self._graphflow_destroy(self._graphflow.timers, timer, "destroy_timer")
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        return self._graphflow_destroy(self._graphflow.guards, guard)
+        return self._graphflow_destroy(self._graphflow.guards, guard, "destroy_guard_condition")
 
     def destroy_rate(self, rate: Rate) -> bool:
-        timer = rate._timer
+        timer: Any = getattr(rate, "_timer", None)
+        if timer is None:
+            tell(self, rate, "destroy_rate", depth=1)
         is_known = timer in self._graphflow.timers
         if is_known:
             self._graphflow.timers.remove(timer)

@@ -39,6 +39,8 @@ def count(node: Any, call: str, made: Any) -> None:
     kind, place = _KINDS[call], asked.place
     if call == "create_service":
         _tell_twin(node, made, place)
+    elif call == "create_subscription":
+        _tell_same(node, made, place)
     made.made_at = key = (place, asked.frame.f_code, _name(made, is_again=is_in_run(asked.frame)))
     alike = sum(getattr(other, "made_at", None) == key and _is_alive(other) for other in getattr(node._graphflow, kind))
     if alike >= MANY and place not in _told:
@@ -56,6 +58,18 @@ def _tell_twin(node: Any, made: Any, place: Place) -> None:
         _told.add(place)
         text = "%s offers %s twice, in %s and in %s: each call reaches both, and the first answer counts; keep one"
         logger.warning(text, node.get_fully_qualified_name(), _topic(made), former[0], place)
+
+
+def _tell_same(node: Any, made: Any, place: Place) -> None:
+    """Tell if a node has a subscription of that topic and callback already: each message comes twice."""
+    for other in node._graphflow.subscriptions:
+        is_same = other is not made and _topic(other) == _topic(made) and other.callback == made.callback
+        former = getattr(other, "made_at", None) if is_same and other.raw is made.raw else None
+        if former is not None and former[0] != place and place not in _told:
+            _told.add(place)
+            text = "%s subscribes %s to %s twice, in %s and in %s: each message comes twice; keep one"
+            called = getattr(made.callback, "__name__", repr(made.callback))
+            logger.warning(text, node.get_fully_qualified_name(), called, _topic(made), former[0], place)
 
 
 def _name(made: Any, *, is_again: bool) -> Any:

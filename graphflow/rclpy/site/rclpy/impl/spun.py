@@ -1,8 +1,10 @@
-"""A check that nodes are spun, and nothing else that a program may give in their place."""
+"""Checks that nodes are spun, by executors, and nothing else that a program may give in their place."""
 
 from __future__ import annotations
 
 from typing import Any
+
+from rclpy.task import Future
 
 
 def check_node(node: Any, call: str) -> None:
@@ -11,12 +13,16 @@ def check_node(node: Any, call: str) -> None:
     Args:
         call: The function that wants one.
     """
-    if not isinstance(node, type) and hasattr(type(node), "default_callback_group"):
+    if _is_node(node):
         return
     if isinstance(node, type):
         text = f"{call} needs a node, got the class {node.__name__}: write {call}({node.__name__}())"
     elif isinstance(node, (list, tuple)):
         text = f"{call} needs one node, got a {type(node).__name__}: add each to an executor by executor.add_node(node)"
+    elif isinstance(node, Future):
+        text = f"{call} needs a node first, got a {type(node).__name__}: the future comes behind the node"
+    elif node is None:
+        text = f"{call} needs a node, got None: the function that makes the node must return it"
     elif hasattr(node, "add_node"):
         text = f"{call} needs a node, got a {type(node).__name__}: write executor.add_node(node), then executor.spin()"
     else:
@@ -24,5 +30,29 @@ def check_node(node: Any, call: str) -> None:
         text = (
             f"{call} needs a node, got a {name}: write class {name}(Node), and super().__init__('name') in its __init__"
         )
-        text = text if type(node).__module__ != "builtins" else f"{call} needs a node, got a {name}"
+        text = text if type(node).__module__ != "builtins" else f"{call} needs a node, got {node!r}"
     raise TypeError(text)
+
+
+def check_executor(executor: Any, call: str) -> None:
+    """Raise TypeError, with what to write, if something behind a node is no executor.
+
+    Args:
+        call: The function that takes one; None stands for the global one.
+    """
+    if executor is None or hasattr(executor, "add_node"):
+        return
+    if _is_node(executor):
+        text = (
+            f"{call} takes one node, got another Node in the place of its executor: "
+            "add each node to one executor by executor.add_node(node), and then call executor.spin()"
+        )
+    elif isinstance(executor, (int, float)) and call != "spin":
+        text = f"{call} takes an executor in this place, got {executor!r}: write timeout_sec={executor!r}"
+    else:
+        text = f"{call} takes an executor in this place, got {executor!r}"
+    raise TypeError(text)
+
+
+def _is_node(thing: Any) -> bool:
+    return not isinstance(thing, type) and hasattr(type(thing), "default_callback_group")

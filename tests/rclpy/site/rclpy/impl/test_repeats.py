@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
+
 import pytest
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from rclpy.impl.repeats import MANY
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 from tests.rclpy.conftest import Spinner
 
 Caplog = pytest.LogCaptureFixture
@@ -68,4 +72,25 @@ def test_two_services_of_one_name(node: Node, caplog: Caplog) -> None:
     assert texts == [
         f"/node offers /switch twice, in test_repeats.py:{line} and in test_repeats.py:{inner}: "
         "each call reaches both, and the first answer counts; keep one"
+    ]
+
+
+def test_a_callback_that_is_subscribed_twice(node: Node, caplog: Caplog) -> None:
+    """Told once, with both lines; other topics and other callbacks are the user's affair, and so is what is gone."""
+
+    def subscribe(topic: str, callback: Callable[[String], None]) -> Subscription:
+        return node.create_subscription(String, topic, callback, 10)
+
+    gone = node.create_subscription(String, "chat", nothing, 10)
+    node.destroy_subscription(gone)
+    subscribe("chat", nothing)
+    subscribe("other", nothing)
+    node.create_subscription(String, "chat", lambda _: None, 10)
+    assert caplog.messages == []
+    node.create_subscription(String, "/chat", nothing, 10)
+    file, line = "test_repeats.py:", inspect.currentframe().f_lineno - 1  # type: ignore[union-attr]
+    former = subscribe.__code__.co_firstlineno + 1
+    assert caplog.messages == [
+        f"/node subscribes nothing to /chat twice, in {file}{former} and in {file}{line}: each message comes twice; "
+        "keep one"
     ]

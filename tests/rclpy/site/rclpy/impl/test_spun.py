@@ -8,6 +8,7 @@ import pytest
 
 import rclpy
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.impl.spun import check_executor
 from rclpy.node import Node
 
 ROS: Any = rclpy
@@ -34,7 +35,9 @@ class Bulb:
             lambda n: Bulb(),
             "spin needs a node, got a Bulb: write class Bulb(Node), and super().__init__('name') in its ",
         ),
-        (lambda n: None, "spin needs a node, got a NoneType"),
+        (lambda n: None, "spin needs a node, got None: the function that makes the node must return it"),
+        (lambda n: "lamp", "spin needs a node, got 'lamp'"),
+        (lambda n: rclpy.Future(), "spin needs a node first, got a Future: the future comes behind the node"),
     ],
 )
 def test_what_is_no_node(node: Node, given: Any, text: str) -> None:
@@ -51,6 +54,32 @@ def test_all_that_takes_nodes(node: Node, call: str) -> None:
     arguments: tuple[Any, ...] = (rclpy.Future(),) if call == "spin_until_future_complete" else ()
     with pytest.raises(TypeError, match=f"^{call} needs a node, got the class Lamp"):
         takes(Lamp, *arguments)
+
+
+@pytest.mark.parametrize("call", ["spin", "spin_once", "spin_until_future_complete"])
+def test_what_is_no_executor(node: Node, call: str) -> None:
+    """It is refused with what to write: it is most often a second node, or a number of seconds."""
+    arguments: dict[str, Any] = {"future": rclpy.Future()} if call == "spin_until_future_complete" else {}
+    with pytest.raises(TypeError) as caught:
+        getattr(ROS, call)(node, **arguments, executor=node)
+    assert str(caught.value) == (
+        f"{call} takes one node, got another Node in the place of its executor: "
+        "add each node to one executor by executor.add_node(node), and then call executor.spin()"
+    )
+    with pytest.raises(TypeError) as caught:
+        getattr(ROS, call)(node, **arguments, executor=0.5)
+    way = "" if call == "spin" else ": write timeout_sec=0.5"
+    assert str(caught.value) == f"{call} takes an executor in this place, got 0.5{way}"
+
+
+def test_executors_of_all_kinds(node: Node) -> None:
+    """None, rclpy's own, and those of the user's own kind are executors."""
+
+    class Wrapping:
+        def add_node(self, node: object) -> None: ...
+
+    for executor in (None, SingleThreadedExecutor(), Wrapping()):
+        check_executor(executor, "spin")
 
 
 def test_threads_that_are_no_number(node: Any) -> None:

@@ -1,0 +1,91 @@
+"""Calls such as `destroy_timer(self.tick)`, whose argument is not what they destroy: ROS 2 answers False, and no more.
+
+Those of what is destroyed already, or of another node, are left alone, and so is None, which code that cleans up gives.
+"""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+from graphflow.errors import Place
+from rclpy.client import Client
+from rclpy.guard_condition import GuardCondition
+from rclpy.impl.callers import caller
+from rclpy.publisher import Publisher
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Rate, Timer
+
+_KINDS: dict[str, tuple[type, str]] = {
+    "destroy_publisher": (Publisher, "publishers"),
+    "destroy_subscription": (Subscription, "subscriptions"),
+    "destroy_client": (Client, "clients"),
+    "destroy_service": (Service, "services"),
+    "destroy_timer": (Timer, "timers"),
+    "destroy_guard_condition": (GuardCondition, "guards"),
+    "destroy_rate": (Rate, ""),
+}
+"""What each call destroys, and where a node has them."""
+_told: set[Place] = set()
+"""The lines of which it has been told."""
+logger = logging.getLogger("graphflow")
+
+
+def tell(node: Any, thing: Any, call: str, depth: int) -> None:
+    """Tell of a call that has destroyed nothing, if what it was given is of another kind; each line once.
+
+    Args:
+        call: The name of the method.
+        depth: How many frames above the caller's the program is.
+    """
+    kind, asked = _KINDS[call][0], caller(depth + 1)
+    if thing is None or asked is None or isinstance(thing, kind) or asked.place in _told:
+        return
+    _told.add(asked.place)
+    text = "%s: %s destroys nothing, since it takes a %s and got %s; write %s"
+    logger.warning(text, asked.place, call, kind.__name__, _shown(thing), _way(node, thing, call))
+
+
+def _shown(thing: Any) -> str:
+    if isinstance(thing, type):
+        return f"the class {thing.__name__}"
+    if callable(thing) and (name := getattr(thing, "__name__", "")):
+        return f"the {'method' if hasattr(thing, '__self__') else 'function'} {name}"
+    if isinstance(thing, (str, int, float)):
+        return repr(thing)
+    name = type(thing).__name__
+    return f"{'an' if name[:1] in 'AEIOU' else 'a'} {name}"
+
+
+def _way(node: Any, thing: Any, call: str) -> str:
+    """The call that is probably meant."""
+    other = next((name for name, (kind, _) in _KINDS.items() if isinstance(thing, kind)), None)
+    if other is not None:
+        return f"{other}(...)"
+    if callable(getattr(thing, "destroy", None)) and not isinstance(thing, type):
+        return f"{_attribute(node, thing) or '...'}.destroy()"
+    kept = _attribute(node, next((own for own in _owned(node, call) if _belongs(node, own, thing)), None))
+    if kept:
+        return f"{call}({kept})"
+    what = call.removeprefix("destroy_")
+    return f"{call}(self.{what}), with what create_{what} has returned"
+
+
+def _owned(node: Any, call: str) -> list[Any]:
+    return list(getattr(node._graphflow, _KINDS[call][1], ()))
+
+
+def _belongs(node: Any, own: Any, thing: Any) -> bool:
+    """Whether a part of the node's has that callback, or that name."""
+    if not isinstance(thing, str):
+        return bool(getattr(own, "callback", None) == thing)
+    if (name := getattr(own, "topic_name", None)) is not None:
+        return bool(name == node.resolve_topic_name(thing))
+    return bool(getattr(own, "service_name", None) == thing)
+
+
+def _attribute(node: Any, thing: Any) -> str:
+    """The attribute in which the node keeps something, as `self.timer`; empty if there is none."""
+    found = next((name for name, value in vars(node).items() if value is thing and thing is not None), "")
+    return f"self.{found}" if found else ""
