@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import linecache
 import re
 import sys
 from importlib import import_module
@@ -153,10 +154,53 @@ def _where(error: BaseException) -> str:
         text += '; write `from graphflow import Node`: the page "coming from ROS 2" has each word of rclpy'
     elif missing in ("rospy", "roscpp", "roslib"):
         text += f"; {missing} is ROS 1's: write `from graphflow import Node`, or ROS 2's import rclpy"
-    elif remark := remark_on(error):
+    elif remark := remark_on(error) or _way_beside(error, place):
         text += f"; {remark}"
     # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
     return text if text.startswith("/") else f"{place}{place and ': '}{type(error).__name__}: {text}"
+
+
+def _way_beside(error: BaseException, place: str) -> str:
+    """What to write for a module that lies beside the file that imports it; empty if that is not known.
+
+    A file that is run as a program finds what lies beside it; a module of a package is found from the project's folder.
+    """
+    path, _, number = place.rpartition(":")
+    file, written = Path(path), _IMPORT.match(linecache.getline(path, int(number)) if number else "")
+    if "no known parent package" in str(error):
+        return _as_module(file)
+    if not isinstance(error, ModuleNotFoundError) or written is None:
+        return ""
+    module, names = written[1] or written[3], written[2]
+    top, _, rest = module.partition(".")
+    if file.parent.name == top and rest and _lies_in(file.parent, rest):
+        return _as_module(file)
+    package = _package_of(file)
+    if not package or error.name != top or not _lies_in(file.parent, top):
+        return ""
+    above, _, last = f"{package}.{module}".rpartition(".")
+    return f"write from {package}.{module} import {names.strip()}" if names else f"write from {above} import {last}"
+
+
+_IMPORT = re.compile(r"\s*(?:from\s+([\w.]+)\s+import\s+([^#\n]+)|import\s+([\w.]+)\s*(?:#|$))")
+"""An import of names from a module, or of one module."""
+
+
+def _lies_in(folder: Path, module: str) -> bool:
+    path = folder / module.partition(".")[0]
+    return path.with_suffix(".py").is_file() or path.is_dir()
+
+
+def _as_module(file: Path) -> str:
+    """How a file is run that imports from its own package."""
+    package, above = file.parent.name, file.parent.parent
+    return f"as a module of {package} it finds that: graphflow run {package}.{file.stem}, in {above}"
+
+
+def _package_of(file: Path) -> str:
+    """The package of a module of the project's; empty for none."""
+    root = next((root for root in reversed(_roots) if file.is_relative_to(root)), None)
+    return "" if root is None else ".".join(file.relative_to(root).parent.parts)
 
 
 def _instead_of(word: str) -> str:

@@ -117,6 +117,40 @@ def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path)
     assert str(caught.value) == problem.replace("{machines}", f"{project}/machines").replace("{project}", str(project))
 
 
+@pytest.mark.parametrize(
+    ("line", "way"),
+    [
+        ("import robot", "No module named 'robot'; write from machines import robot"),
+        (
+            "from robot import Robot, Wheel  # both",
+            "No module named 'robot'; write from machines.robot import Robot, Wheel",
+        ),
+        ("import parts.wheel", "No module named 'parts'; write from machines.parts import wheel"),
+        ("from parts.wheel import turn", "No module named 'parts'; write from machines.parts.wheel import turn"),
+        ("import elsewhere", "No module named 'elsewhere'"),
+    ],
+)
+def test_a_module_beside_the_file(project: Path, line: str, way: str) -> None:
+    """It is imported from the package; one that is nowhere has no advice."""
+    (project / "machines" / "parts").mkdir()
+    (project / "machines" / "uses.py").write_text(f"{line}\n")
+    with pytest.raises(GraphflowError) as caught:
+        import_class("machines.uses:Robot")
+    assert str(caught.value).endswith(f"/uses.py:1: ModuleNotFoundError: {way}")
+
+
+def test_a_file_that_is_run_apart_from_its_package(project: Path) -> None:
+    """What it imports is found from the folder above, where it is run as a module."""
+    sys.path.remove(str(project))
+    add_root(str(project / "machines"))
+    for module, line in {"relative": "from .robot import Robot", "whole": "from machines.robot import Robot"}.items():
+        (project / "machines" / f"{module}.py").write_text(f"{line}\n")
+        with pytest.raises(GraphflowError) as caught:
+            import_class(f"{module}:Robot")
+        way = f"; as a module of machines it finds that: graphflow run machines.{module}, in {project}"
+        assert str(caught.value).endswith(way)
+
+
 def test_a_package_that_another_hides(project: Path) -> None:
     """A name that an installed module has too is told as such, and not offered again."""
     (project / "json").mkdir()
