@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.errors import Place
-from graphflow.graph import executables
+from graphflow.graph import executables, ros1_launch
 from graphflow.graph.model import FROM_LAUNCH
 from graphflow.graph.ros_attributes import children, items, says, shape_fault, split
 from graphflow.graph.ros_attributes import words as words_of
@@ -75,7 +75,7 @@ _ELSEWHERE = {
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
 _FORMER = {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace"}
-"""Attributes of ROS 1, and of launch files in Python."""
+"""Attributes as launch files in Python, and some of ROS 1, have them."""
 PATIENCE = 60.0
 """Seconds that a command of ROS's may take, which would wait for ever for a server."""
 _SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
@@ -173,6 +173,9 @@ class _Translation:
 
     def _is_known(self, name: str, item: Item) -> bool:
         if name not in _KNOWN:
+            if former := ros1_launch.action(name):
+                self._complain(item.at, f"<{name}> {former}")
+                return False
             hint = _ELSEWHERE.get(name)
             near = f": {hint}" if hint else did_you_mean(name, _KNOWN)
             self._complain(item.at, f"the action {name!r} has no words in a graph file{near}")
@@ -182,8 +185,9 @@ class _Translation:
             return False
         for key, value in item.entries.items():
             if key not in _KNOWN[name]:
-                ours, known = _FORMER.get(key, ""), sorted(_KNOWN[name] - _IGNORED)
-                hint = f"; it is called {ours!r} here" if ours in known else did_you_mean(key, known)
+                ours, known = _FORMER.get(key, ""), sorted(_KNOWN[name] - _IGNORED - _RECORDED - {"children"})
+                former = ros1_launch.attribute(name, key) or (f"it is called {ours!r} here" if ours in known else "")
+                hint = f"; {former}" if former else did_you_mean(key, known)
                 self._complain(value.at, f"{name}: unknown attribute {key!r}{hint}")
             elif (fault := shape_fault(key, value)) is not None:
                 self._complain(value.place, f"{name}: {fault}")

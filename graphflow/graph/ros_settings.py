@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from graphflow.graph import ros1_launch
 from graphflow.graph.param_types import as_type
 from graphflow.graph.ros_attributes import items, says
 from graphflow.graph.ros_attributes import words as words_of
@@ -108,7 +109,11 @@ def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
                 continue
             for key, value in param.entries.items():
                 if key not in _OF_PARAMS:
-                    complain(value.at, f"param: unknown attribute {key!r}{did_you_mean(key, _OF_PARAMS)}")
+                    former = ros1_launch.attribute("param", key)
+                    hint = f"; {former}" if former else did_you_mean(key, _OF_PARAMS)
+                    complain(value.at, f"param: unknown attribute {key!r}{hint}")
+            if not param.entries.keys() & {"from", "param", "value"} and param.entries.keys() - {*_OF_PARAMS}:
+                continue
             if "from" in param.entries:
                 file = param.entries["from"]
                 is_substituted = says(param, "allow_substs", "true", "1")

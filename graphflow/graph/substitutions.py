@@ -16,6 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from graphflow.graph import ros1_launch
 from graphflow.graph.copies import copy_of
 from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
@@ -120,6 +121,8 @@ class Substitutions:
         function = _FUNCTIONS.get(name)
         if function is None:
             near = f"; write $(var {name})" if name in self._args else did_you_mean(name, _FUNCTIONS)
+            if former := ros1_launch.substitution(inside):
+                near = f" of ROS 1's; {former}"
             raise SubstitutionError(f"$({inside}): unknown substitution {name!r}{near}")
         try:
             written = words(rest)

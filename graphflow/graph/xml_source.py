@@ -14,6 +14,7 @@ from xml.parsers import expat
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.param_types import from_yaml
+from graphflow.graph.ros1_launch import action
 from graphflow.graph.source import MAX_BYTES, MAX_DEPTH
 from graphflow.graph.tree import Item, located
 from graphflow.reading import found_bytes
@@ -108,6 +109,9 @@ class _Reader:
 
     def _text(self, text: str) -> None:
         if text.strip() and self._open:
+            name, attributes, _ = self._open[-1]
+            if former := action(name):
+                raise _error(attributes.place, f"<{name}> {former}")
             raise _error(self._place, f"{text.strip()[:40]!r}: text between elements means nothing; use an attribute")
 
     def _refuse(self, *_: Any) -> None:

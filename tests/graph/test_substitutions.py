@@ -187,6 +187,7 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
         ("$(find-pkg-share __main__)", "no package of that name is installed"),
         ("$(name)", "$(name): unknown substitution 'name'; write $(var name)"),
         ("$(vra name)", "$(vra name): unknown substitution 'vra'; did you mean 'var'?"),
+        ("$(arg name)", "$(arg name): unknown substitution 'arg' of ROS 1's; write $(var name)"),
         ("$(find-pkg-shar x)", "unknown substitution 'find-pkg-shar'; did you mean 'find-pkg-share'?"),
         ("$()", "unknown substitution ''"),
         ("a $(var name", "'$(var name' has no closing )"),
