@@ -22,6 +22,7 @@ CELLAR = (
     "system",
     "folders",
     "reading",
+    "typographic",
     "wire",
     "msgs",
     "machines",

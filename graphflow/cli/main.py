@@ -14,7 +14,7 @@ from typing import NoReturn
 
 import click
 
-from graphflow import __version__
+from graphflow import __version__, typographic
 from graphflow.cli import exits, output
 from graphflow.cli.placing import OF_GRAPHFLOW, before_the_verb
 from graphflow.cli.reaching import reach, reach_options
@@ -168,9 +168,31 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     sys.exit(_main(args))
 
 
+def _refuse_pasted(words: Sequence[str]) -> None:
+    """See that no option begins with a dash that is no hyphen, as slides and web pages have them.
+
+    Raises:
+        UsageFault: One does; with the option.
+    """
+    pasted = {word: typographic.option(word) for word in words}
+    if not any(pasted.values()):
+        return
+    command: click.Command = cli
+    context = click.Context(cli)
+    known = {"--help", "-h"}
+    for word in (*words, ""):
+        known |= {name for param in command.params for name in (*param.opts, *param.secondary_opts)}
+        if isinstance(command, click.Group) and (inner := command.get_command(context, word)) is not None:
+            command, context = inner, click.Context(inner, parent=context, info_name=word)
+    for word, option in pasted.items():
+        if option.partition("=")[0] in known:
+            raise UsageFault(f"the dash of {word!r} is no hyphen; write {option}")
+
+
 def _invoked(args: Sequence[str]) -> object:
     """What a command returns. Click's own `main` would take a reader that has had enough for a failure."""
     name = "gf" if os.path.basename(sys.argv[0]) == "gf" else "graphflow"
+    _refuse_pasted(args)
     try:
         with cli.make_context(name, list(args)) as context:
             return cli.invoke(context)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import shlex
 import time
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import click
@@ -13,7 +16,7 @@ from graphflow.cli.types import agree, check_kind, names_of_type, refuse_turned,
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
-from graphflow.errors import ServiceUnavailable, UsageFault
+from graphflow.errors import GraphflowError, ServiceUnavailable, UsageFault
 from graphflow.introspect.view import View
 from graphflow.machines.matching import shared
 from graphflow.names import expand
@@ -146,7 +149,7 @@ def call(
         there = view.cache.services(hidden=True).get(full, [])
         if there:
             learn(view, full, type_name if type_name in there or len(there) > 1 else there[0], (Kind.SERVICE,))
-    wanted = type_of_word(type_name, full, there)
+    wanted = type_of_word(type_name, full, there, command="service call", rest=_meant(there, (type_name, *values)))
     check_kind(wanted, "srv")
     values_read = message_values(values, from_stdin=from_stdin)
     with View(domain_id()) as view:
@@ -172,3 +175,18 @@ def call(
             if rate is None:
                 return exits.OK
             time.sleep(max(0.0, 1 / rate - (time.monotonic() - started)))
+
+
+def _meant(types: list[str], words: Sequence[str]) -> str:
+    """The request that words are meant as which stand in the place of the type; empty if that is not known."""
+    from graphflow.msgs import registry
+    from graphflow.msgs.instead import named
+
+    if len(types) != 1:
+        return ""
+    with suppress(GraphflowError):
+        request = registry.interface_class(registry.service_schema(types[0]).request.name)
+        values = message_values(words)
+        text = " ".join(words) if isinstance(values, dict) else named(request, values)
+        return "" if text is None else shlex.quote(text)
+    return ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -171,6 +172,10 @@ def _warn_of_profile(view: View, full: str) -> None:
         output.talk(f"WARNING: {kept_back}")
 
 
+_A_FIELD = re.compile(r"[a-z_][a-z0-9_]*(\.\w+)*")
+"""The path of a field, which no type is written like."""
+
+
 def _echo_type(full: str, given: str | None) -> str:
     """The type to listen for: the one in the graph, else the given one."""
     from graphflow.cli.types import agree, check_kind, type_of_word
@@ -189,6 +194,8 @@ def _echo_type(full: str, given: str | None) -> str:
         if given is None:
             raise
         cache, topics, types, alone = GraphCache(), {}, [], ""
+    if given and types and f"/{given}" not in topics and _A_FIELD.fullmatch(given):
+        raise UsageFault(f"a field is shown by: graphflow topic echo {full} --field {given}")
     wanted = type_of_word(given, full, types, topics) if given else None
     if wanted is not None:
         check_kind(wanted, "msg")
@@ -196,6 +203,11 @@ def _echo_type(full: str, given: str | None) -> str:
         visible = [t for t in topics if not is_hidden(t)]
         if alone:
             raise CallError(f"topic {full} does not appear to be published{alone}")
+        if topic := next((topic for topic in visible if full.startswith(f"{topic}/")), None):
+            field = full.removeprefix(f"{topic}/").replace("/", ".")
+            raise UsageFault(
+                f"there is no topic {full}; a field is shown by: graphflow topic echo {topic} --field {field}"
+            )
         near = cache.instead(full, visible)
         if near.startswith("; it is"):
             raise CallError(f"Unknown topic '{full}'{near}")

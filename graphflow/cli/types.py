@@ -38,13 +38,17 @@ def names_of_type(names: Mapping[str, list[str]], type_name: str, *, only_count:
     return [str(len(found))] if only_count else found
 
 
-def type_of_word(word: str, name: str, known: Collection[str], others: Collection[str] = ()) -> str:
+def type_of_word(
+    word: str, name: str, known: Collection[str], others: Collection[str] = (), command: str = "", rest: str = ""
+) -> str:
     """The full name of the type that a word of the command line is.
 
     Args:
         word: It stands where the type of `name` does.
         known: The types that nodes announce for the name.
         others: Other names of the graph, which the word may have been meant as.
+        command: As in `service call`, for the line to type.
+        rest: The values as they were meant, if the word is one of them.
 
     Raises:
         UsageFault: It is no type; the text says what it was taken for.
@@ -59,6 +63,8 @@ def type_of_word(word: str, name: str, known: Collection[str], others: Collectio
             why = f"{other} needs a command of its own, as in another terminal"
         elif known:
             why = f"that is {' and '.join(known)}"
+            if command and len(known) == 1 and "/" not in word:
+                why += f": graphflow {command} {name} {next(iter(known))} {rest or '...'}"
         else:
             why = str(error)
         raise UsageFault(f"{word!r} was taken for the type of {name}; {why}") from None

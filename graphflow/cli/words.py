@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from graphflow.cli.output import talk
 from graphflow.errors import GraphflowError
 from graphflow.reading import found_text
+from graphflow.typographic import is_quoted, plain
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -136,6 +138,8 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
         if whole is not None:
             message = " ".join(words[:whole])
             raise UsageFault(f"{words[whole]!r} is one word too many: {message!r} is a message by itself") from None
+        if (lists := _lists(words)) is not None:
+            return lists
         meant = repaired(text)
         raise UsageFault(f"{text!r} is not valid YAML; did you mean {meant!r}?" if meant else str(error)) from None
     keys = [values] if isinstance(values, str) else values if isinstance(values, dict) else []
@@ -145,11 +149,39 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
         raise UsageFault(f"{text!r} is a text because of the quotes in it; did you mean {values!r}?")
     if not _has_fields(values) and (meant := repaired(text)):
         raise UsageFault(f"{text!r} has a key that is no name of a field; did you mean {meant!r}?")
+    if odd := next(_quoted_in(values), ""):
+        talk(f"note: the quotes around {odd} are sent with it; those of YAML are ' and \"")
     return values
 
 
+def _quoted_in(value: Any) -> Iterator[str]:
+    """Texts in quotes that are none."""
+    if isinstance(value, str) and is_quoted(value):
+        yield value
+    for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _quoted_in(inner)
+
+
+def _lists(words: Sequence[str]) -> list[Any] | None:
+    """The values of words that are a list each, as ROS 1 takes them; None where one is none."""
+    from graphflow.graph.source import parse_value
+
+    if len(words) < 2 or not all(word.startswith("[") for word in words):
+        return None
+    with suppress(GraphflowError):
+        return [parse_value(word) for word in words]
+    return None
+
+
 def repaired(text: str) -> str | None:
-    """The values that were probably meant, by adding braces, a space or comma or changing a sign; None if unclear."""
+    """The values that were probably meant, by adding braces, a space or comma or changing a sign; None if unclear.
+
+    Quotes and dashes of the keyboard are tried first, in place of others.
+    """
+    straight = plain(text)
+    straight = straight[1:-1] if is_quoted(text) else straight
+    if straight != text and _is_message(straight):
+        return straight
     for slip, right in ((re.compile(r"\Z"), ""), *_REPAIRS):
         other = slip.sub(right, text)
         for whole in (other, f"{{{other}}}", f"{other}{'}' * (other.count('{') - other.count('}'))}"):

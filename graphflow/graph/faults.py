@@ -14,6 +14,7 @@ from graphflow.graph import source
 from graphflow.graph.model import BLOCKS, GroupBlock, NodeSpec, keys_of
 from graphflow.graph.source import Source
 from graphflow.names import did_you_mean, nearest
+from graphflow.typographic import is_quoted
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -34,7 +35,7 @@ class Problems(list[Problem]):
 
     def add(self, place: Place, message: str) -> None:
         """Add a problem."""
-        problem = Problem(place, message)
+        problem = Problem(place, f"{message}{_of_quotes(message)}")
         if place not in self._unknown and problem not in self:  # each round of a loop has the same
             self.append(problem)
 
@@ -283,3 +284,16 @@ def example(*path: str | int) -> str:
     """An example of what may stand at a path, to end a report with; empty if there is none."""
     shape = tuple("" if i in (1, 3) else part for i, part in enumerate(path))
     return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
+
+
+_TEXT = re.compile(r"'([^']*)'")
+
+
+def _of_quotes(message: str) -> str:
+    """The end of a message about a text in quotes, or with a space, that YAML does not take for any."""
+    if "\\xa0" in message:
+        return " (\\xa0 is a no-break space, which is none in YAML)"
+    for found in _TEXT.findall(message):
+        if is_quoted(text := found.strip("/: ")):
+            return f" ({text[0]} and {text[-1]} are no quotes in YAML, which has ' and \")"
+    return ""

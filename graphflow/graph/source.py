@@ -16,6 +16,7 @@ import yaml
 
 from graphflow.errors import GraphFileError, GraphflowError, Place, Problem
 from graphflow.reading import found_bytes
+from graphflow.typographic import is_quoted, plain
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 40
@@ -278,6 +279,8 @@ def _key(event: Any, place: Place) -> str:
 
 def _key_fault(event: Any, place: Place, text: str) -> str:
     """Why a key is none: it is no text. Empty for others."""
+    if not event.style and is_quoted(event.value):
+        return f"{event.value[0]} and {event.value[-1]} are no quotes in YAML; write {plain(event.value)}"
     if event.style or isinstance(_scalar_value(event, place), str):
         return ""
     if found := _KEYS_ONLY.search(text.split("\n")[event.start_mark.line]):

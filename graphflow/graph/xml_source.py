@@ -18,6 +18,7 @@ from graphflow.graph.ros1_launch import action
 from graphflow.graph.source import MAX_BYTES, MAX_DEPTH
 from graphflow.graph.tree import Item, located
 from graphflow.reading import found_bytes
+from graphflow.typographic import plain
 
 LISTS = ("param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let")
 """Elements that are attributes of the one around them, as lists; any other in it is an action."""
@@ -69,6 +70,8 @@ class _Reader:
         """A correction, as far as the mistake shows it."""
         lines = data.decode(errors="replace").splitlines()
         line = lines[error.lineno - 1] if error.lineno <= len(lines) else ""
+        if plain(line) != line and "token" in expat.ErrorString(error.code):
+            return f"; write the quotes of the keyboard: {plain(line).strip()[:80]}"
         if bare := _NO_QUOTES.search(line):
             return f'; write quotes: {bare[1]}="{bare[2]}"'
         if self._open and "tag" in expat.ErrorString(error.code):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from math import floor, isfinite
 from typing import Any
 
+from graphflow.msgs import base
+from graphflow.typographic import plain
 from graphflow.wire import schema
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
 
@@ -71,7 +74,7 @@ def _scalar(type_: FieldType, value: Any) -> str | None:
     if type(value) not in (int, float, bool, str):
         return None
     try:
-        number = float(value)
+        number = float(plain(value) if type(value) is str else value)
         whole = int(number)
     except (ValueError, OverflowError):  # text, or no finite number
         return None
@@ -90,3 +93,39 @@ def _mapping(value: Any, fields: Sequence[Field]) -> str | None:
     pairs = zip(fields, numbers, strict=True)
     items = [(f.name, _scalar(f.type, n) if f.type.is_primitive and not f.type.array else None) for f, n in pairs]
     return None if any(text is None for _, text in items) else f"{{{', '.join(f'{name}: {t}' for name, t in items)}}}"
+
+
+def named(cls: type[base.Message], data: Any) -> str | None:
+    """Values by the names of the fields that they are probably meant for, in their order; None if their number differs.
+
+    Args:
+        data: A value, a list of values, or a text with a word for each field.
+    """
+    fields = cls.SCHEMA.fields
+    values = data if isinstance(data, list) else data.split() if isinstance(data, str) and len(fields) > 1 else [data]
+    if len(values) != len(fields) or not fields:
+        return None
+    parts = []
+    for field, value in zip(fields, values, strict=True):
+        nested = None if field.type.is_primitive or field.type.array else cls.NESTED[field.type.base]
+        text = _flow(value) if nested is None else named(nested, value) if isinstance(value, list) else None
+        if text is None:
+            return None
+        parts.append(f"{field.name}: {text}")
+    return f"{{{', '.join(parts)}}}"
+
+
+def _flow(value: Any) -> str | None:
+    """A value as YAML has it on one line."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        needs_none = _NEEDS_NO_QUOTES.fullmatch(value)
+        return value if needs_none else "'" + value.replace("'", "''") + "'"
+    if isinstance(value, list):
+        items = list(map(_flow, value))
+        return None if None in items else f"[{', '.join(map(str, items))}]"
+    return repr(value) if isinstance(value, (int, float)) else None
+
+
+_NEEDS_NO_QUOTES = re.compile(r"[\w./+-][\w ./+-]*")

@@ -7,7 +7,7 @@ from typing import Any
 
 from graphflow.errors import EncodeError
 from graphflow.msgs import base
-from graphflow.msgs.instead import instead
+from graphflow.msgs.instead import instead, named
 from graphflow.names import did_you_mean
 from graphflow.wire import schema
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
@@ -160,7 +160,10 @@ def from_plain(cls: type[base.Message], data: Any) -> base.Message:
     fields = [f.name for f in cls.SCHEMA.fields]
     if not isinstance(data, Mapping):
         example = f"{{{fields[0]}: ...}}" if fields else "{}"
-        raise EncodeError(f"{cls.SCHEMA.name} is written as a mapping, for example {example}; got {data!r}")
+        way = f"as a mapping, for example {example}"
+        if (meant := named(cls, data)) is not None:
+            way = f"with the names of its fields, as in {meant}"
+        raise EncodeError(f"{cls.SCHEMA.name} is written {way}; got {data!r}")
     for key in data:
         if key not in fields:
             raise EncodeError(f"{cls.SCHEMA.name} has no field {key!r}{did_you_mean(str(key), fields)}")

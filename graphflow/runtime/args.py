@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from graphflow import typographic
 from graphflow.errors import GraphFileError, GraphflowError, InvalidName
 from graphflow.interface import Interface
 from graphflow.names import Remap, Resolver, did_you_mean, nearest
@@ -31,7 +32,7 @@ _FLAGS = {
     for verb in ("enable", "disable")
     for what in ("rosout", "stdout", "external-lib")
 }
-_DASHES = ("-", "\N{EN DASH}", "\N{EM DASH}", "\N{MINUS SIGN}")
+_DASHES = ("-", *typographic.DASHES)
 _OPTIONS = (*_VALUED, *_LEFT_OUT, *_FLAGS, "--ros-args", "--")
 
 
@@ -174,6 +175,8 @@ def missed(words: Sequence[str]) -> str:
 
 def _slip(word: str) -> str:
     """The option of ROS's that a word hardly misses, such as `-ros-args` or `--rosargs`; empty if there is none."""
+    if (pasted := typographic.option(word)) in _OPTIONS:
+        return pasted
     bare = word.lstrip("".join(_DASHES))
     if word in ("--ros-args", "--params-file", bare):
         return ""

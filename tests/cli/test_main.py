@@ -122,6 +122,12 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["check", "nothing.yaml"], "error: nothing.yaml: there is no such file"),
         (["check", "turtlesm"], "error: turtlesm: there is no such file; did you mean 'turtlesim'?"),
         (["run", "nodes.talker.Talker"], "error: 'nodes.talker.Talker': write MODULE:CLASS, nodes.talker:Talker"),
+        (["topic", "list", "—verbose"], "error: the dash of '—verbose' is no hyphen; write --verbose"),
+        (
+            ["topic", "pub", "/x", "std_msgs/String", "data: a", "\u2013-once"],
+            "the dash of '\u2013-once' is no hyphen; write --once",
+        ),
+        (["—help"], "write --help"),
         (["topic", "info", "a b"], "error: 'a b' is not a topic or service name"),
     ],
 )

@@ -52,7 +52,14 @@ def test_call(standing: Machine) -> None:
         ([ADD], 2, f"error: TYPE is missing; {ADD} is of type {TYPE}: graphflow service call {ADD} {TYPE}"),
         (["/office/clerk/ad"], 1, f"no node offers the service /office/clerk/ad; did you mean '{ADD}'?"),
         ([ADD, "std_srvs/srv/Trigger"], 2, f"error: {ADD} is of type {TYPE}, not std_srvs/srv/Trigger"),
-        ([ADD, "{a: 1}"], 2, f"error: '{{a: 1}}' was taken for the type of {ADD}; that is {TYPE}"),
+        (
+            [ADD, "{a: 1}"],
+            2,
+            f"error: '{{a: 1}}' was taken for the type of {ADD}; that is {TYPE}: graphflow service call {ADD} {TYPE} "
+            "'{a: 1}'",
+        ),
+        ([ADD, "1", "2"], 2, f"that is {TYPE}: graphflow service call {ADD} {TYPE} '{{a: 1, b: 2}}'"),
+        ([ADD, "1"], 2, f"that is {TYPE}: graphflow service call {ADD} {TYPE} ..."),
         ([ADD, TYPE, "{a: -1}"], 1, f"the handler of {ADD} raised ValueError: no debts"),
         ([ADD, TYPE, "{a: x}"], 2, "AddTwoInts_Request.a: expected int64, got 'x'"),
         ([ADD, TYPE, "{c: 1}"], 2, "c"),

@@ -93,6 +93,12 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
             4,
             "error: no node offers the service /chatter; it is a topic, of",
         ),
+        ("topic echo /chatter data", 2, "error: a field is shown by: graphflow topic echo /chatter --field data"),
+        (
+            "topic echo /chatter/data",
+            2,
+            "error: there is no topic /chatter/data; a field is shown by: graphflow topic echo /chatter --field data",
+        ),
         ("topic echo /chatter.data", 2, "error: a field is shown by: graphflow topic echo /chatter --field data"),
         ("topic echo /talker", 1, "Unknown topic '/talker'; it is a node"),
         ("topic echo /chater", 1, "topic /chater does not appear to be published yet; did you mean '/chatter'?"),

@@ -240,6 +240,11 @@ def test_messages_in_a_file_of_another_kind(tmp_path: Path) -> None:
         ("{data: 'it's me'}", "{data: 'it''s me'}"),
         ("data: 'it's me'", "data: 'it''s me'"),
         ("{p: {x: 1.0} q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
+        ("“data: hi”", "data: hi"),
+        ("\u2018{data: hi}\u2019", "{data: hi}"),
+        ("“data”: hi", '"data": hi'),
+        ("{“data”: “hi”}", '{"data": "hi"}'),
+        ("“{linear: {x: 1.0}}”", "{linear: {x: 1.0}}"),
     ],
 )
 def test_values_with_a_slip(text: str, meant: str) -> None:
@@ -274,3 +279,16 @@ def test_an_option_with_too_few_dashes_or_words() -> None:
     assert caught.value.possibilities == ["--rate"]
     with pytest.raises(click.BadOptionUsage, match="Option '-r' requires an argument"):
         parsed(pub, ["/t", "T", "--once", "-r"])
+
+
+def test_quotes_that_are_sent(capsys: pytest.CaptureFixture[str]) -> None:
+    """They may be meant, so they are told of; within a text they are as good as any character."""
+    assert message_values(["{p: [{data: “hi”}]}"]) == {"p": [{"data": "“hi”"}]}
+    assert capsys.readouterr().err == "note: the quotes around “hi” are sent with it; those of YAML are ' and \"\n"
+    message_values(["data: he said “hi” \u2013 twice"])
+    assert capsys.readouterr().err == ""
+
+
+def test_a_list_for_each_field() -> None:
+    """As ROS 1 takes them; the message says then how they are written."""
+    assert message_values(["[1.0, 2]", "[3]"]) == [[1.0, 2], [3]]

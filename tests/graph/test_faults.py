@@ -115,6 +115,25 @@ def test_nodes_that_are_not_below_nodes(name: str) -> None:
         resolve(source.read(f"{name}: {{class: a:B}}\n", "f.yaml"), Path("/nowhere/f.yaml"), [], {})
 
 
+@pytest.mark.parametrize(
+    ("message", "end"),
+    [
+        ("'“a:B”' is not a class", " (“ and ” are no quotes in YAML, which has ' and \")"),
+        ("'/\u2018lab\u2019' is not a namespace", " (\u2018 and \u2019 are no quotes in YAML, which has ' and \")"),
+        (
+            f"{'/ class'!r} is not a node name".replace(" class", "\\xa0class"),
+            " (\\xa0 is a no-break space, which is none in YAML)",
+        ),
+        ("'say “hi” to all' is not a class", ""),
+    ],
+)
+def test_characters_of_slides(message: str, end: str) -> None:
+    """Quotes and spaces that YAML does not know are named where they are in the way."""
+    problems = Problems()
+    problems.add(HERE, message)
+    assert [p.message for p in problems] == [f"{message}{end}"]
+
+
 def test_a_place_that_is_known_to_be_wrong_is_complained_of_once() -> None:
     """More would only confuse; other places are not affected."""
     problems = Problems()

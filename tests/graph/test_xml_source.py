@@ -69,6 +69,10 @@ def test_values_of_parameters(tmp_path: Path, attributes: str, value: object) ->
             "<launch>\n<node pkg=a />\n</launch>",
             'not well-formed (invalid token); write quotes: pkg="a"',
         ),
+        (
+            "<launch>\n<node pkg=“a”/>\n</launch>",
+            'not well-formed (invalid token); write the quotes of the keyboard: <node pkg="a"/>',
+        ),
         ("<robot/>", "f.xml:1:1: a launch file's outermost element is <launch>, not <robot>"),
         ("<launch>\n hello</launch>", "'hello': text between elements means nothing; use an attribute"),
         ("<launch>" + "<group>" * 50, "nested more than 40 deep"),

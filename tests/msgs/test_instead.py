@@ -8,6 +8,7 @@ import pytest
 
 from graphflow.errors import EncodeError
 from graphflow.msgs import registry
+from graphflow.msgs.instead import named
 from graphflow.msgs.values import from_plain
 
 
@@ -87,3 +88,33 @@ def test_lists_and_messages_that_hold_others(field: str, value: Any, text: str) 
     with pytest.raises(EncodeError) as caught:
         from_plain(registry.interface_class("sensor_msgs/msg/JointState"), {field: value})
     assert str(caught.value) == f"JointState.{text}"
+
+
+@pytest.mark.parametrize(
+    ("type_name", "data", "text"),
+    [
+        ("std_msgs/msg/String", "it's: me", "{data: 'it''s: me'}"),
+        ("std_msgs/msg/Bool", True, "{data: true}"),
+        ("std_msgs/msg/Float64", -1.5, "{data: -1.5}"),
+        ("geometry_msgs/msg/Point", "1 2 3", "{x: 1, y: 2, z: 3}"),
+        ("geometry_msgs/msg/Point", [1, 2.5, 3], "{x: 1, y: 2.5, z: 3}"),
+        (
+            "geometry_msgs/msg/Twist",
+            [[1.0, 0, 0], [0, 0, 2]],
+            "{linear: {x: 1.0, y: 0, z: 0}, angular: {x: 0, y: 0, z: 2}}",
+        ),
+        ("geometry_msgs/msg/Twist", [1.0, 2.0], None),
+        ("geometry_msgs/msg/Point", "1 2", None),
+        ("std_msgs/msg/Empty", "x", None),
+        ("std_msgs/msg/String", {"a": 1}, None),
+    ],
+)
+def test_values_without_the_names_of_their_fields(type_name: str, data: Any, text: str | None) -> None:
+    """They get them in their order, if there are as many."""
+    assert named(registry.interface_class(type_name), data) == text
+
+
+def test_a_minus_of_slides() -> None:
+    """A number with it is told with the one of the keyboard."""
+    with pytest.raises(EncodeError, match=r"got '\u20131.5'; write -1.5$"):
+        from_plain(registry.interface_class("std_msgs/msg/Float64"), {"data": "\u20131.5"})

@@ -189,6 +189,11 @@ def test_messages_from_plain_values() -> None:
             [1],
             "geometry_msgs/msg/Twist is written as a mapping, for example {linear",
         ),
+        (
+            "std_msgs/msg/String",
+            "hi",
+            "std_msgs/msg/String is written with the names of its fields, as in {data: hi}; got 'hi'",
+        ),
         ("std_msgs/msg/Empty", "x", "std_msgs/msg/Empty is written as a mapping, for example {}; got 'x'"),
         (
             "geometry_msgs/msg/Twist",

@@ -106,6 +106,8 @@ def test_values_for_one_node() -> None:
             "'turtle' is not a ROS argument; a value with a space in it goes",
         ),
         (["--ros-args", "-p", "a:=b", "c"], "in it goes into quotes: -p 'a:=b c'"),
+        (["--ros-args", "—p", "a:=1"], "'—p' is not a ROS argument; write -p"),
+        (["\u2013r", "a:=b"], "'\u2013r' is not a ROS argument; write -r"),
         (["--ros-args", "--remp", "a:=b"], "'--remp' is not a ROS argument; did you mean '--remap'?"),
     ],
 )
