@@ -9,7 +9,7 @@ from collections.abc import AsyncGenerator, Sequence
 from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
 from types import TracebackType
 
-from graphflow.deadlock.user_code import place_in
+from graphflow.deadlock.user_code import place_in, users_frame
 from graphflow.errors import GraphflowError, TooManyErrors, UsageFault
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.attribute_errors import explain
@@ -21,6 +21,8 @@ from graphflow.runtime.failures import log_with_traceback
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.lost_errors import tell_lost_errors
 from graphflow.runtime.node import Node
+from graphflow.runtime.one_by_one import one_by_one
+from graphflow.runtime.place import here
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.runtime.unentered import Unentered
@@ -137,6 +139,8 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     except Exception as error:
         log_with_traceback(logger, "", error)
         raise SystemExit(1) from None
+    if text := one_by_one(users_frame(sys._getframe(1))):
+        logger.warning("%s", text)
     try:
         loop.run(_run(made))
     except KeyboardInterrupt:
@@ -162,10 +166,10 @@ def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
         asyncio.get_running_loop()
     except RuntimeError:
         return
-    raise RuntimeError(
-        "graphflow.run starts an event loop, and one is running here, as in a notebook; write "
-        f"async with graphflow.running({_names(nodes)}): ..."
-    )
+    way = f"async with graphflow.running({_names(nodes)}): ..."
+    if "_pytest" in sys.modules:
+        way = f"await graph.start({_names(nodes)}), with graph as an argument of the test"
+    raise RuntimeError(f"{here()}: graphflow.run starts an event loop, and one runs here already; write {way}")
 
 
 def _names(nodes: Sequence[Node | type[Node]]) -> str:

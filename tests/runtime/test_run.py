@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 from typing import Any
 from unittest.mock import AsyncMock
 
@@ -72,9 +73,13 @@ def context_of(clock: ManualClock | None = None) -> Context:
 # running
 
 
-async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner) -> None:
-    """As in a notebook; it says what to write there."""
-    with pytest.raises(RuntimeError, match=r"write async with graphflow\.running\(Talker\(\)\): \.\.\."):
+async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a notebook, or in a test; it says what to write there, and names the line."""
+    begins = r"^\S+test_run\.py:\d+: graphflow\.run starts an event loop, and one runs here already; write "
+    with pytest.raises(RuntimeError, match=rf"{begins}await graph\.start\(Talker\(\)\), with graph as an argument"):
+        run(Talker)
+    monkeypatch.delitem(sys.modules, "_pytest")
+    with pytest.raises(RuntimeError, match=rf"{begins}async with graphflow\.running\(Talker\(\)\): \.\.\.$"):
         run(Talker)
 
 

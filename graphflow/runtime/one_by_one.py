@@ -1,0 +1,76 @@
+"""Programs that run nodes one after the other and mean beside each other, read from their source.
+
+`graphflow.run(A)` returns when the program is to end, so that a `graphflow.run(B)` behind it comes too late.
+"""
+
+from __future__ import annotations
+
+import ast
+import linecache
+import re
+from collections.abc import Iterator
+from pathlib import PurePath
+from types import FrameType
+
+from graphflow.errors import Place
+
+_CALL = re.compile(r"\brun\(")
+_ENDS = re.compile(r"\b(shutdown|stop|exit|SystemExit|kill|raise_signal)\b")
+"""Words of a program that may end a node by itself; the next one then has its turn."""
+
+
+def one_by_one(frame: FrameType | None) -> str:
+    """What to say of a program that is about to run nodes while others of it wait to be run; empty for any other.
+
+    Args:
+        frame: That of the program, in the call of `run`.
+    """
+    if frame is None:
+        return ""
+    file, line = frame.f_code.co_filename, frame.f_lineno
+    source = "".join(linecache.getlines(file, frame.f_globals))
+    if _ENDS.search(source) or not (len(_CALL.findall(source)) > 1 or re.search(r"\bfor\b", source)):
+        return ""
+    try:
+        module = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return ""
+    place = Place(PurePath(file).name, line)
+    for parent, block in _blocks(module):
+        for i, statement in enumerate(block):
+            call = _run(statement)
+            if call is not None and call.lineno <= line <= (call.end_lineno or 0):
+                later = [other for other in map(_run, block[i + 1 :]) if other is not None]
+                return _of_calls(place, call, later) if later else _of_loop(place, call, parent)
+    return ""
+
+
+def _blocks(module: ast.Module) -> Iterator[tuple[ast.AST, list[ast.stmt]]]:
+    """The lists of statements of a module, each with the statement that it belongs to."""
+    for node in ast.walk(module):
+        for block in (getattr(node, field, None) for field in ("body", "orelse", "finalbody")):
+            if isinstance(block, list):
+                yield node, block
+
+
+def _run(statement: ast.stmt) -> ast.Call | None:
+    """The call of `run` that a statement consists of."""
+    match statement:
+        case ast.Expr(
+            value=ast.Call(func=ast.Name("run") | ast.Attribute(value=ast.Name("graphflow"), attr="run")) as call
+        ):
+            return call
+    return None
+
+
+def _of_calls(place: Place, call: ast.Call, later: list[ast.Call]) -> str:
+    nodes = ", ".join(ast.unparse(node) for one in (call, *later) for node in one.args)
+    way = f"{ast.unparse(call.func)}({nodes})"
+    return f"{place}: {ast.unparse(later[0])} begins only when this has ended; to run them together write {way}"
+
+
+def _of_loop(place: Place, call: ast.Call, loop: ast.AST) -> str:
+    if not isinstance(loop, ast.For) or [ast.unparse(node) for node in call.args] != [ast.unparse(loop.target)]:
+        return ""
+    way = f"{ast.unparse(call.func)}(*{ast.unparse(loop.iter)})"
+    return f"{place}: the next one begins only when this has ended; to run them together write {way}"
