@@ -42,6 +42,7 @@ from graphflow.runtime.misplaced import check_hooks, check_misplaced, check_modu
 from graphflow.runtime.other_threads import call_soon
 from graphflow.runtime.place import here
 from graphflow.runtime.publishers import TopicPublisher
+from graphflow.runtime.repeats import tell_same
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import OFFERED_TWICE, ServiceServer
@@ -261,6 +262,7 @@ class Node(SpeaksRos):
         label, call, slots = core.place(callback, f"subscription {name}", group, thread)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
         made = TopicSubscription(core, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
+        tell_same(core, core.parts, made, callback)
         return core.add(made, late=callback is not None)
 
     @in_our_words
@@ -391,6 +393,7 @@ class Node(SpeaksRos):
         nanoseconds = period_ns(period, None)
         label, call, slots = self._core.place(callback, "timer", group, thread)
         made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)
+        tell_same(self._core, self._core.parts, made, callback)
         return self._core.add(made, late=True)
 
     @in_our_words

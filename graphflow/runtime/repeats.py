@@ -1,13 +1,18 @@
-"""Endpoints and timers that a node makes again and again, such as a publisher in each run of a timer."""
+"""Endpoints and timers that a node makes again and again, such as a publisher in each run of a timer; and handlers that
+are subscribed twice to one topic.
+"""
 
 from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Iterable
+from typing import Any
 
 from graphflow.deadlock.user_code import users_frame
 from graphflow.errors import Place
+from graphflow.runtime.checks import written_at
+from graphflow.runtime.handlers import MARK
 from graphflow.runtime.host import Host, Part
 
 MANY = 10
@@ -59,3 +64,32 @@ def _place() -> Place | None:
     """The user's line that has led here; None if it was in another thread, as rclpy's are, which tells it itself."""
     frame = users_frame(sys._getframe(1))
     return None if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
+
+
+def tell_same(host: Host, parts: Iterable[Part], made: Part, callback: Callable[..., Any] | None) -> None:
+    """Tell of a handler that is called twice for one message or period, as a node has two parts for it.
+
+    Args:
+        parts: Those that the node has already.
+        made: The one that is about to be added; a subscription, or a timer.
+        callback: What it calls.
+    """
+    if callback is None:
+        return
+    mark = getattr(callback, MARK, None)
+    for other in parts:
+        if type(other) is type(made) and _calls(other) == _calls(made):
+            is_timer = not hasattr(made, "type_name")
+            if is_timer and mark is None:  # which may have been cancelled, or begin at another time
+                continue
+            name, what = _name(made), "period" if is_timer else "message"
+            way = f"leave out create_{mark.kind}, since @{mark.kind} makes one" if mark is not None else "keep one"
+            text = "%s calls %s (%s) twice for each %s: %s"
+            called = getattr(callback, "__name__", repr(callback))
+            host.log.warning(text, name, called, written_at(callback), what, way)
+            return
+
+
+def _calls(part: Any) -> Hashable:
+    """What a part calls, and when."""
+    return part._callback, getattr(part, "name", None), getattr(part, "_period_ns", None)

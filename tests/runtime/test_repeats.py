@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow import Node, timer
+from graphflow import Node, subscription, timer
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime import repeats
 from graphflow.runtime.core import core_of
@@ -93,3 +93,61 @@ def test_what_the_program_has_not_made(
     for _ in range(2 * repeats.MANY):
         made.made(Made(is_inner=is_inner))  # type: ignore[arg-type]
     assert told(caplog) == []
+
+
+class Doubled(Node):
+    """Subscribes what is subscribed, and times what is timed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.create_subscription(String, "/chatter", self.heard)
+        self.create_timer(1.0, self.tick)
+
+    @subscription(String, "chatter")
+    def heard(self, message: String) -> None:
+        """Do nothing."""
+
+    @timer(1.0)
+    def tick(self) -> None:
+        """Do nothing."""
+
+
+def twice(caplog: pytest.LogCaptureFixture) -> list[str]:
+    return [record.message for record in caplog.records if "twice" in record.message]
+
+
+async def test_what_is_declared_and_made(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Told with the method's line, and which of the two to leave out."""
+    await graph.start(Doubled())
+    heard, tick = (f"{__file__}:{fn.__code__.co_firstlineno}" for fn in (Doubled.heard, Doubled.tick))
+    assert sorted(twice(caplog)) == [
+        f"subscription /chatter calls heard ({heard}) twice for each message: leave out create_subscription, since "
+        "@subscription makes one",
+        f"timer tick calls tick ({tick}) twice for each period: leave out create_timer, since @timer makes one",
+    ]
+
+
+async def test_what_is_made_twice_by_right(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Other topics, other handlers, other periods, what was closed, and what is iterated."""
+    node = Node("ear")
+    await graph.start(node)
+
+    def heard(message: String) -> None: ...
+
+    def tick() -> None: ...
+
+    node.create_subscription(String, "a", heard).close()
+    node.create_subscription(String, "a", heard)
+    node.create_subscription(String, "b", heard)
+    node.create_subscription(String, "a", lambda _: None)
+    node.create_subscription(String, "a", None)
+    node.create_subscription(String, "a", None)
+    node.create_timer(1.0, tick).cancel()
+    node.create_timer(1.0, tick)
+    graph.tap(String, "a")
+    graph.tap(String, "a")
+    assert twice(caplog) == []
+    node.create_subscription(String, "a", heard)
+    [text] = twice(caplog)
+    place = f"{__file__}:{heard.__code__.co_firstlineno}"
+    assert text == f"subscription /a calls heard ({place}) twice for each message: keep one"
