@@ -21,6 +21,7 @@ from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.testing.outside import outside
 from graphflow.transport.memory import Network
+from graphflow.wire.liveliness import Kind
 
 logger = logging.getLogger("graphflow")
 
@@ -33,6 +34,8 @@ class Tap(Generic[M]):
 
     def __init__(self) -> None:
         self.messages: list[M] = []
+        self.missed = 0
+        """Messages that had been published before."""
 
     def __iter__(self) -> Iterator[M]:
         return iter(self.messages)
@@ -68,6 +71,8 @@ class Graph:
         """The node that the test itself has, once it needs one."""
         self.taps: list[tuple[str, Tap[Any]]] = []
         """Each with the full name of its topic."""
+        self.unheard: list[tuple[TopicPublisher[Any], int, str]] = []
+        """Publishers of the test, with how many messages they had published before the node of that name listened."""
         self.loop: asyncio.AbstractEventLoop | None = None
         """The event loop that its nodes run in, from the first on."""
 
@@ -88,8 +93,11 @@ class Graph:
             if any(other.is_running and other.full_name == node.full_name for other in self.nodes):
                 text = "two nodes are called %s: parameters, services and tools reach one of them by chance; rename one"
                 logger.warning(text, node.full_name)
+            early = [p for p in self._publishers(self.tester) if p.published and not p.get_subscription_count()]
             await core_of(node).start(self._context(deadlock=self.deadlock))
             self.nodes.append(node)
+            heard = {endpoint.name for endpoint in node.endpoints if endpoint.kind is Kind.SUBSCRIPTION}
+            self.unheard += [(p, p.published, node.full_name) for p in early if p.name in heard]
         await settle()
 
     def make(
@@ -123,6 +131,9 @@ class Graph:
         """Collect everything published on `topic` from now on."""
         tap: Tap[M] = Tap()
         made = self._test_node().create_subscription(type_, topic, tap.messages.append, qos)
+        if made.qos.durability is Durability.VOLATILE:
+            known = [p for node in self.nodes for p in self._publishers(node)]
+            tap.missed = sum(p.published for p in known if p.name == made.name)
         self.taps.append((made.name, tap))
         return tap
 
@@ -164,6 +175,12 @@ class Graph:
         for core in map(core_of, self.nodes):
             if core.failure is not None and not core.failure_taken:
                 raise core.failure
+
+    def _publishers(self, node: Node | None) -> list[TopicPublisher[Any]]:
+        """The publishers of a node that keep nothing for those who come later."""
+        parts = core_of(node).parts if node is not None else []
+        found = [part for part in parts if isinstance(part, TopicPublisher)]
+        return [publisher for publisher in found if publisher.qos.durability is Durability.VOLATILE]
 
     def _test_node(self) -> Node:
         if self.tester is None:

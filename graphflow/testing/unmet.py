@@ -30,8 +30,9 @@ async def unmet(graph: Graph) -> list[str]:
     await graph.settle()
     for (topic, tap), count in zip(graph.taps, before, strict=False):
         if len(tap) > count:
-            came = f"{len(tap) - count} message{'s' if len(tap) - count > 1 else ''} of {topic}"
+            came = f"{_messages(len(tap) - count)} of {topic}"
             found.append(f"{came} came after the test had ended: await graph.settle() before it looks at them")
+    found += _late(graph)
     found += _strangers(graph, cores)
     if has_stood_still:
         found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
@@ -80,6 +81,22 @@ def _unserved(cores: list[NodeCore]) -> Iterator[str]:
         for name in sorted({wait.partition(_ACTION)[0] for wait in waits} - offered.keys()):
             hint = did_you_mean(name, known, hidden=offered)
             yield f"{core.full_name} waits for {name}, which no node of the test offers{hint}"
+
+
+def _late(graph: Graph) -> Iterator[str]:
+    """Taps that were opened, and nodes that were started, after messages had been published."""
+    for topic, tap in graph.taps:
+        if tap.missed:
+            yield (
+                f"{_messages(tap.missed)} of {topic} came before graph.tap, which collects what comes later: "
+                "write it above what makes them"
+            )
+    for publisher, count, name in graph.unheard:
+        yield f"the test published {_messages(count)} on {publisher.name} before {name} listened: start the node first"
+
+
+def _messages(count: int) -> str:
+    return f"{count} message{'s' if count > 1 else ''}"
 
 
 def _strangers(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:

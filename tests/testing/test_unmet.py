@@ -9,6 +9,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
+from graphflow.testing.graph import TRANSIENT_LOCAL
 from graphflow.testing.unmet import unmet
 
 
@@ -92,3 +93,40 @@ async def test_waits_in_vain(graph: Graph) -> None:
         "/asker waits for /add, which no node of the test offers",
         "/asker waits for /count, which no node of the test offers",
     ]
+
+
+async def test_what_came_too_late(graph: Graph) -> None:
+    """A tap has what comes after it, and a node hears what comes after its start; durable topics have both."""
+    await graph.start(Talker())
+    await graph.clock.advance(3.0)
+    graph.publisher(String, "/out").publish(String())
+    graph.tap(String, "/words")
+    graph.tap(String, "/words", TRANSIENT_LOCAL)
+    graph.tap(String, "/out")
+    early = graph.publisher(String, "/early")
+    kept = graph.publisher(String, "/kept", TRANSIENT_LOCAL)
+    for publisher in (early, early, kept):
+        publisher.publish(String())
+    ear = Node("ear")
+    for topic in ("early", "kept", "words"):
+        ear.create_subscription(String, topic, lambda _: None)
+    await graph.start(ear)
+    early.publish(String())
+    late = [text for text in await unmet(graph) if "before" in text]
+    way = "which collects what comes later: write it above what makes them"
+    assert late == [
+        f"3 messages of /words came before graph.tap, {way}",
+        f"1 message of /out came before graph.tap, {way}",
+        "the test published 2 messages on /early before /ear listened: start the node first",
+    ]
+
+
+async def test_what_came_in_time(graph: Graph) -> None:
+    """It is not told of."""
+    graph.tap(String, "/words")
+    await graph.start(Talker(), Echo())
+    words = graph.publisher(String, "/words")
+    words.publish(String())
+    await graph.start(Echo("second"))
+    await graph.clock.advance(1.0)
+    assert await unmet(graph) == []
