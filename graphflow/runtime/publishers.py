@@ -178,7 +178,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
-            hint = f"; write {self.type.__name__}(...)" if isinstance(message, type) else ""
+            hint = f"; write {self.type.__name__}(...)" if isinstance(message, type) else self._with_name(message)
             raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}{hint}")
         sender = self._sender
         if self._here:
@@ -212,6 +212,12 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._deadline.touch()
         if self._lease is not None:
             self._lease.touch()
+
+    def _with_name(self, value: object) -> str:
+        """The end of a sentence on a value in the place of a message that has nothing else."""
+        fields = self.type.SCHEMA.fields
+        is_one = len(fields) == 1 and isinstance(value, (str, int, float))
+        return f"; write {self.type.__name__}({fields[0].name}={value!r})" if is_one else ""
 
     def _send(self, payload: Any) -> None:
         self._order.number += 1

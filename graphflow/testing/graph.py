@@ -10,11 +10,12 @@ from typing import Any, Generic, TypeVar
 
 from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
-from graphflow.names import Remap
+from graphflow.names import Remap, did_you_mean
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.dictionary import SpeaksRos
 from graphflow.runtime.node import Node
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.surroundings import Surroundings, make_within
@@ -29,11 +30,12 @@ M = TypeVar("M", bound=Message)
 N = TypeVar("N", bound=Node)
 
 
-class Tap(Generic[M]):
-    """What has been published on a topic since the tap was opened; a sequence of messages."""
+class Tap(SpeaksRos, Generic[M]):
+    """What has been published on a topic since the tap was opened; a sequence of messages, equal to a list of them."""
 
-    def __init__(self) -> None:
-        self.messages: list[M] = []
+    def __init__(self, type_: type[M], topic: str, messages: list[M]) -> None:
+        self._type, self._topic = type_, topic
+        self.messages = messages
         self.missed = 0
         """Messages that had been published before."""
 
@@ -49,13 +51,37 @@ class Tap(Generic[M]):
     def __bool__(self) -> bool:
         return bool(self.messages)
 
+    def __eq__(self, other: object) -> bool:
+        return self.messages == (other.messages if isinstance(other, Tap) else other)
+
+    def __repr__(self) -> str:
+        return f"<Tap {self._topic} {self.messages!r}>"
+
     @property
     def latest(self) -> M:
         """The newest message; IndexError when there is none."""
+        if not self.messages:
+            raise IndexError(f"nothing was published on {self._topic} since the tap was opened")
         return self.messages[-1]
 
+    def _hint(self, name: str) -> str:
+        if name not in {field.name for field in self._type.SCHEMA.fields}:
+            return ""
+        return f"a tap is a sequence of messages, which have it: write .latest.{name}, or [0].{name}"
 
-class Graph:
+
+_INSTEAD = {
+    **dict.fromkeys(("advance", "sleep", "spin", "spin_once", "step"), "write await graph.clock.advance(1.0)"),
+    **dict.fromkeys(("add", "add_node", "run"), "write await graph.start(node)"),
+    **dict.fromkeys(("publish", "create_publisher"), "write graph.publisher(Type, topic).publish(message)"),
+    **dict.fromkeys(("subscribe", "listen", "echo", "create_subscription"), "write graph.tap(Type, topic)"),
+    **dict.fromkeys(("send_goal", "create_action_client"), "write graph.action_client(Type, name)"),
+    "create_client": "write await graph.call(Type, name, request)",
+}
+"""What other words for what a graph does are here."""
+
+
+class Graph(SpeaksRos):
     """Nodes, a clock and a network for the length of a test. Made by the fixture `graph`."""
 
     def __init__(self) -> None:
@@ -129,8 +155,9 @@ class Graph:
 
     def tap(self, type_: type[M], topic: str, qos: Qos | int = 1000) -> Tap[M]:
         """Collect everything published on `topic` from now on."""
-        tap: Tap[M] = Tap()
-        made = self._test_node().create_subscription(type_, topic, tap.messages.append, qos)
+        messages: list[M] = []
+        made = self._test_node().create_subscription(type_, topic, messages.append, qos)
+        tap = Tap(type_, made.name, messages)
         if made.qos.durability is Durability.VOLATILE:
             known = [p for node in self.nodes for p in self._publishers(node)]
             tap.missed = sum(p.published for p in known if p.name == made.name)
@@ -176,6 +203,11 @@ class Graph:
             if core.failure is not None and not core.failure_taken:
                 raise core.failure
 
+    def _instead_of(self, name: str) -> str:
+        known = [word for word in dir(self) if not word.startswith("_")]
+        hint = f"; {_INSTEAD[name]}" if name in _INSTEAD else did_you_mean(name, known)
+        return f"'Graph' object has no attribute {name!r}{hint}"
+
     def _publishers(self, node: Node | None) -> list[TopicPublisher[Any]]:
         """The publishers of a node that keep nothing for those who come later."""
         parts = core_of(node).parts if node is not None else []
@@ -191,7 +223,10 @@ class Graph:
         return self.tester
 
     def _context(self, deadlock: DeadlockPolicy = "raise") -> Context:
-        self.loop = asyncio.get_running_loop()
+        try:
+            self.loop = asyncio.get_running_loop()
+        except RuntimeError:
+            raise RuntimeError("nodes need the event loop of a test: write async def in place of def") from None
         self._contexts.append(Context(self.network.session(self.loop), clock=self.clock, deadlock=deadlock))
         outside(self.loop).is_awaited = self.waits_outside
         outside(self.loop).ledgers.append(self._contexts[-1].ledger)

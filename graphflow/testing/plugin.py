@@ -74,12 +74,25 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
     """Say what could be meant by an attribute that is not there, as the logs of nodes do."""
     errors = sys.modules.get("graphflow.runtime.attribute_errors")
     if call.excinfo is not None and errors is not None:
         errors.explain(call.excinfo.value)
+    if call.when == "call" and errors is not None and _is_unrun(item, call.excinfo):
+        text = f"graphflow runs async tests that use its fixture: write async def {item.name}(graph)"
+        item.add_report_section("call", "graphflow", text)
     return (yield)
+
+
+def _is_unrun(item: pytest.Item, error: pytest.ExceptionInfo[BaseException] | None) -> bool:
+    """Whether no plugin has run a test, as it is a coroutine function."""
+    return (
+        error is not None
+        and isinstance(item, pytest.Function)
+        and inspect.iscoroutinefunction(item.obj)
+        and str(error.value).startswith("async def functions are not natively supported")
+    )
 
 
 @pytest.hookimpl(tryfirst=True)

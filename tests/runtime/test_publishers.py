@@ -22,7 +22,7 @@ from tests.runtime.cast import Speaker
     ("message", "text"),
     [
         (Int32(), r"/chatter carries std_msgs/msg/String, not std_msgs\.msg\.Int32"),
-        ("hello", "/chatter carries std_msgs/msg/String, not 'hello'"),
+        ("hello", r"/chatter carries std_msgs/msg/String, not 'hello'; write String\(data='hello'\)$"),
         (None, "/chatter carries std_msgs/msg/String, not None"),
     ],
 )

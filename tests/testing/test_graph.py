@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Any
 
 import pytest
 
-from graphflow import Node, ParameterError, Publisher, ServiceUnavailable, service, task
+from graphflow import DeclarationError, Node, ParameterError, Publisher, ServiceUnavailable, service, task
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.attribute_errors import explain
 from graphflow.testing import Graph, ManualClock, Tap
 from graphflow.testing.graph import TRANSIENT_LOCAL
 
@@ -207,3 +209,54 @@ async def test_two_nodes_of_one_name(graph: Graph, caplog: pytest.LogCaptureFixt
     assert caplog.messages == []
     await graph.start(Node("bob"))
     assert [message.partition(":")[0] for message in caplog.messages] == ["two nodes are called /bob"]
+
+
+async def test_a_tap_is_shown_with_its_messages(graph: Graph) -> None:
+    """It equals a list of them, and what it lacks is told with the topic."""
+    tap = graph.tap(String, "out")
+    assert tap == []
+    assert repr(tap) == "<Tap /out []>"
+    with pytest.raises(IndexError, match=r"^nothing was published on /out since the tap was opened$"):
+        _ = tap.latest
+    graph.publisher(String, "out").publish(String(data="a"))
+    await graph.settle()
+    assert tap == [String(data="a")] == tap.messages
+    assert tap != [String(data="b")]
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("advance", "; write await graph.clock.advance(1.0)"),
+        ("publish", "; write graph.publisher(Type, topic).publish(message)"),
+        ("setle", "; did you mean 'settle'?"),
+    ],
+)
+async def test_words_that_a_graph_has_not(graph: Graph, name: str, hint: str) -> None:
+    """They are told with its own."""
+    with pytest.raises(AttributeError) as caught:
+        getattr(graph, name)
+    explain(caught.value)
+    assert str(caught.value) == f"'Graph' object has no attribute {name!r}{hint}"
+
+
+async def test_a_field_of_a_tap(graph: Graph) -> None:
+    """Its messages have it."""
+    tap: Any = graph.tap(String, "out")
+    with pytest.raises(AttributeError) as caught:
+        _ = tap.data
+    explain(caught.value)
+    assert str(caught.value).endswith("a tap is a sequence of messages, which have it: write .latest.data, or [0].data")
+
+
+async def test_the_line_of_a_test(graph: Graph) -> None:
+    """A mistake in a call of the graph's is told with it."""
+    tap: Any = graph.tap
+    with pytest.raises(DeclarationError, match=r"^\S+test_graph\.py:\d+: create_subscription needs a message class"):
+        tap("out", String)
+
+
+def test_a_test_without_an_event_loop(graph: Graph) -> None:
+    """It is told how it gets one."""
+    with pytest.raises(RuntimeError, match="write async def in place of def"):
+        graph.tap(String, "out")

@@ -384,3 +384,18 @@ def test_the_plugin_is_light() -> None:
 
     modules = set(json.loads(done.stdout))
     assert not modules & {"numpy", "pydantic", "graphflow.runtime.node", "graphflow.testing.graph", "zenoh"}
+
+
+def test_an_async_test_without_the_fixture(pytester: pytest.Pytester) -> None:
+    """It is told that the fixture makes it run."""
+    result = run(
+        pytester,
+        """
+        import counter
+
+        async def test_counts():
+            pass
+        """,
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["graphflow runs async tests that use its fixture: write async def test_counts(graph)"])
