@@ -42,9 +42,8 @@ def actions(said: Any) -> list[dict[str, Any]]:
     if said is None:
         return []
     if not isinstance(said, Said):
-        RECORDING.problems.append(
-            {"line": RECORDING.written_at, "message": f"{said!r} is no action, such as Node(...)"}
-        )
+        shown = f"the class {said.__name__}" if isinstance(said, type) else repr(said)
+        RECORDING.problems.append({"line": RECORDING.written_at, "message": f"{shown} is no action, such as Node(...)"})
         return []
     _described[id(said)] = said
     RECORDING.written_at = said.line

@@ -136,7 +136,7 @@ def wrong(kind: str, given: Sequence[object], names: Sequence[str]) -> Iterator[
     if kind not in PARAMETERS:
         return
     known = PARAMETERS[kind]
-    if len(given) > len(known.by_place):
+    if len(given) > len(known.by_place) and kind != "LaunchDescription":  # of which all are told
         one = given[len(known.by_place)]
         hint = f"; write {known.by_name[0]}={one!r}" if known.by_name else ""
         hint = "; write package=..., executable=..." if "executable" in known.names else hint

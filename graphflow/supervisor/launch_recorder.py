@@ -23,10 +23,10 @@ from typing import Any
 
 from graphflow.names import nearest
 from graphflow.supervisor.launch_actions import actions, number_targets
+from graphflow.supervisor.launch_early import early_uses
 from graphflow.supervisor.launch_names import BASES, NAMES
 from graphflow.supervisor.launch_service import Described
 from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
-from graphflow.supervisor.launch_tests import fixed_tests
 from graphflow.wire.profile import wire_profile
 
 _FUNCTION = "generate_launch_description"
@@ -108,7 +108,7 @@ def _described(path: str) -> list[Any]:
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Attribute) and node.value.attr in _ADDING:
             text = f"{node.value.attr} is not called: what it adds goes into parentheses behind it"
             RECORDING.problems.append({"line": node.lineno, "message": text})
-    RECORDING.remarks += [{"line": line, "message": text} for line, text in fixed_tests(tree)]
+    RECORDING.remarks += [{"line": line, "message": text} for line, text in early_uses(tree)]
     space: dict[str, Any] = {"__name__": "launch_file", "__file__": path}
     exec(code, space)  # noqa: S102 - the user's own file, in a process of its own
     if _FUNCTION not in space:

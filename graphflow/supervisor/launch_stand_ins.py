@@ -188,10 +188,13 @@ class Said:
                 RECORDING.defaults[name] = text(default)
         if self.kind == "LaunchDescription":
             given = self.get("initial_entities", 0) or ()
-            if isinstance(given, Said):
-                raise TypeError(f"LaunchDescription takes a list: write [ ] around {given.kind}(...)")
+            if isinstance(given, Said) or len(args) > 1:
+                raise TypeError(f"LaunchDescription takes a list: write [ ] around {', '.join(map(repr, args))}")
             self.entities = list(given)
             RECORDING.descriptions.append(self)
+
+    def __repr__(self) -> str:
+        return f"{self.kind}(...)"
 
     def get(self, key: str, place: int = -1, default: Any = None) -> Any:
         """An argument by its name, or by its place among those without."""

@@ -172,10 +172,12 @@ def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
     """It is a problem, with its line if there is one."""
     RECORDING.written_at = 1
     assert actions(3) == []
+    assert actions(dict) == []
     actions([said("TimerAction", period=1, actions=["x"])])
     actions([said("PushMatrix")])
     assert problems == [
         {"line": 1, "message": "3 is no action, such as Node(...)"},
+        {"line": 1, "message": "the class dict is no action, such as Node(...)"},
         {"line": 7, "message": "'x' is no action, such as Node(...)"},
         {"line": 7, "message": "PushMatrix has no words in a graph file"},
     ]

@@ -253,6 +253,12 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
             "TypeError: LaunchDescription takes a list: write [ ] around LogInfo(...)",
         ),
         (
+            "import launch\ndef generate_launch_description():\n    a = launch.actions.LogInfo(msg='x')\n"
+            "    return launch.LaunchDescription(a, launch.actions.GroupAction([a]))\n",
+            4,
+            "TypeError: LaunchDescription takes a list: write [ ] around LogInfo(...), GroupAction(...)",
+        ),
+        (
             "import launch\ndef generate_launch_description():\n"
             "    return launch.LaunchDescription([launch.actions.ExecuteProcess(cmd='a b')])\n",
             3,

@@ -1,4 +1,4 @@
-"""Tests of substitutions, which have no value while a launch file describes."""
+"""Substitutions, which have no value while a launch file describes."""
 
 from __future__ import annotations
 
@@ -7,19 +7,16 @@ import textwrap
 
 import pytest
 
-from graphflow.supervisor.launch_tests import fixed_tests
+from graphflow.supervisor.launch_early import early_uses
 
 
 def told(text: str) -> list[tuple[int, str]]:
-    return list(fixed_tests(ast.parse(textwrap.dedent(text))))
+    return list(early_uses(ast.parse(textwrap.dedent(text))))
 
 
 X = "LaunchConfiguration('x')"
 TRUE = f"{X} has no value yet and is true in any test: write condition=IfCondition({X}) at the action"
-EQUAL = (
-    f"{X} has no value yet and equals no literal: "
-    f"write condition=IfCondition(EqualsSubstitution({X}, ...)) at the action"
-)
+EQUAL = f"{X} has no value yet and equals no text: write EqualsSubstitution({X}, 'true')"
 
 
 @pytest.mark.parametrize(
@@ -41,6 +38,12 @@ def test_tests_whose_outcome_is_fixed(test: str, text: str) -> None:
     """Each is told with its line, wherever it stands."""
     assert told(f"if {test}:\n    pass") == [(1, text)]
     assert told(f"def make():\n    return 1 if {test} else 2") == [(2, text)]
+
+
+def test_comparisons_and_texts() -> None:
+    """Wherever they stand."""
+    text = f"{X} has no value yet, and str() makes the name of an object: write {X} alone"
+    assert told(f"Node(parameters=[{{'a': {X} == 'true'}}], name=str({X}))") == [(1, text), (1, EQUAL)]
 
 
 def test_names_of_substitutions() -> None:
@@ -70,6 +73,7 @@ def test_names_of_substitutions() -> None:
         f"x = {X}\nif x is not None: pass",
         f"x = {X}\ny = x or ''",
         f"x = {X}\nif isinstance(x, str): pass",
+        f"x = {X}\nif y == 'true' or str(y): pass",
         f"node = Node(condition=IfCondition({X}))\nif node: pass",
     ],
 )

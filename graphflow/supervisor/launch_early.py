@@ -1,7 +1,7 @@
-"""Tests in launch files whose outcome is fixed: `if LaunchConfiguration('sim'):` is true whatever `sim` is.
+"""Uses of substitutions in launch files before they have a value: `if LaunchConfiguration('sim'):` is always true.
 
-A substitution has no value while the description is made. ROS 2 says nothing; the test is true as of any object, and a
-comparison with a text is false.
+They have none while the description is made, and ROS 2 says nothing: a test is true as of any object, a comparison with
+a text false, and `str` makes the name of an object.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ _SUBSTITUTIONS = (NAMES["launch.substitutions"] + " " + NAMES["launch_ros.substi
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
-def fixed_tests(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """The lines of such tests, each with what to write."""
+def early_uses(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """The lines of such uses, each with what to write."""
     yield from _of_scope(tree, {})
 
 
@@ -31,10 +31,16 @@ def _of_scope(scope: ast.AST, outer: dict[str, ast.Call]) -> Iterator[tuple[int,
     known = {name: call for name, call in outer.items() if name not in _bound(scope, nodes)} | _made(scope, nodes)
     for node in nodes:
         if isinstance(node, (ast.If, ast.IfExp, ast.While)):
-            for part, is_compared in _parts(node.test):
-                call = known.get(part.id) if isinstance(part, ast.Name) else _substitution(part)
-                if call is not None:
-                    yield part.lineno, _text(call, is_compared)
+            for part in _parts(node.test):
+                if (call := _meant(part, known)) is not None:
+                    yield part.lineno, _of_test(call)
+        elif (compared := _compared(node)) is not None and (call := _meant(compared[0], known)) is not None:
+            shown = ast.unparse(call)
+            way = f"EqualsSubstitution({shown}, {compared[1]!r})"
+            yield compared[0].lineno, f"{shown} has no value yet and equals no text: write {way}"
+        elif (given := _given_to_str(node)) is not None and (call := _meant(given, known)) is not None:
+            shown = ast.unparse(call)
+            yield given.lineno, f"{shown} has no value yet, and str() makes the name of an object: write {shown} alone"
         elif isinstance(node, _SCOPES):
             yield from _of_scope(node, known)
 
@@ -77,27 +83,41 @@ def _substitution(value: ast.expr) -> ast.Call | None:
     return value if name in (*_SUBSTITUTIONS, *_CONDITIONS) else None
 
 
-def _parts(test: ast.expr) -> Iterator[tuple[ast.expr, bool]]:
-    """What a test asks, and whether it is compared with a literal."""
+def _meant(part: ast.expr, known: dict[str, ast.Call]) -> ast.Call | None:
+    """The substitution that an expression is, or names."""
+    return known.get(part.id) if isinstance(part, ast.Name) else _substitution(part)
+
+
+def _parts(test: ast.expr) -> Iterator[ast.expr]:
+    """What a test asks whether it is true."""
     match test:
         case ast.BoolOp(values=values):
             for value in values:
                 yield from _parts(value)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
             yield from _parts(operand)
-        case ast.Compare(
-            left=left, ops=[ast.Eq() | ast.NotEq()], comparators=[ast.Constant(value=str() | bool() | int())]
-        ):
-            yield left, True
         case _:
-            yield test, False
+            yield test
 
 
-def _text(call: ast.Call, is_compared: bool) -> str:
+def _compared(node: ast.AST) -> tuple[ast.expr, object] | None:
+    """What is compared with a literal, and that."""
+    match node:
+        case ast.Compare(
+            left=left, ops=[ast.Eq() | ast.NotEq()], comparators=[ast.Constant(value=str() | int() as value)]
+        ):
+            return left, value
+    return None
+
+
+def _given_to_str(node: ast.AST) -> ast.expr | None:
+    match node:
+        case ast.Call(func=ast.Name("str"), args=[given], keywords=[]):
+            return given
+    return None
+
+
+def _of_test(call: ast.Call) -> str:
     shown = ast.unparse(call)
-    if ast.unparse(call.func).rpartition(".")[2] in _CONDITIONS:
-        return f"{shown} has no value yet and is true in any test: write condition={shown} at the action"
-    if is_compared:
-        way = f"condition=IfCondition(EqualsSubstitution({shown}, ...))"
-        return f"{shown} has no value yet and equals no literal: write {way} at the action"
-    return f"{shown} has no value yet and is true in any test: write condition=IfCondition({shown}) at the action"
+    condition = shown if ast.unparse(call.func).rpartition(".")[2] in _CONDITIONS else f"IfCondition({shown})"
+    return f"{shown} has no value yet and is true in any test: write condition={condition} at the action"
