@@ -12,6 +12,7 @@ from fnmatch import fnmatchcase
 from typing import Any, Literal
 
 from graphflow.errors import ParameterError, Place
+from graphflow.typographic import plain
 
 EndpointKind = Literal["publisher", "subscription", "service", "client", "action", "action client"]
 ParamType = Literal["bool", "int", "float", "str", "list[bool]", "list[int]", "list[float]", "list[str]", "bytes"]
@@ -107,7 +108,8 @@ class Parameter:
             fits = False
         if not fits:
             word = TYPE_NAMES[TYPE_IDS[self.type]]
-            raise ParameterError(f"parameter {self.name!r} is of type {word}, {value!r} is not")
+            hint = f"; write {plain(value)}" if isinstance(value, str) and plain(value) != value else ""
+            raise ParameterError(f"parameter {self.name!r} is of type {word}, {value!r} is not{hint}")
         if type_ in ("int", "float"):
             self._check_range(value)
         if self.choices and value not in self.choices:

@@ -60,6 +60,7 @@ def test_values_that_fit(type_: ParamType, default: Any, given: Any, kept: Any) 
         ("int", 1, True, "parameter 'p' is of type integer, True is not"),
         ("int", 1, 2**63, "parameter 'p' is of type integer, 9223372036854775808 is not"),
         ("float", 1.0, "1", "parameter 'p' is of type double, '1' is not"),
+        ("float", 1.0, "\u20131.5", "parameter 'p' is of type double, '\u20131.5' is not; write -1.5"),
         ("float", 1.0, True, "parameter 'p' is of type double, True is not"),
         ("bool", True, 1, "parameter 'p' is of type boolean, 1 is not"),
         ("str", "", 1, "parameter 'p' is of type string, 1 is not"),

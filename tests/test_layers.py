@@ -14,6 +14,7 @@ PACKAGE = Path(__file__).parents[1] / "graphflow"
 
 CELLAR = (
     "errors",
+    "typographic",
     "names",
     "qos",
     "times",
@@ -22,7 +23,6 @@ CELLAR = (
     "system",
     "folders",
     "reading",
-    "typographic",
     "wire",
     "msgs",
     "machines",

@@ -54,7 +54,8 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     except simpleeval.NameNotDefined as error:
         raise ExpressionError(f"{error.name!r} is no argument{did_you_mean(error.name, names)}") from None
     except simpleeval.FunctionNotDefined as error:
-        raise ExpressionError(f"there is no function {error.func_name!r}; there are {', '.join(FUNCTIONS)}") from None
+        hint = "write the argument's name alone" if error.func_name == "arg" else f"there are {', '.join(FUNCTIONS)}"
+        raise ExpressionError(f"there is no function {error.func_name!r}; {hint}") from None
     except simpleeval.FeatureNotAvailable:
         raise ExpressionError("only arithmetic, comparisons and choices can be written here") from None
     except SyntaxError as error:

@@ -114,6 +114,8 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     """
     _refuse_running_loop(nodes)
     setup_console()
+    if not nodes:
+        logger.warning("%s: graphflow.run was given no node, so it runs none; write graphflow.run(Talker)", here())
     try:
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
         _refuse_unused(ros, nodes)

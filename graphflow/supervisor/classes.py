@@ -23,6 +23,7 @@ from graphflow.runtime.hiding import hidden
 from graphflow.runtime.node import Node
 from graphflow.runtime.python_errors import remark_on
 from graphflow.runtime.surroundings import why_not
+from graphflow.typographic import plain
 
 _FOLDERS_BOUND = 200
 """Folders of a project in which a misspelt module is looked for."""
@@ -137,7 +138,9 @@ def nearest_module(module: str, root: str) -> str | None:
 def _where(error: BaseException) -> str:
     """The error on one line, with the place in the user's code it came from."""
     if isinstance(error, SyntaxError):
-        return f"{error.filename}:{error.lineno}: {error.msg}"
+        line = (error.text or "").strip()
+        hint = f"; write {plain(line)}" if "invalid character" in error.msg and plain(line) != line else ""
+        return f"{error.filename}:{error.lineno}: {error.msg}{hint}"
     place = place_in(error)
     explain(error)
     text = str(error)

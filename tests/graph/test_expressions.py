@@ -43,6 +43,7 @@ def test_values(text: str, value: Any) -> None:
     ("text", "message"),
     [
         ("cont * 2", "'cont' is no argument; did you mean 'count'?"),
+        ("arg('x') == 1", "there is no function 'arg'; write the argument's name alone"),
         ("exec('x')", "there is no function 'exec'; there are abs, bool"),
         ("count.real", "nothing called 'real' is in 3"),
         ("turtle.nam", "nothing called 'nam' is in"),

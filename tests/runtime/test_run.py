@@ -83,6 +83,17 @@ async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner, monk
         run(Talker)
 
 
+def test_run_without_nodes(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It ends at once, with the line of the call and what belongs there."""
+    monkeypatch.setattr(Context, "open", AsyncMock(return_value=AsyncMock()))
+    monkeypatch.setattr("graphflow.runtime.run.serve", AsyncMock())
+    run(args=[])
+    assert caplog.messages[0].startswith(f"{__file__}:")
+    assert caplog.messages[0].endswith(
+        ": graphflow.run was given no node, so it runs none; write graphflow.run(Talker)"
+    )
+
+
 async def test_nodes_run_for_the_length_of_the_block(graphflow_runner: asyncio.Runner) -> None:
     """They are up in it and stopped after it; a context that was given stays open."""
     one, two, context = Talker("one"), Talker("two"), context_of()

@@ -32,6 +32,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         "ros": "import geometry_msgs.msg\n",
         "elderly": "import rospy\n",
         "from_robot": "from machines.robot import Robto\n",
+        "slide": "if True:\n    print(“hi”)\n",
         "syntax": "class Robot(:\n    pass\n",
         "declares": "from graphflow import Node, Param\n\n\nclass Robot(Node):\n    rate = Param(1, ge=3)\n",
         "ends": "raise SystemExit(3)\n",
@@ -61,7 +62,7 @@ def test_a_class_by_its_path(project: Path) -> None:
         (
             "machines.nowhere:Robot",
             "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
-            "there is asks, declares, elderly, ends, from_robot, needs, parses, raises, robot, ros, syntax",
+            "there is asks, declares, elderly, ends, from_robot, needs, parses, raises, robot, ros, slide, syntax",
         ),
         (
             "nowhere.robot:Robot",
@@ -108,6 +109,10 @@ def test_a_class_by_its_path(project: Path) -> None:
             "cannot import machines.asks: {machines}/asks.py:3: ValueError: depth of a Qos is a whole number, not '10'",
         ),
         ("machines.syntax:Robot", "cannot import machines.syntax: {machines}/syntax.py:1: invalid syntax"),
+        (
+            "machines.slide:Robot",
+            "cannot import machines.slide: {machines}/slide.py:2: invalid character '“' (U+201C); write print(\"hi\")",
+        ),
     ],
 )
 def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path) -> None:
