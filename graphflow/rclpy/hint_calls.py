@@ -35,6 +35,8 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
     users = own(frames)
     if last.f_code.co_name == "checked" and users and miscalled is not None:
         return _of_rclpy(miscalled[1], str(error), last.f_locals.get("args", ()), last.f_locals.get("kwargs", {}))
+    if last.f_code.co_qualname == "Spinning.next":  # whose first argument is compared with a number
+        return "it takes seconds, spin_once(timeout_sec=0.1), and its nodes by executor.add_node(node)"
     if is_ours(last.f_code.co_filename):
         return _of_callback(str(error), last, miscalled[1] if miscalled is not None else "")
     if miscalled is None:

@@ -43,6 +43,19 @@ def _where(name: str, module: str) -> str:
     return _in_rclpy(name, module) if package == "rclpy" else ""
 
 
+def _of_callback(path: str, name: str, frame: FrameType) -> str:
+    """What is to be cancelled and the like, where that is asked of its callback."""
+    owner, _, method = path.rpartition(".")
+    thing = {**frame.f_globals, **frame.f_locals}.get(owner)
+    kept = [
+        attribute
+        for attribute, value in getattr(thing, "__dict__", {}).items()
+        if getattr(getattr(value, "callback", None), "__name__", "") == method
+    ]
+    way = f"write {owner}.{kept[0]}.{name}()" if kept else f"keep what create_timer(...) returns, and call its {name}()"
+    return f"{path} is a callback, which has no {name}: {way}"
+
+
 def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
     """The name that was meant by one that is not bound, or by an attribute that a module or a node has not."""
     users = own(frames)
@@ -58,6 +71,8 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
     if isinstance(error.obj, tuple) and (path := _path_of(error.name, line_of(frames))):
         return f"{path} is a tuple, by a comma behind what it is set to: leave the comma out"
     if isinstance(error.obj, (FunctionType, MethodType)) and (path := _path_of(error.name, line_of(frames))):
+        if error.name in ("cancel", "reset", "destroy"):
+            return _of_callback(path, error.name, users[-1])
         return f"{path} is a function: call it, as in {path}().{error.name}"
     for method in _functions(type(error.obj)):
         inner = next((c for c in method.co_consts if isinstance(c, CodeType) and c.co_name == error.name), None)

@@ -71,6 +71,14 @@ LAMPS = [
         "self.pub is a tuple, by a comma behind what it is set to: leave the comma out",
     ),
     ("def tick(self):\n    r = self.hear\n    r.sum", "r is a function: call it, as in r().sum"),
+    (
+        "def tick(self):\n    self.t = self.create_timer(9.0, self.hear)\n    self.hear.cancel()",
+        "self.hear is a callback, which has no cancel: write self.t.cancel()",
+    ),
+    (
+        "def tick(self):\n    self.hear.reset()",
+        "self.hear is a callback, which has no reset: keep what create_timer(...) returns, and call its reset()",
+    ),
     ("def tick(self):\n    'Hello ' + self.count", "put it into the text: f'... {value}', or str(value)"),
     ("print(Lamp)", "this line is inside class Lamp: indent it less"),
 ]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from graphflow.rclpy import tracebacks
 from rclpy.context import Context
-from rclpy.impl.spun import check_executor, check_node
+from rclpy.impl.spun import check_executor, check_future, check_node
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -206,6 +206,7 @@ def spin_until_future_complete(
 ) -> None:
     """Run the callbacks of a node until a future is done, at most `timeout_sec` seconds."""
     check_node(node, "spin_until_future_complete")
+    check_future(future, "spin_until_future_complete")
     check_executor(executor, "spin_until_future_complete")
     executor = get_global_executor() if executor is None else executor
     former, is_added = node.executor, False

@@ -54,5 +54,21 @@ def check_executor(executor: Any, call: str) -> None:
     raise TypeError(text)
 
 
+def check_future(future: Any, call: str) -> None:
+    """Raise TypeError, with what to write, if something in the place of a future is none.
+
+    Args:
+        call: The function that waits for it.
+    """
+    if hasattr(future, "add_done_callback"):
+        return
+    shown = repr(future)
+    if callable(future):
+        shown = f"{getattr(future, '__name__', shown)} without parentheses"
+    raise TypeError(
+        f"{call} needs a future, got {shown}: it is what call_async(request) or send_goal_async(goal) returns"
+    )
+
+
 def _is_node(thing: Any) -> bool:
     return not isinstance(thing, type) and hasattr(type(thing), "default_callback_group")

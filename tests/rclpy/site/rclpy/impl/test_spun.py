@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from std_msgs.msg import String
 
 import rclpy
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.spun import check_executor
 from rclpy.node import Node
+from tests.rclpy.hinted import hint_of
 
 ROS: Any = rclpy
 
@@ -80,6 +82,26 @@ def test_executors_of_all_kinds(node: Node) -> None:
 
     for executor in (None, SingleThreadedExecutor(), Wrapping()):
         check_executor(executor, "spin")
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"),
+    [(None, "None"), (String(), "std_msgs.msg.String(data='')"), (print, "print without parentheses")],
+)
+def test_what_is_no_future(node: Node, given: Any, shown: str) -> None:
+    """It is refused with what returns one."""
+    with pytest.raises(TypeError) as caught:
+        ROS.spin_until_future_complete(node, given)
+    way = "it is what call_async(request) or send_goal_async(goal) returns"
+    assert str(caught.value) == f"spin_until_future_complete needs a future, got {shown}: {way}"
+
+
+def test_a_node_in_the_place_of_seconds(node: Node) -> None:
+    """It is told how an executor gets its nodes."""
+    executor: Any = SingleThreadedExecutor()
+    assert hint_of(lambda: executor.spin_once(node)) == (
+        "it takes seconds, spin_once(timeout_sec=0.1), and its nodes by executor.add_node(node)"
+    )
 
 
 def test_threads_that_are_no_number(node: Any) -> None:
