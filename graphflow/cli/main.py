@@ -14,7 +14,7 @@ from typing import NoReturn
 
 import click
 
-from graphflow import __version__, typographic
+from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.placing import OF_GRAPHFLOW, before_the_verb
 from graphflow.cli.reaching import reach, reach_options
@@ -22,6 +22,7 @@ from graphflow.cli.variables import misspelt
 from graphflow.cli.verbs import HABITS, NOT_NEEDED, Verbs
 from graphflow.errors import GraphflowError, SupervisorError, UsageFault
 from graphflow.names import nearest
+from graphflow.typographic import option as meant_option
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
 _VERBS = {
@@ -196,7 +197,7 @@ def _refuse_pasted(words: Sequence[str]) -> None:
     Raises:
         UsageFault: One does; with the option.
     """
-    pasted = {word: typographic.option(word) for word in words}
+    pasted = {word: meant_option(word) for word in words}
     if not any(pasted.values()):
         return
     command: click.Command = cli

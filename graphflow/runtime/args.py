@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from graphflow import typographic
 from graphflow.errors import GraphFileError, GraphflowError, InvalidName
 from graphflow.interface import Interface
 from graphflow.names import Remap, Resolver, did_you_mean, nearest
+from graphflow.typographic import DASHES
+from graphflow.typographic import option as meant_option
 
 logger = logging.getLogger("graphflow")
 
@@ -32,7 +33,7 @@ _FLAGS = {
     for verb in ("enable", "disable")
     for what in ("rosout", "stdout", "external-lib")
 }
-_DASHES = ("-", *typographic.DASHES)
+_DASHES = ("-", *DASHES)
 _OPTIONS = (*_VALUED, *_LEFT_OUT, *_FLAGS, "--ros-args", "--")
 
 
@@ -175,7 +176,7 @@ def missed(words: Sequence[str]) -> str:
 
 def _slip(word: str) -> str:
     """The option of ROS's that a word hardly misses, such as `-ros-args` or `--rosargs`; empty if there is none."""
-    if (pasted := typographic.option(word)) in _OPTIONS:
+    if (pasted := meant_option(word)) in _OPTIONS:
         return pasted
     bare = word.lstrip("".join(_DASHES))
     if word in ("--ros-args", "--params-file", bare):
