@@ -15,7 +15,7 @@ from types import FrameType
 from graphflow.errors import Place
 
 _CALL = re.compile(r"\brun\(")
-_ENDS = re.compile(r"\b(shutdown|stop|exit|SystemExit|kill|raise_signal)\b")
+_ENDS = re.compile(r"\b(shutdown|exit|SystemExit|kill|raise_signal)\b")
 """Words of a program that may end a node by itself; the next one then has its turn."""
 
 

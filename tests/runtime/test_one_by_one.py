@@ -44,6 +44,11 @@ def told(program: str, folder: Path) -> list[str]:
             "graphflow.run(A, B)",
         ),
         (
+            "graphflow.run(A)  # which can stop the robot\ngraphflow.run(B)\n",
+            "two.py:1: graphflow.run(B) begins only when this has ended; to run them together write "
+            "graphflow.run(A, B)",
+        ),
+        (
             "for cls in (A, B):\n    graphflow.run(cls)\n",
             "two.py:2: the next one begins only when this has ended; to run them together write graphflow.run(*(A, B))",
         ),
