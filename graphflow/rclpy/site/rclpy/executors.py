@@ -23,7 +23,7 @@ from rclpy.impl.spinning import (
     Spinning,
     TimeoutException,
 )
-from rclpy.impl.spun import check_node
+from rclpy.impl.spun import check_node, is_node, tell
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
 
@@ -141,6 +141,8 @@ class Executor(AbstractContextManager["Executor"]):
 
     def remove_node(self, node: Any) -> None:
         """Run a node's callbacks no more."""
+        if not is_node(node):
+            tell("remove_node", node)
         if self._graphflow.nodes.pop(node, self) is None:
             self._graphflow.wake.set()
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
+from rclpy.impl.callers import caller
 from rclpy.task import Future
+
+logger = logging.getLogger("graphflow")
 
 
 def check_node(node: Any, call: str) -> None:
@@ -13,7 +17,7 @@ def check_node(node: Any, call: str) -> None:
     Args:
         call: The function that wants one.
     """
-    if _is_node(node):
+    if is_node(node):
         return
     if isinstance(node, type):
         text = f"{call} needs a node, got the class {node.__name__}: write {call}({node.__name__}())"
@@ -42,7 +46,7 @@ def check_executor(executor: Any, call: str) -> None:
     """
     if executor is None or hasattr(executor, "add_node"):
         return
-    if _is_node(executor):
+    if is_node(executor):
         text = (
             f"{call} takes one node, got another Node in the place of its executor: "
             "add each node to one executor by executor.add_node(node), and then call executor.spin()"
@@ -70,5 +74,14 @@ def check_future(future: Any, call: str) -> None:
     )
 
 
-def _is_node(thing: Any) -> bool:
+def tell(call: str, thing: Any) -> None:
+    """Tell of a call of an executor's that does nothing, as what it was given is no node; ROS 2 says nothing."""
+    asked = caller(2)
+    if asked is not None and thing is not None:
+        text = "%s: %s does nothing, since it takes a node and got %s; write executor.%s(node)"
+        logger.warning(text, asked.place, call, thing.__name__ if isinstance(thing, type) else repr(thing), call)
+
+
+def is_node(thing: Any) -> bool:
+    """Whether something is a node, and no class of nodes."""
     return not isinstance(thing, type) and hasattr(type(thing), "default_callback_group")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 import pytest
@@ -94,6 +95,20 @@ def test_what_is_no_future(node: Node, given: Any, shown: str) -> None:
         ROS.spin_until_future_complete(node, given)
     way = "it is what call_async(request) or send_goal_async(goal) returns"
     assert str(caught.value) == f"spin_until_future_complete needs a future, got {shown}: {way}"
+
+
+def test_a_node_that_is_taken_out(node: Node, caplog: pytest.LogCaptureFixture) -> None:
+    """By its name it is not, which is told; a node that is not there is left alone, as in ROS 2."""
+    executor: Any = SingleThreadedExecutor()
+    executor.remove_node(node)
+    executor.remove_node(None)
+    assert caplog.messages == []
+    line = inspect.currentframe().f_lineno + 1  # type: ignore[union-attr]
+    executor.remove_node("node")
+    assert caplog.messages == [
+        f"test_spun.py:{line}: remove_node does nothing, since it takes a node and got 'node'; "
+        "write executor.remove_node(node)"
+    ]
 
 
 def test_a_node_in_the_place_of_seconds(node: Node) -> None:
