@@ -101,7 +101,8 @@ def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
         lacking = ["PARAMETER"] * (not rest) + ["VALUE"] * (verb == "set")
         return UsageFault(f"write {form}: graphflow param {verb} {' '.join([first, *rest, *lacking])}")
     known = _names_by_node(view, timeout)
-    having = [node for node, names in known.items() if first in names]
+    bare = first.lstrip("/")  # as parameters of ROS 1 are named
+    having = [node for node, names in known.items() if bare in names]
     node, name = max((first.rpartition(sign)[::2] for sign in "./"), key=lambda pair: len(pair[0]))
     if not having and node and _is_node(view, node):
         value = rest or ["VALUE"] * (verb == "set")
@@ -112,8 +113,8 @@ def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
         near = did_you_mean(first, (), hidden={name for names in known.values() for name in names})
         return UsageFault(f"write {form}: there is no node {first!r}, nor a parameter of that name{near}")
     if len(having) > WAYS:
-        return UsageFault(f"write {form}; {first!r} is a parameter of {', '.join(having)}")
-    after = [first, *(rest or ["VALUE"] * (verb == "set"))]
+        return UsageFault(f"write {form}; {bare!r} is a parameter of {', '.join(having)}")
+    after = [bare, *(rest or ["VALUE"] * (verb == "set"))]
     ways = [f"graphflow param {verb} {' '.join([node, *after])}" for node in having]
     return UsageFault(f"write {form}: {' or '.join(ways)}")
 

@@ -218,6 +218,8 @@ def test_some_of_a_list(standing: Machine) -> None:
         ("describe rate", "write param describe NODE PARAMETER: graphflow param describe /talker rate"),
         ("get /talker.rate", "write param get NODE PARAMETER: graphflow param get /talker rate"),
         ("set /talker/rate 2", "write param set NODE PARAMETER VALUE: graphflow param set /talker rate 2"),
+        ("get /rate", "write param get NODE PARAMETER: graphflow param get /talker rate"),
+        ("set /rate 20", "write param set NODE PARAMETER VALUE: graphflow param set /talker rate 20"),
         ("get rtae", "there is no node 'rtae', nor a parameter of that name; did you mean 'rate'?"),
         ("get use_sim_time", "write param get NODE PARAMETER; 'use_sim_time' is a parameter of /"),
     ],
