@@ -97,7 +97,7 @@ def run_on(kind: str, main: Coroutine[Any, Any, None]) -> None:
 
 
 def raw_session() -> zenoh.Session:
-    """A Zenoh session configured as graphflow's, with Zenoh's shared memory, in a process that treats memory likewise."""
+    """A Zenoh session configured as graphflow's, with Zenoh's shared memory, and with memory treated likewise."""
     keep_freed_memory()
     settings = config("peer", connect=[rendezvous_endpoint()], listen="tcp/127.0.0.1:0")
     settings.insert_json5("transport/shared_memory/enabled", "true")
