@@ -71,9 +71,10 @@ class DestroyMethods:
         return self._graphflow_destroy(self._graphflow.guards, guard, "destroy_guard_condition")
 
     def destroy_rate(self, rate: Rate) -> bool:
-        timer: Any = getattr(rate, "_timer", None)
-        if timer is None:
+        if rate is not None and not hasattr(rate, "_timer"):
             tell(self, rate, "destroy_rate", depth=1)
+            return False
+        timer = rate._timer
         is_known = timer in self._graphflow.timers
         if is_known:
             self._graphflow.timers.remove(timer)

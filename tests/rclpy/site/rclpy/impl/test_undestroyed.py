@@ -62,7 +62,8 @@ def test_what_code_that_cleans_up_does(node: Any, caplog: Caplog) -> None:
     assert not node.destroy_timer(timer)
     assert not node.destroy_timer(None)
     assert not node.destroy_timer(other.create_timer(10.0, nothing))
-    assert not node.destroy_rate(None)
+    with pytest.raises(AttributeError):
+        node.destroy_rate(None)
     assert not node.destroy_client(other.create_client(Trigger, "switch"))
     assert caplog.messages == []
     other.destroy_node()
