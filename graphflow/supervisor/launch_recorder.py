@@ -27,9 +27,11 @@ from graphflow.supervisor.launch_early import early_uses
 from graphflow.supervisor.launch_names import BASES, NAMES
 from graphflow.supervisor.launch_service import Described
 from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
+from graphflow.supervisor.launch_unused import unused_actions
 from graphflow.wire.profile import wire_profile
 
 _FUNCTION = "generate_launch_description"
+_IN_F_STRING = " in an f-string is an object to ROS 2"
 _ADDING = ("add_action", "add_entity")
 _HOMES = {name: f"from {module} import {name}" for module, names in NAMES.items() for name in names.split()} | {
     name: f"from ament_index_python.packages import {name}"
@@ -63,9 +65,11 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
     found: list[dict[str, Any]] = []
     try:
-        whole = _described(path)
+        tree = _tree(path)
+        whole = _described(path, tree)
         number_targets(whole)
         found = actions(whole)
+        _tell_unused(tree, found)
         changed = {name: value for name, value in os.environ.items() if before.get(name) != value}
         if not found and not RECORDING.problems:
             RECORDING.remarks.append({"line": 1, "message": "the launch description has no actions"})
@@ -82,8 +86,46 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         no_path = re.search(r"os\.PathLike object, not '?(\w+)", str(error)) if isinstance(error, TypeError) else None
         if no_path is not None and BASES.get(no_path[1]) == "Substitution":
             hint = f"; write PathJoinSubstitution([..., {no_path[1]}(...)])"
+        hint = hint or _before_launch(error)
         RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}{hint}"})
+    _explain()
     return {"actions": found, "problems": RECORDING.problems, "remarks": RECORDING.remarks}
+
+
+def _before_launch(error: BaseException) -> str:
+    """The end of a sentence on an error of code that takes a substitution for its value; empty for others."""
+    if not isinstance(error, (TypeError, ValueError, AttributeError)) or "write" in str(error):
+        return ""
+    of_one = next((name for name in re.findall(r"\w+", str(error)) if BASES.get(name) == "Substitution"), "")
+    if not of_one and "$(" in str(error):  # the text that stands for it, as in int(str(...))
+        of_one = "a substitution"
+    how = "write OpaqueFunction(function=setup), with def setup(context): and .perform(context) in it"
+    return f"; {of_one} has no value before the launch: {how}" if of_one else ""
+
+
+def _explain() -> None:
+    """Have a problem whose cause is told by a remark say that, once."""
+    static = {remark["line"] for remark in RECORDING.remarks if _IN_F_STRING not in remark["message"]}
+    RECORDING.remarks = [r for r in RECORDING.remarks if _IN_F_STRING not in r["message"] or r["line"] not in static]
+    for problem in RECORDING.problems:
+        for remark in [remark for remark in RECORDING.remarks if remark["line"] == problem["line"]]:
+            if "takes texts, and not" in problem["message"]:
+                RECORDING.remarks.remove(remark)
+                problem["message"] = remark["message"]
+
+
+def _tell_unused(tree: ast.Module, found: list[dict[str, Any]]) -> None:
+    """Tell of actions that are in no description; of an argument that is asked for, as the problem it is."""
+    written = json.dumps(found)
+    known = {*(RECORDING.values or {}), *RECORDING.set}
+    for line, message, argument in unused_actions(tree):
+        is_missed = argument and re.search(rf"\$\(var '?{re.escape(argument)}'?\)", written)
+        is_set = argument in known or any(f'"{word}": {{' in written for word in ("let", "include"))
+        if is_missed and not is_set:
+            RECORDING.problems.append({"line": line, "message": message})
+            found.insert(0, {"arg": {"name": argument, "default": "", "line": line}})  # told once
+        else:
+            RECORDING.remarks.append({"line": line, "message": message})
 
 
 def _instead(name: str, known: set[str]) -> str:
@@ -99,10 +141,13 @@ def _instead(name: str, known: set[str]) -> str:
     return write if near == name else f"; did you mean {near!r}?{write.replace('; write', ' Write')}"
 
 
-def _described(path: str) -> list[Any]:
-    """What a file describes: by its function, or where it would start it itself."""
+def _tree(path: str) -> ast.Module:
     with open(path, encoding="utf-8") as file:
-        tree = ast.parse(file.read(), path)
+        return ast.parse(file.read(), path)
+
+
+def _described(path: str, tree: ast.Module) -> list[Any]:
+    """What a file describes: by its function, or where it would start it itself."""
     code = compile(tree, path, "exec")
     for node in ast.walk(tree):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Attribute) and node.value.attr in _ADDING:

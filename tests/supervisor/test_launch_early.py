@@ -16,7 +16,10 @@ def told(text: str) -> list[tuple[int, str]]:
 
 X = "LaunchConfiguration('x')"
 TRUE = f"{X} has no value yet and is true in any test: write condition=IfCondition({X}) at the action"
-EQUAL = f"{X} has no value yet and equals no text: write EqualsSubstitution({X}, 'true')"
+
+
+def equal(way: str) -> str:
+    return f"{X} has no value yet and equals no text: write {way}"
 
 
 @pytest.mark.parametrize(
@@ -25,8 +28,20 @@ EQUAL = f"{X} has no value yet and equals no text: write EqualsSubstitution({X},
         (X, TRUE),
         (f"not {X}", TRUE),
         (f"here and not {X}", TRUE),
-        (f"{X} == 'true'", EQUAL),
-        (f"{X} != 'true'", EQUAL),
+        (f"{X} == 'true'", equal(f"condition=IfCondition(EqualsSubstitution({X}, 'true')) at the action")),
+        (f"{X} == True", equal(f"condition=IfCondition(EqualsSubstitution({X}, 'true')) at the action")),
+        (f"'a' != str({X})", equal(f"condition=IfCondition(NotEqualsSubstitution('a', {X})) at the action")),
+        (
+            f"f'{{{X}}}' == 'a'".replace("'x'", '"x"'),
+            equal(f"condition=IfCondition(EqualsSubstitution({X}, 'a')) at the action"),
+        ),
+        (
+            f"{X} in ('a', 'b')",
+            equal(
+                f"condition=IfCondition(AnySubstitution(EqualsSubstitution({X}, 'a'), EqualsSubstitution({X}, 'b'))) "
+                "at the action"
+            ),
+        ),
         (
             f"IfCondition({X})",
             f"IfCondition({X}) has no value yet and is true in any test: write "
@@ -43,7 +58,10 @@ def test_tests_whose_outcome_is_fixed(test: str, text: str) -> None:
 def test_comparisons_and_texts() -> None:
     """Wherever they stand."""
     text = f"{X} has no value yet, and str() makes the name of an object: write {X} alone"
-    assert told(f"Node(parameters=[{{'a': {X} == 'true'}}], name=str({X}))") == [(1, text), (1, EQUAL)]
+    assert told(f"Node(parameters=[{{'a': {X} == 'true'}}], name=str({X}))") == [
+        (1, text),
+        (1, equal(f"EqualsSubstitution({X}, 'true')")),
+    ]
 
 
 def test_names_of_substitutions() -> None:
@@ -62,8 +80,48 @@ def test_names_of_substitutions() -> None:
 
 
 @pytest.mark.parametrize(
+    ("argument", "way"),
+    [
+        (f"{X} == 'sim'", f"EqualsSubstitution({X}, 'sim')"),
+        (f"predicate_expression={X} == 1", f"EqualsSubstitution({X}, '1')"),
+        (f"not {X}", f"NotSubstitution({X})"),
+        (f"{X} and {X} != 'a'", f"AndSubstitution({X}, NotEqualsSubstitution({X}, 'a'))"),
+        (f"{X} or {X} or {X}", f"AnySubstitution({X}, {X}, {X})"),
+        (f"{X} not in ['a']", f"NotSubstitution(AnySubstitution(EqualsSubstitution({X}, 'a')))"),
+    ],
+)
+def test_what_python_makes_of_a_condition(argument: str, way: str) -> None:
+    """The substitutions that do the same while the launch runs; once, at the condition."""
+    [(line, said)] = told(f"Node(\n    condition=IfCondition(\n    {argument}))")
+    assert (line, said.partition(": write ")[2]) == (2, f"IfCondition({way})")
+
+
+def test_outside_of_tests() -> None:
+    """The outcome of a comparison is as fixed where it is kept; in a function that has the context, that is used."""
+    assert told(f"x = {X} == 'a'") == [(1, equal(f"EqualsSubstitution({X}, 'a')"))]
+    assert told(f"def setup(context):\n    if {X} == 'a': pass") == [
+        (2, f"{X} is an object and equals no text: write {X}.perform(context)")
+    ]
+
+
+def test_texts_of_objects() -> None:
+    """str() of a substitution is no value."""
+    assert told(f"x = {X}\ny = str(x)") == [
+        (2, f"{X} has no value yet, and str() makes the name of an object: write {X} alone")
+    ]
+    [(_, said)] = told(f"def setup(context):\n    return int(str({X}))")
+    assert said.endswith(f"write {X}.perform(context)")
+
+
+@pytest.mark.parametrize(
     "text",
     [
+        f"x = {X}\nif x == None: pass",
+        f"x = {X}\nif x in known: pass",
+        f"IfCondition({X})",
+        f"IfCondition(PythonExpression([{X}, ' == 1']))",
+        f"IfCondition('true' if here else {X})",
+        "y = str(context.perform_substitution(x))",
         f"x = {X}.perform(context)\nif x == 'true': pass",
         f"if {X}.perform(context) == 'true': pass",
         "if context.launch_configurations['x'] == 'true': pass",

@@ -511,3 +511,46 @@ def test_the_environment_of_a_file_that_is_started(tmp_path: Path) -> None:
     first, second = told["actions"]
     assert (first["set_env"]["name"], first["set_env"]["value"]) == ("MADE", "here")
     assert second["executable"]["cmd"] == ["echo", "none", "here", "ros2"]
+
+
+def described(folder: Path, body: str, **values: str) -> tuple[list[str], list[str]]:
+    """The problems and the remarks of a function, each with its line in it."""
+    head = ["from launch import *", "from launch.actions import *", "from launch.conditions import *"]
+    head += ["from launch.substitutions import *", "from launch_ros.actions import Node"]
+    head += ["x = LaunchConfiguration('x')", "def generate_launch_description():"]
+    file = folder / "a.launch.py"
+    file.write_text("\n".join(head + [f"    {line}" for line in body.splitlines()]))
+    told = record(file, **values)
+    lines = [[f"{t['line'] - len(head)}: {t['message']}" for t in told[what]] for what in ("problems", "remarks")]
+    return lines[0], lines[1]
+
+
+@pytest.mark.parametrize("code", ["int(x)", "float(str(x))", "range(x)", "x > 3", "x.lower()", "list(x)", "x[0]"])
+def test_values_before_the_launch(tmp_path: Path, code: str) -> None:
+    """Code that takes a substitution for its value fails with the way to the value."""
+    [problem], _ = described(tmp_path, f"return LaunchDescription([Node(name={code})])")
+    assert problem.endswith(
+        " has no value before the launch: write OpaqueFunction(function=setup), with def setup(context): and "
+        ".perform(context) in it"
+    )
+
+
+def test_conditions_that_are_compared(tmp_path: Path) -> None:
+    """The problem says what to write, and nothing is said twice."""
+    problems, remarks = described(
+        tmp_path, "return LaunchDescription([LogInfo(msg='a', condition=IfCondition(x == 'a'))])"
+    )
+    assert problems == [
+        "1: x == 'a' is decided before the launch has values: "
+        "write IfCondition(EqualsSubstitution(LaunchConfiguration('x'), 'a'))"
+    ]
+    assert remarks == []
+
+
+def test_arguments_in_no_description(tmp_path: Path) -> None:
+    """One that is asked for is a problem, unless it is given all the same; others are told of."""
+    node = "return LaunchDescription([Node(package='demo_nodes_py', executable='talker', name=x)])"
+    text = "1: a is in no description: write LaunchDescription([..., a])"
+    assert described(tmp_path, f"a = DeclareLaunchArgument('x', default_value='1')\n{node}") == ([text], [])
+    assert described(tmp_path, f"a = DeclareLaunchArgument('x')\n{node}", x="1") == ([], [text])
+    assert described(tmp_path, f"a = DeclareLaunchArgument('y')\n{node}") == ([], [text])
