@@ -15,6 +15,7 @@ from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
 from graphflow.graph.executables import SLIP, find, project_nodes, with_graphflow
 from graphflow.graph.installed import installed, package_of, packages_with
+from graphflow.graph.model import class_meant
 from graphflow.graph.project import demos_root, project_root
 from graphflow.graph.unfound import owners, why_no_package
 from graphflow.graph.workspace import find_workspace
@@ -46,6 +47,9 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
         if named.endswith(".py"):
             cls = import_class(f"{_module_of(file, root)}:{class_name}")
         elif ":" in what:
+            if "-" in named:  # as in a graph file
+                way = f"; or run its file: graphflow run {named.replace('.', '/')}.py"
+                raise UsageFault(f"{what!r} is not a class; {class_meant(what)}{way}")
             cls = import_class(what)
         elif what.endswith(".py"):
             cls = _only(_module_of(file, root))

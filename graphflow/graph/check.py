@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import re
-import shlex
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
+from graphflow.graph import rewritten, yaml_slips
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
 from graphflow.interface import (
     COMMON_PARAMETERS,
@@ -23,7 +21,6 @@ from graphflow.interface import (
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
-_PLAIN = re.compile(r"[\w./-][\w ./-]*\Z")
 """A word that YAML has as a text without quotes around it."""
 ImportFault = Problem
 Interfaces = Mapping[str, Interface | ImportFault]
@@ -56,17 +53,28 @@ def _check_program(node: PlannedNode) -> Iterator[Problem]:
     else:
         where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
         if " " in program and shutil.which(program.partition(" ")[0], path=node.env.get("PATH")) is not None:
-            where = f"each word stands by itself: command: {_apart(program)}"
+            where = f"each word stands by itself: command: {rewritten.command_of(program)}"
+        elif rewritten.shell_word(node.command) == program:
+            where = f"it is a shell's own: write {_in_shell(node)}"
         yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")
 
 
-def _apart(line: str) -> str:
-    """A command line as a list in YAML."""
-    try:
-        words = shlex.split(line)
-    except ValueError:  # a quote that is not closed
-        words = line.split()
-    return f"[{', '.join(word if _PLAIN.match(word) else json.dumps(word) for word in words)}]"
+def _in_shell(node: PlannedNode) -> str:
+    """What to write for a program whose words only a shell understands."""
+    if node.class_place.file.endswith(".py"):
+        return "shell=True in ExecuteProcess"
+    if node.class_place.file.endswith((".xml", ".launch")):
+        return 'shell="true"'
+    return f"command: {rewritten.in_shell(node.command)}"
+
+
+def remarks_on_programs(plan: Plan) -> Iterator[Problem]:
+    """Words of programs that only a shell understands, which the programs are given as they are."""
+    for node in plan.nodes:
+        word = rewritten.shell_word(node.command)
+        if word and word != node.command[0] and not node.executable:
+            text = f"{word!r} is given to {node.command[0]} as a word, as no shell reads it; write {_in_shell(node)}"
+            yield Problem(node.class_place, text)
 
 
 def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
@@ -134,7 +142,9 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
         try:
             declared.fit(setting.value)
         except ParameterError as error:
-            yield Problem(setting.place, str(error))
+            is_of_list = isinstance(setting.value, str) and declared.type.startswith("list[")
+            way = yaml_slips.as_list(setting.value) if is_of_list else ""
+            yield Problem(setting.place, f"{error}; {way}" if way else str(error))
 
 
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, Place, Problem
-from graphflow.graph import source
+from graphflow.graph import foreign_keys, rewritten, source
 from graphflow.graph.model import BLOCKS, GroupBlock, NodeSpec, keys_of
 from graphflow.graph.source import Source
 from graphflow.names import did_you_mean, nearest
@@ -166,9 +166,8 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
     head = key.partition(":")[0]
     if "nodes" in known and _is_node(key, value):
         return f"unknown key {key!r}; nodes are written under nodes:, indented"
-    for ours, why in (_OF_ROS.get(key, ("", "")), _OF_GROUPS.get(key, ("", ""))):
-        if ours in known:
-            return f"unknown key {key!r}; {why or f'it is called {ours!r} here'}"
+    if instead := foreign_keys.meant(key, known):
+        return f"unknown key {key!r}; {instead}"
     if "for" in known and (loop := _LOOP.match(key)):
         return f"unknown key {key!r}; write for: {{var: {loop[1]}, in: {loop[2]}, nodes: ...}}"
     if "namespace" in known and isinstance(value, dict) and not value.keys().isdisjoint(BLOCKS):
@@ -185,7 +184,8 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
         return (
             f"unknown key {key!r}; a parameter is written under params:, as in params: {{{key}: {str(value).lower()}}}"
         )
-    return f"unknown key {key!r}{did_you_mean(key, known)}"
+    listed = did_you_mean(key, known) or "; there is " + ", ".join(sorted(known))
+    return f"unknown key {key!r}{listed}"
 
 
 def colon_fault(key: str) -> str:
@@ -202,27 +202,6 @@ def _is_node(key: str, value: object) -> bool:
 
 _REQUESTS = ("args", "arguments", "data", "fields", "values")
 _LOOP = re.compile(r"for +(\w+) +in +(.+)")
-_OF_GROUPS = {"ns": ("namespace", "")}
-_IN_A_NAMESPACE = (
-    "the namespace is part of the node's name, as in /robot1/talker, or stands in a group: namespace: robot1"
-)
-_OF_ROS = {
-    "package": ("pkg", ""),
-    "executable": ("exec", ""),
-    "parameters": ("params", ""),
-    "remappings": ("remap", ""),
-    "arguments": ("args", ""),
-    "respawn": ("restart", "write restart: always"),
-    "respawn_delay": ("restart", "write restart: {policy: always, delay: SECONDS}"),
-    "output": ("pkg", "what any node prints is logged and shown"),
-    "name": ("pkg", "a node is called as its key"),
-    "ns": ("pkg", _IN_A_NAMESPACE),
-    "namespace": ("pkg", _IN_A_NAMESPACE),
-    "required": ("critical", ""),
-    "delay": ("exec", "a step waits: steps: {soon: {delay: 2.0}}, and after: soon at the node"),
-    "launch-prefix": ("prefix", ""),
-}
-"""Words of ROS's launch files in Python for a node: the key that is meant, and what to say other than that."""
 
 
 def _wanted(fault: Any) -> str:
@@ -251,6 +230,10 @@ def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], va
     head = str(value).partition(":")[0]
     if isinstance(value, str) and head in _known_keys(model, (*path, head)):
         return f"{where}: write a space after '{head}:'"
+    if line := rewritten.line_for(str(path[-1]), value):
+        return f"{where}: expected {text}; write {line}"
+    if len(path) == 2 and path[0] == "args" and not isinstance(value, (dict, list)):
+        return f"{where}: expected {text}; write {path[1]}: {rewritten.flow({'default': value})}"
     got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
     return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
 

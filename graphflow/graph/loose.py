@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.errors import Place, Problem
-from graphflow.graph.check import Interfaces, resolver
+from graphflow.graph.check import Interfaces, remarks_on_programs, resolver
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep
 from graphflow.graph.project import project_root, shown
 from graphflow.interface import EndpointKind, Interface, may_make
@@ -43,11 +43,11 @@ class _End(NamedTuple):
 
 def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     """Names that nothing in the graph answers to, of steps, of remaps, and of endpoints that have a near namesake; and
-    classes of included files whose own project has another of that name.
+    classes of included files whose own project has another of that name, and words that are a shell's.
 
     No names are told of a graph with programs, or with classes that cannot be imported: their names are unknown.
     """
-    classes = list(_of_classes(plan, interfaces))
+    classes = [*_of_classes(plan, interfaces), *remarks_on_programs(plan)]
     known = [found for found in interfaces.values() if isinstance(found, Interface)]
     if len(known) < len(interfaces) or any(node.command for node in plan.nodes):
         return classes

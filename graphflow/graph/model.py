@@ -34,8 +34,25 @@ _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
 
 def _class_path(text: str) -> str:
     if text != NO_CLASS and not _CLASS.match(text):
-        raise ValueError(f"{text!r} is not a class; write package.module:Class, for example nodes.talker:Talker")
+        raise ValueError(f"{text!r} is not a class; {class_meant(text)}")
     return text
+
+
+def class_meant(text: str) -> str:
+    """What to write in place of a class that is none: of a file, of dots only, of a module with a hyphen."""
+    path, colon, name = text.partition(":")
+    module = re.sub(r"\.py$", "", path.strip()).replace("/", ".").strip(".")
+    if "-" in module and _CLASS.match(f"{module.replace('-', '_')}:{name.strip() or 'A'}"):
+        *_, file = (part for part in module.split(".") if "-" in part)
+        return f"Python imports no name with a hyphen; rename {file} to {file.replace('-', '_')}"
+    dotted, _, last = module.rpartition(".")
+    if not colon and last[:1].isupper() and _CLASS.match(f"{dotted}:{last}"):
+        return f"write {dotted}:{last}"
+    if not name.strip() and module != text.strip() and _CLASS.match(f"{module}:A"):
+        return f"write the class in it, too: {module}:CLASS"
+    if _CLASS.match(f"{module}:{name.strip()}"):
+        return f"write {module}:{name.strip()}"
+    return "write package.module:Class, for example nodes.talker:Talker"
 
 
 def _interface_type(text: str) -> str:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from graphflow.errors import GraphFileError, GraphflowError, Place, Problem
+from graphflow.graph import yaml_slips
 from graphflow.reading import found_bytes
 from graphflow.typographic import is_quoted, plain
 
@@ -158,6 +159,8 @@ def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
     line = lines[mark.line] if mark and mark.line < len(lines) else ""
     if "\t" in line[: mark.column + 1 if mark else 0]:
         return " (indent with spaces, not tabs)"
+    if slip := yaml_slips.of_line(line):
+        return f" ({slip})"
     if "${" in line:
         return " (a substitution is written with parentheses, as in $(var x))"
     if "mapping values are not allowed" in problem:
@@ -281,6 +284,8 @@ def _key_fault(event: Any, place: Place, text: str) -> str:
     """Why a key is none: it is no text. Empty for others."""
     if not event.style and is_quoted(event.value):
         return f"{event.value[0]} and {event.value[-1]} are no quotes in YAML; write {plain(event.value)}"
+    if not event.style and (slip := yaml_slips.of_key(event.value, text.split("\n")[event.start_mark.line])):
+        return slip
     if event.style or isinstance(_scalar_value(event, place), str):
         return ""
     if found := _KEYS_ONLY.search(text.split("\n")[event.start_mark.line]):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import shlex
 import shutil
 import zlib
@@ -33,6 +34,10 @@ MAX_TEXT = 100_000
 """Characters of a text, and bytes of a file that a substitution reads, or that `$(command ...)` prints."""
 ON_STDERR = ("fail", "ignore", "warn", "capture")
 """What may be done with what a program of `$(command ...)` writes to its error output."""
+
+
+_VALUES = re.compile(r"""(['"]?)\$\(var (\w+)\)\1""")
+"""The value of an argument in an expression."""
 
 
 class SubstitutionError(ValueError):
@@ -133,8 +138,27 @@ class Substitutions:
             written = []
         if name == "eval" and not (len(written) in (1, 2) and written[0].is_quoted):
             # Other quotes than those around the whole are the expression's own.
-            return self._eval([Word(self._joined(rest.strip(), depth + 1), is_quoted=False)])
+            try:
+                return self._eval([Word(self._joined(rest.strip(), depth + 1), is_quoted=False)])
+            except SubstitutionError as error:
+                way = self._by_name(rest.strip())
+                raise SubstitutionError(f"{str(error).partition('; ')[0]}{way}" if way else str(error)) from None
         return function(self, [w._replace(text=self._joined(w.text, depth + 1, is_word=True)) for w in written])
+
+    def _by_name(self, expression: str) -> str:
+        """The end of a sentence on an expression that has values of arguments as words: how it names them."""
+        found = [name for _, name in _VALUES.findall(expression)]
+        if not found or not {*found} <= self._args.keys():
+            return ""
+        if any(isinstance(self._args[name], Written) for name in found):  # of a launch file: expressions know no names
+            expression = _VALUES.sub(r"'$(var \2)'", expression).replace('"', "'")
+            return f'; write $(eval "{expression}")'
+        expression = _VALUES.sub(lambda value: value[2], expression)
+        try:
+            self._eval([Word(expression, is_quoted=False)])
+        except SubstitutionError:  # something else is wrong
+            return ""
+        return f"; write $(eval {expression})"
 
     def _joined(self, text: str, depth: int, *, is_word: bool = False) -> str:
         return "".join(map(_text, self._parts(text, depth, is_word=is_word)))

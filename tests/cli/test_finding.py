@@ -64,6 +64,12 @@ def test_the_only_class(what: str, project: Path) -> None:
             "own_nodes.two has several node classes; run one of own_nodes.two:Left, own_nodes.two:Right",
         ),
         ("own_nodes/none.py", [], "own_nodes.none has no node class"),
+        (
+            "own_nodes.left-lamp:Lamp",
+            [],
+            "'own_nodes.left-lamp:Lamp' is not a class; Python imports no name with a hyphen; rename left-lamp to "
+            "left_lamp; or run its file: graphflow run own_nodes/left-lamp.py",
+        ),
         ("slide.py", [], "slide.py: there is no such file; did you mean 'own_nodes/slide.py'?"),
         ("nodes/talker.py", [], "there is no such file; talker.py comes with graphflow: graphflow run talker"),
         ("turtlesim/turtlesim_node", [], "is no node; write a space: graphflow run turtlesim turtlesim_node"),

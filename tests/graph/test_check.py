@@ -10,7 +10,7 @@ import pytest
 
 from graphflow.errors import Place, Problem
 from graphflow.graph import source
-from graphflow.graph.check import Interfaces, check, offered, resolver, step_type
+from graphflow.graph.check import Interfaces, check, offered, remarks_on_programs, resolver, step_type
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import resolve
 from graphflow.interface import EndpointInfo, HandlerInfo, Interface, Parameter
@@ -326,7 +326,7 @@ def test_types_that_the_source_does_not_show() -> None:
     ("program", "end"),
     [
         ("sh -c 'sleep 1'", "each word stands by itself: command: [sh, -c, sleep 1]"),
-        ("sh 'a: b", 'each word stands by itself: command: [sh, "\'a:", b]'),
+        ("sh 'a: b", "each word stands by itself: command: [sh, '''a:', b]"),
         ("no_such_program -a", "it is not on the PATH"),
     ],
 )
@@ -334,3 +334,19 @@ def test_a_program_is_one_word(program: str, end: str) -> None:
     """A command line in one text is told with its words."""
     (found,) = check(plan(f'nodes:\n  /p: {{command: ["{program}"]}}\n'), {})
     assert found.message.endswith(f" cannot be started: {end}")
+
+
+@pytest.mark.parametrize(
+    ("words", "problem", "remark"),
+    [
+        ('[cd, /tmp, "&&", ls]', "a shell's own: write command: [sh, -c, cd /tmp && ls]", ""),
+        ('[cat, a, "|", wc]', "", "write command: [sh, -c, cat a | wc]"),
+        ('[sh, -c, "ls | wc"]', "", ""),
+        ('[expr, 1, ">", 2]', "", ""),
+    ],
+)
+def test_words_of_a_shell(words: str, problem: str, remark: str) -> None:
+    """A program that only a shell has is a problem; other words of it may be meant so."""
+    planned = plan(f"nodes:\n  /p: {{command: {words}}}\n")
+    for found, said in ((check(planned, {}), problem), (list(remarks_on_programs(planned)), remark)):
+        assert [said] * bool(said) == [text.message[-len(said) :] for text in found]

@@ -8,7 +8,8 @@ import pytest
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
-from graphflow.graph.faults import _IN_A_NAMESPACE, Problems, example, unknown_key, validated
+from graphflow.graph.faults import Problems, example, unknown_key, validated
+from graphflow.graph.foreign_keys import _IN_A_NAMESPACE
 from graphflow.graph.model import GraphFile, StepSpec, keys_of
 from graphflow.graph.resolve import resolve
 
@@ -184,3 +185,9 @@ def test_values_of_a_step(key: str) -> None:
     """Are under `request:`, of a call and of a goal."""
     expected = f"unknown key {key!r}; the values of a call or a goal are written under request:"
     assert unknown_key(key, keys_of(StepSpec), {"x": 1}) == expected
+
+
+def test_all_keys_are_listed() -> None:
+    """Where none is near, and none is known from elsewhere."""
+    text = unknown_key("zzz", keys_of(StepSpec))
+    assert text == f"unknown key 'zzz'; there is {', '.join(sorted(keys_of(StepSpec)))}"

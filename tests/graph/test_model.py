@@ -41,15 +41,28 @@ def test_class_paths(path: str) -> None:
     assert NodeSpec.model_validate({"class": path}).class_ == path
 
 
+EXAMPLE = "write package.module:Class, for example nodes.talker:Talker"
+
+
 @pytest.mark.parametrize(
-    "path", ["Talker", "nodes.talker.Talker", "nodes/talker.py:Talker", "a:", ":B", "a:B\n", "a:B.C", ""]
+    ("path", "way"),
+    [
+        *((path, EXAMPLE) for path in ("Talker", ":B", "a:B.C", "")),
+        ("nodes.talker.Talker", "write nodes.talker:Talker"),
+        ("nodes/talker.py:Talker", "write nodes.talker:Talker"),
+        ("nodes.talker: Talker", "write nodes.talker:Talker"),
+        ("nodes/talker.py", "write the class in it, too: nodes.talker:CLASS"),
+        ("a:", "write the class in it, too: a:CLASS"),
+        ("a:B\n", "write a:B"),
+        ("nodes.turtle-base:Base", "Python imports no name with a hyphen; rename turtle-base to turtle_base"),
+        ("nodes/turtle-base.py", "Python imports no name with a hyphen; rename turtle-base to turtle_base"),
+    ],
 )
-def test_wrong_class_paths(path: str) -> None:
-    """Anything else shows how to write one."""
-    with pytest.raises(
-        ValidationError, match=r"is not a class; write package\.module:Class, for example nodes\.talker:Talker"
-    ):
+def test_wrong_class_paths(path: str, way: str) -> None:
+    """Anything else shows how to write it."""
+    with pytest.raises(ValidationError) as caught:
         NodeSpec.model_validate({"class": path})
+    assert str(caught.value.errors()[0]["ctx"]["error"]) == f"{path!r} is not a class; {way}"
 
 
 @pytest.mark.parametrize("name", ["turtlesim/srv/Spawn", "std_srvs/Trigger"])

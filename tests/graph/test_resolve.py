@@ -220,7 +220,7 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ("nodes:\n  a: {class:x:Y}\n", "2:7: unknown key 'class:x:Y'; write a space after 'class:'"),
         ("nodes:\n  /a {class: x:Y}\n", "2:14: a colon is missing after '/a'"),
         ("nodes:\n  a:{class: x:Y}\n", "2:13: the name 'a:{class' has a colon in it; write a space after the colon"),
-        ("nodes:\n  a: {class: x.Y}\n", "2:14: 'x.Y' is not a class; write package.module:Class, for example"),
+        ("nodes:\n  a: {class: x.Y}\n", "2:14: 'x.Y' is not a class; write x:Y"),
         ("nodes:\n  a: {class: 3}\n", "2:14: class: expected text, got 3"),
         ("nodes:\n  a: {class: x:Y, parms: {}}\n", "2:19: unknown key 'parms'; did you mean 'params'?"),
         (
@@ -234,7 +234,7 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ),
         (
             "nodes:\n  a: {class: x:Y, remap: ['b:=c']}\n",
-            "2:26: remap: expected a mapping, got ['b:=c'], for example remap: {goal: /turtle1/pose}",
+            "2:26: remap: expected a mapping; write remap: {b: c}",
         ),
         (
             "nodes:\n  a: {class: x:Y, remap: {b c: d}}\n",
@@ -299,7 +299,7 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         (HEAD + "domain: -1\n", "3:9: domain: expected 0 or more, got -1"),
         (HEAD + "domain: $(env USER)\n", "3:9: domain: expected a whole number, got 'ada'"),
         (HEAD + "args: [b]\n", "3:7: args: expected a mapping, got ['b'], for example args: {rate: {default: 1.0}}"),
-        (HEAD + "args: {b: 3}\n", "3:11: args.b: expected a mapping, got 3, for example {default: 1.0}"),
+        (HEAD + "args: {b: 3}\n", "3:11: args.b: expected a mapping; write b: {default: 3}"),
         (HEAD + "args: {b: {defualt: 3}}\n", "3:12: unknown key 'defualt'; did you mean 'default'?"),
         (HEAD + "args: {b: }\n", "3:8: argument 'b' has no default: give it as b:=VALUE"),
         (HEAD + "args: {b: {default: 3, choices: 3}}\n", "3:33: args.b.choices: expected a list, got 3"),
@@ -367,7 +367,7 @@ steps:
         "3:3: argument 'b' is 1, but must be one of 2",
         "5:7: unknown key 'clas'; did you mean 'class'?",
         "5:30: there is no argument 'c'; there is b",
-        "7:12: 'x.Y' is not a class; write package.module:Class, for example nodes.talker:Talker",
+        "7:12: 'x.Y' is not a class; write x:Y",
         "8:12: remap: expected a mapping, got 3, for example remap: {goal: /turtle1/pose}",
         "10:13: call: expected text, got 3",
         "10:25: timeout: expected more than 0, got -1",

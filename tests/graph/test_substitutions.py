@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import graphflow
-from graphflow.graph.substitutions import MAX_DEPTH, Outside, SubstitutionError, Substitutions, truth
+from graphflow.graph.substitutions import MAX_DEPTH, Outside, SubstitutionError, Substitutions, Written, truth
 from tests.cases import count
 
 ARGS: dict[str, Any] = {
@@ -295,3 +295,25 @@ def test_a_condition_that_is_none(value: str, file: str, way: str) -> None:
     with pytest.raises(SubstitutionError) as caught:
         truth(value, file)
     assert str(caught.value) == f"expected true or false, got {value!r}; {way}"
+
+
+@pytest.mark.parametrize(
+    ("text", "way"),
+    [
+        ("$(eval $(var name) == 'sim')", "$(eval name == 'sim')"),
+        ("$(eval '$(var name)' == sim)", ""),
+        ("$(eval $(var name) == 'sim' and $(var count) > 1)", "$(eval name == 'sim' and count > 1)"),
+    ],
+)
+def test_values_in_expressions(text: str, way: str) -> None:
+    """A value that became a word of an expression is answered with the argument's name, which expressions know."""
+    with pytest.raises(SubstitutionError) as caught:
+        apply(text)
+    assert str(caught.value).partition("is no argument; write ")[2] == way
+
+
+def test_values_in_expressions_of_launch_files() -> None:
+    """ROS's know no names of arguments, and take texts in quotes."""
+    made = Substitutions({"mode": Written("sim")}, Path("a.launch.xml"), Outside({}, Path(), Path()))
+    with pytest.raises(SubstitutionError, match=r"""write \$\(eval "'\$\(var mode\)' == 'sim'"\)"""):
+        made.apply("$(eval $(var mode) == 'sim')")
