@@ -6,6 +6,6 @@ for said in read("rosbag2_2026_11_23-12_00_00"):
     print(said.topic, said.time_ns, said.message)
 """
 
-from graphflow.bag.typed import Said, read
+from graphflow.bag.typed import BagMessage, read
 
-__all__ = ["Said", "read"]
+__all__ = ["BagMessage", "read"]

@@ -13,6 +13,7 @@ from graphflow.bag.contents import Record, together
 from graphflow.bag.db3_file import Db3File
 from graphflow.bag.mcap_file import RECORD_BOUND, McapFile
 from graphflow.bag.metadata import FileContents
+from graphflow.bag.nearby import meant
 from graphflow.bag.packing import MAGICS, SUFFIXES, File, PackedFile, loosened
 from graphflow.bag.ros1_file import Ros1File
 from graphflow.errors import BagError
@@ -96,7 +97,7 @@ class Bag:
         if self.path.is_file():
             return [self.path]
         if not self.path.is_dir():
-            raise BagError(f"{self.path}: there is no such file or folder")
+            raise BagError(f"{self.path}: there is no such file or folder{meant(self.path)}")
         named = said.get("relative_file_paths")
         names = [Path(_word(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
         found = [self.path / name for name in names if name and (self.path / name).is_file()]

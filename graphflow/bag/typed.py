@@ -16,13 +16,29 @@ from graphflow.msgs import registry
 from graphflow.names import expand
 
 
-class Said(NamedTuple):
+class BagMessage(NamedTuple):
     """One message of a bag."""
 
     topic: str
     message: Any
     time_ns: int
     """When it was received, nanoseconds since 1970."""
+
+    def __getattr__(self, name: str) -> Any:
+        text = f"'BagMessage' object has no attribute {name!r}"
+        if name in _MEANT:
+            text += f"; did you mean .{_MEANT[name]}?"
+        elif not name.startswith("_") and hasattr(self.message, name):
+            text += f"; it is a field of its message: write .message.{name}"
+        raise AttributeError(text)
+
+
+_MEANT = {
+    **dict.fromkeys(("msg", "data"), "message"),
+    **dict.fromkeys(("time", "timestamp", "stamp", "t"), "time_ns"),
+    **dict.fromkeys(("topic_name", "name", "channel"), "topic"),
+}
+"""What others call its parts."""
 
 
 def read(
@@ -31,7 +47,7 @@ def read(
     *,
     start_ns: int = 0,
     end_ns: int | None = None,
-) -> Iterator[Said]:
+) -> Iterator[BagMessage]:
     """The messages of a bag, in the order of their times.
 
     Args:
@@ -86,11 +102,11 @@ def learn(topic: Topic) -> None:
         raise BagError(f"{topic.name}: it was recorded with another definition of {topic.type} than the one here")
 
 
-def said(records: Iterator[Record]) -> Iterator[Said]:
+def said(records: Iterator[Record]) -> Iterator[BagMessage]:
     """Records as messages."""
     decoders: dict[str, Callable[[bytes], Any]] = {}
     for record in records:
         decode = decoders.get(record.topic.name)
         if decode is None:
             decode = decoders[record.topic.name] = decoder(record.topic)
-        yield Said(record.topic.name, decode(record.data), record.log_ns)
+        yield BagMessage(record.topic.name, decode(record.data), record.log_ns)

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.bag_words import BagVerb, moment_option
+from graphflow.cli.bag_words import BagVerb, all_or_some, moment_option
 from graphflow.cli.plot_options import plot_options
 from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
@@ -152,7 +152,7 @@ _storage = click.option(
 def record(topics: tuple[str, ...], **options: Any) -> int:
     """Record topics of the running graph into a folder, in MCAP or .db3 files. Ctrl-C ends it, SPACE pauses it."""
     if topics and (options["everything"] or options["all_topics"]):
-        raise UsageFault(f"all topics, or only {' '.join(topics)}: leave out -a, or the names")
+        raise UsageFault(all_or_some(topics))
     from graphflow.cli import recording
 
     use_project()

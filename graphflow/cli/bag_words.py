@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
@@ -24,12 +25,28 @@ class BagVerb(Verb):
         words = [str(ctx.params["path"]), *left, *ctx.params.get("topics", ()), *ctx.params.get("names", ())]
         bag = words[0] if Path(words[0]).exists() else next(filter(_is_there, words), words[0])
         topics = [word for word in words if word != bag]
+        if left and (rule := _rule(ctx, left)):
+            ctx.fail(f"a remap rule is one word: {ctx.command_path} {bag} -m {rule}")
         if left:
             line = f"{ctx.command_path} {bag} --topics {shlex.quote(' '.join(topics))}"
             ctx.fail(f"topics are named by --topics: {line}")
         if bag != words[0]:
             ctx.fail(f"the bag stands first: {ctx.command_path} {shlex.join([bag, *topics])}")
         return left
+
+
+def all_or_some(topics: Sequence[str]) -> str:
+    """What to say where all topics are recorded, and some are named, of which one may be the bag."""
+    folder = "" if "/" in topics[0] else f"; the bag's folder is named by -o: graphflow bag record -a -o {topics[0]}"
+    return f"all topics, or only {' '.join(topics)}: leave out -a, or the names{folder}"
+
+
+def _rule(ctx: click.Context, left: list[str]) -> str:
+    """The remap rule that words are meant as which stand apart, or without -m; empty if they are none."""
+    old = next((word for word in ctx.params.get("remaps", ()) if ":=" not in word), None)
+    if old is not None:
+        return f"{old.rstrip(':=')}:={left[0].lstrip(':=')}"
+    return left[0] if "remaps" in ctx.params and ":=" in left[0] else ""
 
 
 def _is_there(word: str) -> bool:

@@ -13,7 +13,14 @@ from typing import Any
 import click
 
 from graphflow.cli import output
-from graphflow.cli.new_names import check_dependencies, check_package, near_name, tell_name, tell_place
+from graphflow.cli.new_names import (
+    check_dependencies,
+    check_package,
+    known_dependency,
+    near_name,
+    tell_name,
+    tell_place,
+)
 from graphflow.cli.ros_package import BUILD_TYPES, TEMPLATES, Description, known_licenses, license_text, parts
 from graphflow.errors import UsageFault
 
@@ -29,7 +36,15 @@ class _Create(click.Command):
                 words += [] if is_list else [word]
             else:
                 words += ["--dependencies", word] if is_list else [word]
-        return super().parse_args(ctx, words)
+        ctx.allow_extra_args = True
+        left = super().parse_args(ctx, words)
+        if left and not ctx.resilient_parsing:
+            name = ctx.params["name"]
+            if all(map(known_dependency, left)):
+                ctx.fail(f"write graphflow pkg create {name} --dependencies {' '.join(left)}")
+            one = near_name("_".join([name, *left]))
+            ctx.fail(f"a name is one word, such as {one}; packages that it needs stand behind --dependencies")
+        return left
 
 
 @click.command(cls=_Create)
@@ -51,7 +66,9 @@ def create(name: str, destination_directory: Path, build_type: str | None, templ
         output.lines(["Supported licenses:", *known_licenses()])
         return
     if not name:
-        raise UsageFault("the package's name is missing; write it first: --dependencies takes the words behind it")
+        taken = given["dependencies"]
+        why = ": --dependencies takes the words behind it" if taken else ": graphflow pkg create NAME"
+        raise UsageFault(f"the package's name is missing; write it first{why}")
     settings = {option: value for option, value in given.items() if value}
     if build_type or template:
         _ros_package(name, destination_directory, build_type, template, settings)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -11,9 +12,9 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.types import use_project
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import Verb, Verbs
 from graphflow.domain import domain_id
-from graphflow.errors import SupervisorError, UsageFault
+from graphflow.errors import GraphflowError, SupervisorError, UnknownInterface, UsageFault
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean
 
@@ -32,7 +33,21 @@ def _kinds(command: F) -> F:
     return click.option("-m", "--only-msgs", "only", flag_value="msg", help="Messages only.")(command)
 
 
-@interface.command()
+class _Show(Verb):
+    """A verb of one type, whose package and name may stand apart."""
+
+    def one_too_many(self, ctx: click.Context, left: Sequence[str]) -> str:
+        from graphflow.msgs import registry
+
+        use_project()
+        package, name = ctx.params["type_name"], left[0]
+        kinds = [kind for kind in registry.KINDS if name in registry.names_in(package, kind)]
+        if len(left) == 1 and kinds:
+            return f"a type is one word: graphflow interface show {package}/{kinds[0]}/{name}"
+        return super().one_too_many(ctx, left)
+
+
+@interface.command(cls=_Show)
 @click.argument("type_name", metavar="TYPE")
 @click.option("--all-comments", is_flag=True, help="Comments of nested types, too.")
 @click.option("--no-comments", is_flag=True, help="Without comments and empty lines.")
@@ -47,8 +62,13 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
     use_project()
     if type_name == "-":
         type_name = sys.stdin.readline().strip()
-    name = registry.full_name(_of_name(type_name))
-    registry.interface(name)
+    try:
+        name = registry.full_name(_of_name(type_name))
+        registry.interface(name)
+    except UnknownInterface as error:
+        if instead := _instead(type_name):
+            raise UsageFault(instead) from None
+        raise error
     package = name.partition("/")[0]
     for line in registry.definition(name).splitlines():
         text = without_comment(line).rstrip() if no_comments else line
@@ -56,6 +76,32 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
             continue
         output.data(text)
         output.lines(_nested(text, package, 1, all_comments and not no_comments))
+
+
+def _instead(word: str) -> str:
+    """What to say of a word that is a package, or a field of a type; empty for others."""
+    from graphflow.msgs import registry
+
+    if registry.package_folders(word):
+        return f"{word} is a package: graphflow interface package {word} lists its types"
+    found = re.fullmatch(r"((?:[a-z]\w*[./])*[A-Z]\w*)[./]([a-z][\w./]*)", word)
+    if found is None:
+        return ""
+    head, fields = found[1], re.split("[./]", found[2])
+    names = [head] if re.search("[./]", head) else registry.having(head)
+    if len(names) != 1:
+        return ""
+    try:
+        name = registry.full_name(names[0])
+        schema = registry.message_schema(name)
+        for part in fields:
+            field = next(field for field in schema.fields if field.name == part)
+            if field.type.is_primitive:
+                return f"{'.'.join(fields)} of {name} is {field.type}; all of it: graphflow interface show {name}"
+            schema = registry.message_schema(field.type.base)
+    except (GraphflowError, StopIteration):
+        return ""
+    return f"{'.'.join(fields)} of {name} is {schema.name}: graphflow interface show {schema.name}"
 
 
 def _of_name(word: str) -> str:

@@ -235,6 +235,10 @@ def _tell_starts(told: str) -> None:
 
 def _improved(error: click.UsageError) -> click.UsageError:
     """Without options that an unknown one is not like, and without click's own terms for numbers."""
+    if isinstance(error, click.NoSuchOption) and error.ctx is not None:
+        known = {name for param in error.ctx.command.params for name in param.opts}
+        if (other := error.option_name.swapcase()) in known or (other := error.option_name.lower()) in known:
+            return click.UsageError(f"{error.message} Did you mean {other!r}?", error.ctx)
     if isinstance(error, click.NoSuchOption) and error.possibilities:
         word = error.option_name.lstrip("-")  # whose dashes would make all alike
         alike = [known for known in error.possibilities if nearest(word, [known.lstrip("-")], cutoff=ALIKE)]

@@ -43,6 +43,17 @@ def near_name(word: str) -> str:
     return near if near.isidentifier() and not is_of_python(near) else f"my_{near or 'lab'}"
 
 
+def known_dependency(word: str) -> bool:
+    """Whether a word is a package that others depend on: of ROS 2, with types, or of the workspace."""
+    from graphflow.msgs import registry
+
+    return (
+        word in (*of_ros(), "rclpy", "rclcpp", "roscpp", "rospy")
+        or word in registry.packages()
+        or (word in _around(Path.cwd()).packages)
+    )
+
+
 def check_package(name: str, folder: Path) -> None:
     """See that a new package has a name of its own.
 

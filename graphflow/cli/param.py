@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.verbs import GraphVerbs
+from graphflow.cli.verbs import GraphVerbs, Verb
 from graphflow.cli.words import ValueCommand, pattern_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
@@ -286,7 +286,20 @@ def dump(name: str, timeout: float, as_json: bool, file: str) -> None:
         output.data(write(node, set_ones).rstrip())
 
 
-@param.command()
+class _Load(Verb):
+    """A verb of a node and a file, which tells where each stands."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        words = [word for word in args if not word.startswith("-")]
+        files = [word for word in words if word.endswith((".yaml", ".yml")) or Path(word).is_file()]
+        if not ctx.resilient_parsing and files and words[0] == files[0]:
+            others = [word for word in words if word not in files]
+            if len(words) <= 2 and "--help" not in args:
+                ctx.fail(f"the node stands first: graphflow param load {others[0] if others else 'NODE'} {files[0]}")
+        return super().parse_args(ctx, args)
+
+
+@param.command(cls=_Load)
 @click.argument("name", metavar="NODE")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--no-use-wildcard", is_flag=True, help="Only the sections that name the node.")

@@ -5,10 +5,12 @@ Those that look at a graph take the options by which `ros2` finds its daemon; th
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import click
 
+from graphflow.cli.other_words import answer
 from graphflow.names import did_you_mean, nearest
 
 _BUILT_IN = "its verbs are built in; graphflow pkg executables lists what packages bring"
@@ -49,12 +51,33 @@ class Verb(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         path = ctx.command_path.partition(" ")[2]
-        ctx.allow_extra_args |= path in OF_ONE
-        left = super().parse_args(ctx, args)
+        takes_more, ctx.allow_extra_args = ctx.allow_extra_args, True
+        left = super().parse_args(ctx, list(args))
+        if left and (flag := flag_before(self, left[0], args)):
+            ctx.fail(f"{flag} takes no value; leave out {left[0]}")
         if left and path in OF_ONE:
             one = "interface show" if path.startswith("interface") and "/" in left[0] else OF_ONE[path]
             ctx.fail(f"{path} takes no name; for one: graphflow {one} {left[0]}")
+        if left and not takes_more and not ctx.resilient_parsing:
+            ctx.fail(self.one_too_many(ctx, left))
         return left
+
+    def one_too_many(self, ctx: click.Context, left: Sequence[str]) -> str:
+        """What to say of words that are left."""
+        return f"Got unexpected extra argument{'s' if len(left) > 1 else ''} ({' '.join(left)})"
+
+
+_A_VALUE = re.compile(r"[-+]?[\d.]+\w{0,2}|true|false|yes|no|on|off", re.IGNORECASE)
+"""What looks like an option's value, and like no name."""
+
+
+def flag_before(command: click.Command, word: str, args: Sequence[str]) -> str:
+    """The option without a value that stands before a word which looks like one; empty if none does."""
+    before = args[list(args).index(word) - 1] if word in args[1:] else ""
+    flags = {
+        name for param in command.params if isinstance(param, click.Option) and param.is_flag for name in param.opts
+    }
+    return before if before in flags and _A_VALUE.fullmatch(word) else ""
 
 
 class Verbs(click.Group):
@@ -76,7 +99,8 @@ class Verbs(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
-            raise click.UsageError(self.turned(ctx, args) or self.unknown(ctx, args[0]), ctx)
+            path = ctx.command_path.partition(" ")[2]
+            raise click.UsageError(self.turned(ctx, args) or answer(path, args) or self.unknown(ctx, args[0]), ctx)
         return super().resolve_command(ctx, args)
 
     def turned(self, ctx: click.Context, words: Sequence[str]) -> str:

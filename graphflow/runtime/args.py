@@ -123,8 +123,9 @@ def meant(word: str) -> str:
     if ":=" in word and not word.startswith(_DASHES):
         match, _, replacement = word.partition(":=")
         key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
-        option = "-p" if key is None and _is_value(replacement) else "-r"
-        return f"; write --ros-args {option} {key or match}:={replacement}"
+        is_private = key is None and re.match("_[a-z]", match) is not None  # as ROS 1 sets a parameter
+        option = "-p" if is_private or (key is None and _is_value(replacement)) else "-r"
+        return f"; write --ros-args {option} {key or match[is_private:]}:={replacement}"
     option, equals, value = word.partition("=")
     if equals and option in _VALUED:
         return f"; write {option} {value}, without ="

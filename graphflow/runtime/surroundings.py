@@ -121,6 +121,8 @@ def unused_remaps(
     for rule in names.unused():
         if may_make(dynamic, names.full(rule.match)) if "*" not in rule.match else dynamic:
             continue
-        is_param = rule.match in parameters
-        hint = f"; to set the parameter write -p {rule}" if is_param else did_you_mean(rule.match, known)
+        name = rule.match[1:] if rule.match.startswith("_") else rule.match  # as ROS 1 sets a parameter
+        is_param = name in parameters
+        set_by = f"-p {name}:={rule.replacement}"
+        hint = f"; to set the parameter write {set_by}" if is_param else did_you_mean(rule.match, known)
         yield f"the remap {rule} matches no name of this node{hint}"

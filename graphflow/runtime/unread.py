@@ -21,6 +21,10 @@ _READERS = re.compile(
 )
 """Names that a program mentions if it reads its command line."""
 
+_OF_FILES = ("params", "param", "param-file", "params-file", "parameters", "parameters-file", "config", "file", "f")
+"""What an option with a file of parameters is called elsewhere."""
+_FILE = re.compile(r"\.ya?ml\Z")
+
 
 def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_program: bool) -> str:
     """Complain of words that are left of a command line; empty if the program may read them.
@@ -33,9 +37,11 @@ def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_progra
     if not words or any(_may_read(file) for file in _files(classes, is_own_program)):
         return ""
     word = words[0]
-    name, equals, value = word.partition("=")
-    value = value if equals else words[1] if words[1:] and not words[1].startswith("-") else "VALUE"
+    name, _, value = word.partition("=")
+    value = value if value else words[1] if words[1:] and not words[1].startswith("-") else "VALUE"
     known = [param.name for cls in classes for param in cls.interface().params]
+    if name.startswith("-") and _FILE.search(value) and name.lstrip("-").replace("_", "-") in _OF_FILES:
+        return f"nothing reads the option {name!r}; a file of parameters is given by --params-file {value}"
     near = nearest(name.lstrip("-").replace("-", "_"), known)
     way = f"; to set the parameter write -p {near}:={value}" if near else ""
     if not way and known:

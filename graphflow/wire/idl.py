@@ -40,8 +40,19 @@ _ELSEWHERE = {"double": "float64", "float": "float32", "int": "int32", "uint": "
     "long": "int64",
     "boolean": "bool",
     "str": "string",
+    "time": "builtin_interfaces/Time",
+    "duration": "builtin_interfaces/Duration",
 }
-"""Types of C++, Python and Java, and those that take their place."""
+"""Types of C++, Python, Java and ROS 1, and those that take their place."""
+_SLIPS = (
+    (re.compile(r"(?:vector|list|List|std::vector|sequence)[<\[]([\w/]+)[>\]]"), r"\1[]"),
+    (re.compile(r"(string|wstring)[<(](\d+)[>)]?"), r"\1<=\2"),
+    (re.compile(r"([\w/<=]+)\[(<?=?\d*)"), r"\1[\2]"),
+    (re.compile(r"([\w/<=]+)\((\d*)\)"), r"\1[\2]"),
+    (re.compile(r"([a-z]\w*)(?:\.msg)?\.([A-Z]\w*)(\[.*\])?"), r"\1/\2\3"),
+    (re.compile(r"([a-z]\w*)::(?:msg::)?([A-Z]\w*)(\[.*\])?"), r"\1/\2\3"),
+)
+"""Types as other languages and hasty fingers write them, and as they are written."""
 _SEPARATOR = "---"
 
 
@@ -159,9 +170,10 @@ def _member(package: str, line: str) -> Field | Constant:
         return _constant(type_, constant.group(1), constant.group(2))
     name, *more = rest.split(None, 1)
     if not _FIELD_NAME.match(name):
-        raise InterfaceError(
-            f"field name {name!r}: lower-case letters, digits and single _, beginning with a letter, not ending with _"
-        )
+        rule = "lower-case letters, digits and single _, beginning with a letter, not ending with _"
+        near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z\d])(?=[A-Z])|-", "_", name).lower()).strip("_")
+        hint = f"; did you mean {near!r}?" if _FIELD_NAME.match(near) else ""
+        raise InterfaceError(f"field name {name!r}: {rule}{hint}")
     if iskeyword(name):
         raise InterfaceError(f"field name {name!r}: it is a Python keyword, so no attribute can have that name")
     return Field(name, type_, _literal(type_, more[0]) if more else None)
@@ -175,7 +187,9 @@ def parse_type(text: str, package: str) -> FieldType:
     """
     m = _TYPE.match(text)
     if not m:
-        raise InterfaceError(f"{text!r} is not a type; write for example float64, string<=8, Point or float64[<=3]")
+        meant = next((right for slip, with_ in _SLIPS if (right := _put_right(slip, with_, text))), "")
+        way = f"write {meant}" if meant else "write for example float64, string<=8, Point or float64[<=3]"
+        raise InterfaceError(f"{text!r} is not a type; {way}")
     base, bound = m["base"], m["bound"]
     if base not in PRIMITIVES:
         base = _type_name(base, package)
@@ -191,6 +205,13 @@ def parse_type(text: str, package: str) -> FieldType:
     if array.startswith("<="):
         return FieldType(base, int(bound or 0), "bounded", _size(array[2:], text))
     return FieldType(base, int(bound or 0), "fixed", _size(array, text))
+
+
+def _put_right(slip: re.Pattern[str], with_: str, text: str) -> str:
+    """A type that is written otherwise, as it should be; empty for another text."""
+    found = slip.fullmatch(text)
+    meant = found.expand(with_) if found is not None else ""
+    return meant if _TYPE.match(meant) else ""
 
 
 def _size(digits: str, text: str) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from graphflow import Node
-from graphflow.bag import Said, read
+from graphflow.bag import BagMessage, read
 from graphflow.bag.contents import Topic
 from graphflow.bag.typed import decoder
 from graphflow.errors import BagError, DecodeError
@@ -22,7 +22,7 @@ def test_messages(tmp_path: Path) -> None:
     """With topic and time, in their order; some topics, some time."""
     folder = write(tmp_path / "bag")
     first, second, *_ = read(folder)
-    assert first == Said("/map", String(data="map"), START)
+    assert first == BagMessage("/map", String(data="map"), START)
     assert second.message == String(data="hello 0")
     numbers = [said.message for said in read(folder, ["/count"], start_ns=START + 10**9)]
     assert numbers == [Int32(data=n) for n in range(10, 20)]
@@ -99,3 +99,24 @@ async def test_a_node_is_fed_from_a_bag(graph: Graph, tmp_path: Path) -> None:
         await graph.settle()
     assert [text for _, text in heard] == [f"hello {n}" for n in range(20)]
     assert heard[-1][0] - began == pytest.approx(1.9)
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("data", "did you mean .message?"),
+        ("stamp", "did you mean .time_ns?"),
+        ("child_frame_id", "it is a field of its message: write .message.child_frame_id"),
+    ],
+)
+def test_names_of_others(name: str, hint: str) -> None:
+    """Fields of the message, and words of other libraries, are answered; anything else is as in Python."""
+    from graphflow.msgs.nav_msgs.msg import Odometry
+
+    told = BagMessage("/odom", Odometry(), 1)
+    with pytest.raises(AttributeError) as caught:
+        getattr(told, name)
+    assert str(caught.value) == f"'BagMessage' object has no attribute {name!r}; {hint}"
+    assert not hasattr(told, "zzz")
+    topic, message, time_ns = told
+    assert (topic, message, time_ns) == ("/odom", Odometry(), 1)

@@ -6,7 +6,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from graphflow.cli.main import cli
+from graphflow.errors import UsageFault
 from tests.conftest import Machine
 
 PYTHON = [
@@ -128,6 +131,21 @@ def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_
     words = ["--build-type", "ament_python", "--dependencies", "rclpy", "std_msgs", "my_pkg"]
     assert "the package's name is missing" in machine.look("pkg", "create", *words, cwd=tmp_path, code=2)
     assert not any(path.is_dir() for path in tmp_path.iterdir() if path.name in ("std_msgs", "my_pkg"))
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("my_pkg rclpy std_msgs", "write graphflow pkg create my_pkg --dependencies rclpy std_msgs"),
+        ("my pkg", "a name is one word, such as my_pkg; packages that it needs stand behind --dependencies"),
+        ("--node-name talker", "the package's name is missing; write it first: graphflow pkg create NAME"),
+    ],
+)
+def test_words_without_an_option(words: str, told: str) -> None:
+    """What `catkin_create_pkg` takes is told as it is written; so is a name in two words, and none."""
+    done = CliRunner().invoke(cli, ["pkg", "create", *words.split()])
+    text = str(done.exception) if isinstance(done.exception, UsageFault) else done.output
+    assert told in " ".join(text.split())
 
 
 @pytest.mark.parametrize(

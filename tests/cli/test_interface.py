@@ -102,6 +102,16 @@ def test_without_comments(own: Path, show: Show) -> None:
         ),
         ("std_msgs/Heder", "error: package 'std_msgs' has no interface 'Heder'; did you mean 'Header'?"),
         ("Twist", "error: 'Twist' is not an interface name; did you mean 'geometry_msgs/msg/Twist'?"),
+        ("std_msgs", "error: std_msgs is a package: graphflow interface package std_msgs lists its types"),
+        *(
+            (word, "error: linear of geometry_msgs/msg/Twist is geometry_msgs/msg/Vector3: graphflow interface show ")
+            for word in ("Twist.linear", "geometry_msgs/msg/Twist.linear", "geometry_msgs/Twist/linear")
+        ),
+        (
+            "Twist.linear.x",
+            "error: linear.x of geometry_msgs/msg/Twist is float64; all of it: graphflow interface show ",
+        ),
+        ("Twist.zzz", "error: there is no interface package 'Twist'"),
         ("a/b/c/d", "error: 'a/b/c/d' is not an interface name; write package/msg/Name"),
         ("../msg/Name", "error: '../msg/Name' is not an interface name"),
     ],
@@ -111,6 +121,17 @@ def test_an_unknown_type(name: str, message: str, show: Show) -> None:
     code, out, err = show(name)
     assert (code, out) == (exits.USAGE, "")
     assert err.startswith(message)
+
+
+def test_a_type_in_two_words(capsys: pytest.CaptureFixture[str]) -> None:
+    """It is told as one."""
+    for words, told in (
+        (["geometry_msgs", "Twist"], "a type is one word: graphflow interface show geometry_msgs/msg/Twist"),
+        (["a", "b"], "Got unexpected extra argument (b)"),
+    ):
+        with pytest.raises(SystemExit):
+            main(["interface", "show", *words])
+        assert told in capsys.readouterr().err
 
 
 @pytest.fixture

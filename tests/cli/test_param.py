@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
+from graphflow.cli.main import cli
 from graphflow.errors import UsageFault
 from graphflow.interface import TYPE_IDS
 from graphflow.introspect.parameters import read_value
@@ -200,6 +202,15 @@ def test_some_of_a_list(standing: Machine) -> None:
     )
     assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim_time") == "  use_sim_time\n"
     assert "'(' is no regular expression" in standing.look("param", "list", "--filter", "(", code=2)
+
+
+@pytest.mark.parametrize(
+    ("words", "node"), [("t.yaml /talker", "/talker"), ("t.yaml", "NODE"), ("t.yml talker --timeout=3", "talker")]
+)
+def test_a_file_before_the_node(words: str, node: str) -> None:
+    """The whole command is told; the file need not be there."""
+    done = CliRunner().invoke(cli, ["param", "load", *words.split()])
+    assert f"the node stands first: graphflow param load {node} {words.split()[0]}" in done.output
 
 
 @pytest.mark.parametrize(

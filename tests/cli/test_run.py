@@ -183,6 +183,10 @@ def test_a_command_before_it(machine: Machine) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
+        (
+            ["_rate:=2.0"],
+            "error: the remap _rate:=2.0 matches no name of this node; to set the parameter write -p rate:=2.0",
+        ),
         (["-r", "foo:=/news"], "error: the remap foo:=/news matches no name of this node; there is chatter"),
         (["-r", "**/chattr:=/news"], "error: the remap **/chattr:=/news matches no name of this node"),
         (["-r", "__node:=my", "turtle"], "a value with a space in it goes into quotes: -r '__node:=my turtle'"),

@@ -25,6 +25,8 @@ def test_what_ros2_has_and_graphflow_does_without(words: str) -> None:
         ("topi", "no such command 'topi'; did you mean 'topic'?"),
         ("kill", "no such command 'kill'; did you mean 'stop'?"),
         ("frobnicate", "no such command 'frobnicate'; graphflow --help lists them"),
+        ("rostopic list", "no such command 'rostopic'; did you mean: graphflow topic list"),
+        ("topic list --json true", "--json takes no value; leave out true"),
         ("service x", "no such command 'x'; there is call, echo, find, info, list, type"),
     ],
 )

@@ -13,6 +13,7 @@ import pytest
 from graphflow import Node
 from graphflow.runtime.unread import unread
 
+FILE = "a file of parameters is given by --params-file"
 Make = Callable[[str], type[Node]]
 PLAIN = """\
 from graphflow import Node, Param
@@ -55,6 +56,19 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         (["rate=1.0"], "nothing reads the word 'rate=1.0'; to set the parameter write -p rate:=1.0"),
         (["--rate", "--json"], "nothing reads the option '--rate'; to set the parameter write -p rate:=VALUE"),
         (["--max-speed"], "nothing reads the option '--max-speed'; to set the parameter write -p max_speed:=VALUE"),
+        (
+            ["--params", "a.yaml"],
+            "nothing reads the option '--params'; a file of parameters is given by --params-file a.yaml",
+        ),
+        (["-f", "a.yml"], "nothing reads the option '-f'; a file of parameters is given by --params-file a.yml"),
+        (
+            ["--params-file=a.yaml"],
+            "nothing reads the option '--params-file'; a file of parameters is given by --params-file a.yaml",
+        ),
+        (
+            ["--config", "a.json"],
+            "nothing reads the option '--config'; -p NAME:=VALUE sets a parameter: rate, max_speed",
+        ),
         (["--json"], "nothing reads the option '--json'; -p NAME:=VALUE sets a parameter: rate, max_speed"),
     ],
 )

@@ -164,7 +164,7 @@ BROKEN = [
     ("double x", r"'double' is not a type; did you mean 'float64'\?$"),
     ("int[] x", r"'int' is not a type; did you mean 'int32'\?$"),
     ("point p", "'point' is not a type"),
-    ("float64[3 x", "is not a type; write for example"),
+    ("float64[3 x", "is not a type; write float64"),
     ("float64[-1] x", "is not a type"),
     ("float64[0] x", "at least 1 element"),
     ("float64[<=0] x", "at least 1 element"),
@@ -212,6 +212,36 @@ BROKEN = [
     ("wstring<=1 s \N{TURTLE}", "longer than wstring<=1"),
     ("string<=1[] a [a, bc]", "longer than"),
 ]
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("float32[3", "write float32[3]"),
+        ("string<20>", "write string<=20"),
+        ("string[20", "write string[20]"),
+        ("vector<int32>", "write int32[]"),
+        ("List[float64]", "write float64[]"),
+        ("geometry_msgs.Point", "write geometry_msgs/Point"),
+        ("geometry_msgs.msg.Point[]", "write geometry_msgs/Point[]"),
+        ("geometry_msgs::msg::Point", "write geometry_msgs/Point"),
+        ("time", "did you mean 'builtin_interfaces/Time'?"),
+        ("duration", "did you mean 'builtin_interfaces/Duration'?"),
+        ("a?", "write for example float64, string<=8, Point or float64[<=3]"),
+    ],
+)
+def test_types_of_other_languages(text: str, meant: str) -> None:
+    """Are told with how they are written."""
+    with pytest.raises(InterfaceError) as caught:
+        idl.parse_type(text, "pkg")
+    assert str(caught.value) == f"{text!r} is not a type; {meant}"
+
+
+def test_names_of_fields_in_another_style() -> None:
+    """The name that would do is offered."""
+    for name, near in (("goalX", "goal_x"), ("Goal-y", "goal_y"), ("x__1", "x_1")):
+        with pytest.raises(InterfaceError, match=rf"; did you mean '{near}'\?$"):
+            message(f"int32 {name}")
 
 
 @pytest.mark.parametrize(("text", "rule"), BROKEN)

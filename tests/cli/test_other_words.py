@@ -1,0 +1,92 @@
+"""Commands of ROS 1, and half-remembered ones."""
+
+from __future__ import annotations
+
+import click
+import pytest
+
+from graphflow.cli.main import cli
+from graphflow.cli.other_words import _LINES, _SENTENCES, answer
+
+
+@pytest.mark.parametrize(
+    ("path", "words", "line"),
+    [
+        ("", "msg show geometry_msgs/Twist", "interface show geometry_msgs/msg/Twist"),
+        ("", "srv show turtlesim/Spawn", "interface show turtlesim/srv/Spawn"),
+        ("", "rosmsg info std_msgs/msg/String", "interface show std_msgs/msg/String"),
+        ("", "srv list", "interface list -s"),
+        ("", "rostopic echo /a", "topic echo /a"),
+        ("", "rosnode kill /a", "stop /a"),
+        (
+            "",
+            "rosrun turtlesim turtlesim_node _a:=1 __name:=b c:=d",
+            "run turtlesim turtlesim_node -p a:=1 -r __node:=b c:=d",
+        ),
+        ("", "plot /turtle1/pose.x", "topic plot /turtle1/pose.x"),
+        ("", "call /a std_srvs/srv/Empty '{}'", "service call /a std_srvs/srv/Empty ''\"'\"'{}'\"'\"''"),
+        ("", "create lab", "init lab"),
+        ("node", "ping turtlesim", "node info turtlesim"),
+        ("action", "status /a", "topic echo /a/_action/status"),
+        ("action", "status", "topic echo NAME/_action/status"),
+        ("interface", "std_msgs/msg/String", "interface show std_msgs/msg/String"),
+    ],
+)
+def test_lines(path: str, words: str, line: str) -> None:
+    """The whole line is told, with types as they are written now."""
+    assert answer(path, words.split()) == f"no such command {words.split()[0]!r}; did you mean: graphflow {line}"
+
+
+@pytest.mark.parametrize(
+    ("path", "words", "text"),
+    [
+        ("", "roscore", "none is needed: nodes find each other"),
+        ("", "core", "none is needed: nodes find each other"),
+        ("", "test tests", "tests are run by pytest"),
+        ("", "new", "graphflow init NAME makes a project, and graphflow pkg create NAME a package"),
+        ("topic", "create /a", "a topic is there as soon as a node publishes it or subscribes to it"),
+        ("action", "cancel /a", "graphflow service call /a/_action/cancel_goal action_msgs/srv/CancelGoal"),
+        ("bag", "stop", "Ctrl-C in its terminal ends a recording"),
+    ],
+)
+def test_sentences(path: str, words: str, text: str) -> None:
+    """Where there is no line, the reason is told."""
+    told = answer(path, words.split())
+    assert told.startswith(f"no such command {words.split()[0]!r}: ")
+    assert text in told
+
+
+def test_words_that_are_not_known() -> None:
+    """They have no answer here."""
+    assert answer("", ["frobnicate"]) == answer("topic", ["core"]) == answer("topic", ["ech"]) == ""
+
+
+def found(words: list[str]) -> list[str]:
+    """The words of a line that are no verb and no option, of which there is none left where the line is a command."""
+    command: click.Command = cli
+    context = click.Context(cli)
+    while words and isinstance(command, click.Group) and not words[0].startswith("-"):
+        inner = command.get_command(context, words[0])
+        if inner is None:
+            return words
+        command, context, words = inner, click.Context(inner, parent=context), words[1:]
+    return []
+
+
+@pytest.mark.parametrize("key", [*_LINES, *_SENTENCES])
+def test_no_word_is_a_command(key: str) -> None:
+    """Else nobody would be told."""
+    assert found(key.split()) != []
+
+
+@pytest.mark.parametrize("line", _LINES.values())
+def test_each_line_is_a_command(line: str) -> None:
+    """With options that it has."""
+    words = line.split()
+    assert found(words) == []
+    options = [word for word in words if word.startswith("-")]
+    command: click.Command | None = cli
+    for word in words[: len(words) - len(options)]:
+        command = command.get_command(click.Context(cli), word) if isinstance(command, click.Group) else command
+    known = {name for param in (command or cli).params for name in param.opts} | {"--version"}
+    assert known.issuperset(options)
