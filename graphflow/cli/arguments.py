@@ -39,6 +39,10 @@ def as_argument(option: str, words: list[str]) -> str | None:
         option: As in `--rate`.
         words: The command line.
     """
+    if not option.startswith("--"):  # which ends after one letter
+        option = next((word for word in words if word.startswith(option) and ":=" in word), option)
+        if ":=" in option:
+            return option.lstrip("-")
     name = option.lstrip("-").replace("-", "_")
     if not name.isidentifier():
         return None

@@ -98,6 +98,8 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         return first, rest
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
+        if first.endswith(_ENDINGS) and package_share(rest[0], project_root(Path.cwd()), os.environ) is not None:
+            raise UsageFault(f"the package stands first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}")
         why = why_no_package(first, find_workspace(Path.cwd()))
         if why is None and first in of_ros():
             graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
@@ -112,6 +114,10 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         there = _launch_files(files)
         raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
     return str(found[0]), rest[1:]
+
+
+_ENDINGS = (".py", ".xml", ".yaml", ".launch")
+"""Of launch files."""
 
 
 def _refuse_package(word: str) -> None:

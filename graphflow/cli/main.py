@@ -16,6 +16,7 @@ import click
 
 from graphflow import __version__
 from graphflow.cli import exits, output
+from graphflow.cli.other_words import option_answer
 from graphflow.cli.placing import OF_GRAPHFLOW, before_the_verb
 from graphflow.cli.reaching import reach, reach_options
 from graphflow.cli.variables import misspelt
@@ -236,6 +237,8 @@ def _tell_starts(told: str) -> None:
 def _improved(error: click.UsageError) -> click.UsageError:
     """Without options that an unknown one is not like, and without click's own terms for numbers."""
     if isinstance(error, click.NoSuchOption) and error.ctx is not None:
+        if told := option_answer(error.ctx.command_path.partition(" ")[2], error.option_name):
+            return click.UsageError(f"No such option {error.option_name!r}; {told}", error.ctx)
         known = {name for param in error.ctx.command.params for name in param.opts}
         if (other := error.option_name.swapcase()) in known or (other := error.option_name.lower()) in known:
             return click.UsageError(f"{error.message} Did you mean {other!r}?", error.ctx)

@@ -29,6 +29,8 @@ _LINES = {
     "interface describe": "interface show",
     "interface print": "interface show",
     "interface type": "interface show",
+    **{f"lifecycle {way}": f"lifecycle set {{0}} {way}" for way in ("configure", "activate", "deactivate", "cleanup")},
+    "lifecycle shutdown": "lifecycle set {0} shutdown",
     "lifecycle change": "lifecycle set",
     "lifecycle state": "lifecycle get",
     "message": "interface",
@@ -125,6 +127,29 @@ _SENTENCES = {
     "rosclean": "logs are in folders of their own: graphflow logs shows them",
     "setup": "nothing has to be set up or sourced: graphflow init NAME makes a project",
 }
+_OPTIONS = {
+    **dict.fromkeys(("topic echo --count", "topic echo -1"), "one message is shown by --once"),
+    "topic echo -p": "values separated by commas are shown by --csv",
+    **dict.fromkeys(("param list --node", "param list -n"), "the node stands by itself: graphflow param list NODE"),
+    **dict.fromkeys(
+        (
+            "param dump -o",
+            "param dump --output",
+            "param dump --output-dir",
+            "param dump --output-file",
+            "param dump -f",
+        ),
+        "it is printed, and written into a file by: graphflow param dump NODE > FILE.yaml",
+    ),
+    **dict.fromkeys(("bag record -j", "bag record --bz2", "bag record --lz4"), "write --compression zstd"),
+    **dict.fromkeys(("bag record --name", "bag record --bag-name", "bag record -n"), "the bag's folder is named by -o"),
+    **dict.fromkeys(("bag record --split", "bag record --size"), "a new file begins after --max-bag-size BYTES"),
+    "bag play -u": "seconds of the bag to play are --playback-duration",
+    **dict.fromkeys(("bag play -i", "bag play --immediate"), "all messages at once are sent by: graphflow bag burst"),
+    **dict.fromkeys(("launch --screen", "launch --log", "launch -v"), "leave it out: what nodes print is shown"),
+    "launch --wait": "leave it out: there is no master to wait for",
+}
+"""Options of other tools, by the verb."""
 _TYPE = re.compile(r"\A([a-z]\w*)/([A-Z]\w*)\Z")
 _PRIVATE = re.compile(r"\A_(?=[a-z])(\w+):=")
 _NAMED = re.compile(r"\A__(name|ns):=")
@@ -148,9 +173,17 @@ def answer(path: str, words: Sequence[str]) -> str:
             return f"no such command {word!r}: {_INIT}"
         if key in _LINES:
             return f"no such command {word!r}; did you mean: graphflow {_line(key, behind)}"
+    if word == "help":
+        line = " ".join([*path.split(), *words[1:], "--help"])
+        return f"no such command 'help'; did you mean: graphflow {line}"
     if path == "interface" and "/" in word:
         return f"no such command {word!r}; did you mean: graphflow interface show {word}"
     return ""
+
+
+def option_answer(path: str, option: str) -> str:
+    """What to say of an option that a verb does not have; empty where that is not known."""
+    return _OPTIONS.get(f"{path} {option}", "")
 
 
 def _line(key: str, words: Sequence[str]) -> str:

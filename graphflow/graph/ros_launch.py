@@ -187,7 +187,7 @@ class _Translation:
             if key not in _KNOWN[name]:
                 ours, known = _FORMER.get(key, ""), sorted(_KNOWN[name] - _IGNORED - _RECORDED - {"children"})
                 former = ros1_launch.attribute(name, key) or (f"it is called {ours!r} here" if ours in known else "")
-                hint = f"; {former}" if former else did_you_mean(key, known)
+                hint = f"; {former}" if former else did_you_mean(key, known) or f"; there is {', '.join(known)}"
                 self._complain(value.at, f"{name}: unknown attribute {key!r}{hint}")
             elif (fault := shape_fault(key, value)) is not None:
                 self._complain(value.place, f"{name}: {fault}")

@@ -124,7 +124,7 @@ def meant(word: str) -> str:
         match, _, replacement = word.partition(":=")
         key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
         is_private = key is None and re.match("_[a-z]", match) is not None  # as ROS 1 sets a parameter
-        option = "-p" if is_private or (key is None and _is_value(replacement)) else "-r"
+        option = "-p" if is_private or (key is None and is_number_or_truth(replacement)) else "-r"
         return f"; write --ros-args {option} {key or match[is_private:]}:={replacement}"
     option, equals, value = word.partition("=")
     if equals and option in _VALUED:
@@ -146,7 +146,7 @@ def cut_off(word: str, words: Sequence[str]) -> str:
     return f"; a value with a space in it goes into quotes: {option} '{before} {word}'" if is_cut else ""
 
 
-def _is_value(text: str) -> bool:
+def is_number_or_truth(text: str) -> bool:
     """Whether a text is a number or a truth value, which no name can be."""
     return text.lower() in ("true", "false") or text.lstrip("+-").replace(".", "", 1).isdecimal()
 

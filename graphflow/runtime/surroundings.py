@@ -16,6 +16,7 @@ from graphflow.errors import DeclarationError
 from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
 from graphflow.names import Remap, Resolver, did_you_mean
+from graphflow.runtime.args import is_number_or_truth
 from graphflow.runtime.slow_hooks import telling_slow_init
 
 T = TypeVar("T")
@@ -119,7 +120,9 @@ def unused_remaps(
     """
     known = [r.given for r in names.derivations.values() if r.given not in own]
     for rule in names.unused():
-        if may_make(dynamic, names.full(rule.match)) if "*" not in rule.match else dynamic:
+        is_value = rule.match in parameters and is_number_or_truth(rule.replacement)
+        may_be_made = may_make(dynamic, names.full(rule.match)) if "*" not in rule.match else dynamic
+        if may_be_made and not is_value:
             continue
         name = rule.match[1:] if rule.match.startswith("_") else rule.match  # as ROS 1 sets a parameter
         is_param = name in parameters

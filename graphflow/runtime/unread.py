@@ -23,6 +23,14 @@ _READERS = re.compile(
 
 _OF_FILES = ("params", "param", "param-file", "params-file", "parameters", "parameters-file", "config", "file", "f")
 """What an option with a file of parameters is called elsewhere."""
+_OF_ROS = {
+    **dict.fromkeys(("--name", "--node-name", "--node_name", "-n"), "-r __node:=VALUE"),
+    **dict.fromkeys(("--namespace", "--ns"), "-r __ns:=VALUE"),
+    **dict.fromkeys(("--debug", "--verbose"), "--log-level debug"),
+    **dict.fromkeys(("--quiet", "-q"), "--log-level error"),
+    **dict.fromkeys(("--sim-time", "--use-sim-time", "--use_sim_time"), "-p use_sim_time:=true"),
+}
+"""Options of other tools, and the arguments of ROS's that do the same."""
 _FILE = re.compile(r"\.ya?ml\Z")
 
 
@@ -42,6 +50,8 @@ def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_progra
     known = [param.name for cls in classes for param in cls.interface().params]
     if name.startswith("-") and _FILE.search(value) and name.lstrip("-").replace("_", "-") in _OF_FILES:
         return f"nothing reads the option {name!r}; a file of parameters is given by --params-file {value}"
+    if (way := _OF_ROS.get(name)) is not None:
+        return f"nothing reads the option {name!r}; write {way.replace('VALUE', value)}"
     near = nearest(name.lstrip("-").replace("-", "_"), known)
     way = f"; to set the parameter write -p {near}:={value}" if near else ""
     if not way and known:

@@ -46,3 +46,9 @@ def test_options_of_nodes(machine: Machine, words: list[str], told: str) -> None
 def test_a_misspelt_option(machine: Machine) -> None:
     """Is one."""
     assert "Did you mean '--json'?" in machine.look("up", "talker_listener", "--jso", code=2)
+
+
+def test_an_argument_behind_a_dash() -> None:
+    """It is told as a whole, though options of one dash end after a letter."""
+    assert as_argument("-r", ["a.launch.py", "-rate:=3"]) == "rate:=3"
+    assert as_argument("-r", ["a.launch.py", "-r", "3"]) == "r:=3"

@@ -160,4 +160,6 @@ def test_a_package_without_a_file(machine: Machine, tmp_path: Path) -> None:
         (folder / "launch" / file).touch()
     told = machine.look("launch", "lamp", cwd=tmp_path, code=2)
     assert told == "error: 'lamp' is a package; write graphflow launch lamp FILE; it has a_launch.xml, b.launch.py\n"
+    told = machine.look("launch", "b.launch.py", "lamp", "a:=1", cwd=tmp_path, code=2)
+    assert told == "error: the package stands first: graphflow launch lamp b.launch.py a:=1\n"
     assert "lamb: there is no such file" in machine.look("launch", "lamb", cwd=tmp_path, code=2)

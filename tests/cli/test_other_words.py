@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import click
 import pytest
+from click.testing import CliRunner
 
 from graphflow.cli.main import cli
-from graphflow.cli.other_words import _LINES, _SENTENCES, answer
+from graphflow.cli.other_words import _LINES, _OPTIONS, _SENTENCES, answer, option_answer
 
 
 @pytest.mark.parametrize(
@@ -28,6 +29,9 @@ from graphflow.cli.other_words import _LINES, _SENTENCES, answer
         ("", "create lab", "init lab"),
         ("node", "ping turtlesim", "node info turtlesim"),
         ("action", "status /a", "topic echo /a/_action/status"),
+        ("lifecycle", "configure /a", "lifecycle set /a configure"),
+        ("", "help topic", "topic --help"),
+        ("topic", "help", "topic --help"),
         ("action", "status", "topic echo NAME/_action/status"),
         ("interface", "std_msgs/msg/String", "interface show std_msgs/msg/String"),
     ],
@@ -54,6 +58,17 @@ def test_sentences(path: str, words: str, text: str) -> None:
     told = answer(path, words.split())
     assert told.startswith(f"no such command {words.split()[0]!r}: ")
     assert text in told
+
+
+@pytest.mark.parametrize("line", _OPTIONS)
+def test_options(line: str) -> None:
+    """Each is told, and is none of its verb's."""
+    path, _, option = line.rpartition(" ")
+    done = CliRunner().invoke(cli, [*path.split(), option])
+    assert isinstance(done.exception, SystemExit)
+    assert f"No such option: {option}" in done.output or f"No such option '{option}'" in done.output
+    assert option_answer(path, option)
+    assert option_answer(path, "--zzz") == ""
 
 
 def test_words_that_are_not_known() -> None:

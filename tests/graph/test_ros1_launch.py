@@ -92,6 +92,15 @@ def test_substitutions() -> None:
     assert ros1_launch.substitution("arg") == ros1_launch.substitution("var rate") == ""
 
 
+def test_many_attributes(tmp_path: Path) -> None:
+    """They are listed, without those that the translation adds."""
+    [problem] = told('<node pkg="demo_nodes_py" exec="talker" zzz="1"/>', tmp_path)
+    assert problem.startswith(
+        "1:9: node: unknown attribute 'zzz'; there is args, autostart, env, exec, if, launch-prefix, "
+    )
+    assert "number" not in problem
+
+
 def test_no_words_of_its_own_are_offered(tmp_path: Path) -> None:
     """What the translation of a launch file in Python adds is no attribute that anyone writes."""
     [problem] = told('<include file="a" zzz="1"/>', tmp_path)

@@ -15,6 +15,7 @@ from graphflow import (
     DeclarationError,
     GraphflowError,
     Node,
+    Param,
     ParameterError,
     Publisher,
     ServiceUnavailable,
@@ -319,6 +320,26 @@ async def test_an_unused_remap_is_said(graph: Graph, caplog: pytest.LogCaptureFi
     [record] = caplog.records
     assert record.levelno == logging.WARNING
     assert record.getMessage() == ("the remap chater:=news matches no name of this node; did you mean 'chatter'?")
+
+
+@pytest.mark.parametrize(
+    ("rule", "hint"),
+    [
+        ("rate:=2.0", "-p rate:=2.0"),
+        ("use_sim_time:=true", "-p use_sim_time:=true"),
+        ("_rate:=fast", "-p rate:=fast"),
+        ("rate:=speed", ""),
+    ],
+)
+async def test_a_remap_that_sets_a_parameter(
+    graph: Graph, caplog: pytest.LogCaptureFixture, rule: str, hint: str
+) -> None:
+    """A value is no name, so that it is told even where a class makes names at run time."""
+    is_private = rule.startswith("_")
+    made: Any = type("Maker", (Node,), {"rate": Param(1.0), "dynamic_names": () if is_private else True})
+    await graph.start(made(remap=[rule]))
+    way = f"the remap {rule} matches no name of this node; to set the parameter write {hint}"
+    assert [record.getMessage() for record in caplog.records] == ([way] if hint else [])
 
 
 @pytest.mark.parametrize(("names", "warned"), [(True, False), (("*/pose",), False), (("*/other",), True)])

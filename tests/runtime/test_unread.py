@@ -69,6 +69,9 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
             ["--config", "a.json"],
             "nothing reads the option '--config'; -p NAME:=VALUE sets a parameter: rate, max_speed",
         ),
+        (["--name", "a"], "nothing reads the option '--name'; write -r __node:=a"),
+        (["--ns=/a"], "nothing reads the option '--ns'; write -r __ns:=/a"),
+        (["--debug"], "nothing reads the option '--debug'; write --log-level debug"),
         (["--json"], "nothing reads the option '--json'; -p NAME:=VALUE sets a parameter: rate, max_speed"),
     ],
 )
