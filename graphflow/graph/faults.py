@@ -136,6 +136,7 @@ def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequ
     """Whether a missing key is in fact there, with a typo that is reported anyway."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
     of_ros = key == "class" and not {"package", "executable"}.isdisjoint(unknown)
+    of_ros = of_ros or any(foreign_keys.meant(word, [key]) for word in unknown)
     return of_ros or any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
 
 
@@ -164,6 +165,11 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
         value: What is written under it.
     """
     head = key.partition(":")[0]
+    if "nodes" in known and isinstance(value, dict) and "ros__parameters" in value:
+        return (
+            f"unknown key {key!r}; this is a file of parameters: a node of a graph file has params_file: FILE, and run "
+            "takes --params-file FILE"
+        )
     if "nodes" in known and _is_node(key, value):
         return f"unknown key {key!r}; nodes are written under nodes:, indented"
     if instead := foreign_keys.meant(key, known):

@@ -27,6 +27,9 @@ _OF_NODES = {
     "condition": ("if", ""),
     "when": ("if", ""),
     "plugin": ("class", ""),
+    "node": ("class", ""),
+    "env_vars": ("env", ""),
+    "env-vars": ("env", ""),
     "type": ("exec", "it is called 'exec' here, beside pkg:; a class of Python is written class: package.module:Class"),
 }
 _OF_COMPOSE = {

@@ -21,6 +21,7 @@ from pydantic import (
 
 from graphflow.interface import DeadlockPolicy, WhenFull
 from graphflow.machines.restarts import BACKOFF, POLICIES
+from graphflow.names import nearest
 
 FROM_GROUPS = " of groups"
 """Ends the keys under which a node has what its groups give it; no file can say them."""
@@ -86,10 +87,28 @@ def _call_timeout(value: Any) -> Any:
     return value
 
 
+_MEANT = {
+    "restart: no": "never",
+    "restart: false": "never",
+    "restart: yes": "always",
+    "restart: true": "always",
+    "restart: unless-stopped": "always",
+    "log_level: warning": "warn",
+    "log_level: critical": "fatal",
+    "type: string": "str",
+    "type: integer": "int",
+    "type: double": "float",
+    "type: boolean": "bool",
+}
+"""Words of other tools for values."""
+
+
 def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
     def checked(value: str) -> str:
         if value not in words:
-            raise ValueError(f"{key}: expected one of {', '.join(words)}, got {value!r}")
+            meant = _MEANT.get(f"{key}: {value}") or nearest(value.lower().replace("-", "_"), words, cutoff=0.8)
+            way = f"; write {key}: {meant}" if meant in words else ""
+            raise ValueError(f"{key}: expected one of {', '.join(words)}, got {value!r}{way}")
         return value
 
     return checked
@@ -100,6 +119,16 @@ def _enum(words: Iterable[str]) -> WithJsonSchema:
     return WithJsonSchema({"anyOf": [{"enum": list(words)}, {"type": "string", "pattern": r"\$\("}]})
 
 
+_OF_COMPOSE = {"service_started": "ready", "service_healthy": "ready", "service_completed_successfully": "done"}
+"""What docker-compose waits for."""
+
+
+def _awaited(value: Any) -> str:
+    """What is waited for, in docker-compose's words too; empty if it is none of those."""
+    word = value.get("condition") if isinstance(value, dict) else value
+    return _OF_COMPOSE.get(word, word if word in AFTER else "") if isinstance(word, str) else ""
+
+
 def _after(value: Any) -> Any:
     """As a mapping from names to what is waited for; a word alone waits for the usual."""
     if isinstance(value, str):
@@ -107,7 +136,11 @@ def _after(value: Any) -> Any:
     if isinstance(value, list) and all(isinstance(name, str) for name in value):
         return dict.fromkeys(value, "")
     if not isinstance(value, dict) or not all(word in (*AFTER, "") for word in value.values()):
-        raise ValueError(f"after: expected a name, a list of names, or NAME: {'|'.join(AFTER)}, got {value!r}")
+        way = f"expected a name, a list of names, or NAME: {'|'.join(AFTER)}, got {value!r}"
+        if isinstance(value, dict) and (meant := [_awaited(wanted) for wanted in value.values()]) and all(meant):
+            pairs = ", ".join(f"{name}: {word}" for name, word in zip(value, meant, strict=True))
+            way = f"write after: {{{pairs}}}"
+        raise ValueError(f"after: {way}")
     return value
 
 
@@ -187,6 +220,8 @@ class RestartSpec(_Model):
     @model_validator(mode="before")
     @classmethod
     def _from_word(cls, data: Any) -> Any:
+        if isinstance(data, bool):
+            raise ValueError(f"restart: expected a word; write restart: {'always' if data else 'never'}")
         return {"policy": data} if isinstance(data, str) else data
 
 
@@ -253,6 +288,9 @@ class NodeSpec(_Settings):
             data = {k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}
         elif has & {"pkg", "exec"}:
             is_file = "/" in str(data.get("exec")) or str(data.get("exec")).endswith(".py")
+            for former, key in (("package", "pkg"), ("executable", "exec")):
+                if former in has and key not in has:
+                    raise ValueError(f"unknown key {former!r}; it is called {key!r} here")
             if data.get("exec") in (None, "") or ("pkg" not in has and not is_file):
                 raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file")
             if "class" in has:

@@ -18,7 +18,7 @@ import yaml
 MAX_SHOWN = 120
 """Characters of a line that is shown; longer ones would hide the sentence around them."""
 _MAPPINGS = ("params", "remap", "env", "args", "request")
-_PAIR = re.compile(r"([^\s=:]+)(?::=|=|: *)(.*)", re.DOTALL)
+_PAIR = re.compile(r"([^\s=:]+)(?::=|=|: *| *-> *)(.*)", re.DOTALL)
 """A name and its value in one word."""
 _NAMES = ("name", "from", "key")
 _VALUES = ("value", "to", "default")
@@ -51,6 +51,8 @@ def line_for(key: str, value: object) -> str:
     if not made:
         return ""
     line = f"{key}: {flow(made)}"
+    if len(line) > MAX_SHOWN and len(made) > 1:
+        line = f"{key}: {flow(dict([next(iter(made.items()))]))[:-1]}, ...}}"
     return line if len(line) <= MAX_SHOWN else ""
 
 
@@ -121,9 +123,13 @@ def _plain(text: str) -> Any:
 
 def _by_name(nodes: list[Any]) -> dict[str, Any] | None:
     """Nodes by their names, which stand in each of them."""
-    found = {}
+    found: dict[str, Any] = {}
     for node in nodes:
-        if not isinstance(node, dict) or not isinstance(node.get("name"), str):
-            return None
-        found[f"/{node['name'].lstrip('/')}"] = {key: value for key, value in node.items() if key != "name"}
+        match node:
+            case {"name": str() as name, **others}:
+                found[f"/{name.lstrip('/')}"] = others
+            case dict() if len(node) == 1 and isinstance(next(iter(node.values())), dict):
+                found |= node
+            case _:
+                return None
     return found

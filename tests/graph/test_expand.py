@@ -365,7 +365,7 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
         ("steps: {s: {wait: /x, request: {a: 1}}}", "2:23: request: does not go with wait:, which sends nothing"),
         ("steps: {s: {call: /x, params: {a: 1}}}", "2:23: params: does not go with call:; write request:"),
         ("steps: {s: {set: /a}}", "2:9: there is nothing to set; write params: {NAME: VALUE} beside set: /a"),
-        ("group: {nodes: {b: {command: ls}}}", "2:30: command: expected a list, got 'ls', for example command: [rviz2"),
+        ("group: {nodes: {b: {command: ls}}}", "2:30: command: expected a list; write command: [ls]"),
         (
             "group: {nodes: {b: {command: [ls], params: {a: 1}}}}",
             "2:20: params: is for nodes, and this is",

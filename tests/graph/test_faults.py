@@ -187,6 +187,18 @@ def test_values_of_a_step(key: str) -> None:
     assert unknown_key(key, keys_of(StepSpec), {"x": 1}) == expected
 
 
+def test_a_file_of_parameters() -> None:
+    """It is told as one."""
+    [fault] = faults("talker:\n  ros__parameters: {rate: 2.0}\n")
+    assert fault.startswith("1:1: unknown key 'talker'; this is a file of parameters: ")
+
+
+def test_another_word_for_a_needed_key() -> None:
+    """It is told once."""
+    [fault] = faults("nodes:\n  /a: {plugin: b}\n")
+    assert fault == "2:8: unknown key 'plugin'; it is called 'class' here"
+
+
 def test_all_keys_are_listed() -> None:
     """Where none is near, and none is known from elsewhere."""
     text = unknown_key("zzz", keys_of(StepSpec))
