@@ -39,9 +39,11 @@ def action(name: str) -> str:
     return f"is ROS 1's: {_ACTIONS[name]}" if name in _ACTIONS else ""
 
 
-def attribute(of: str, name: str) -> str:
-    """What to write in place of an attribute of ROS 1's; empty for others."""
-    return _ATTRIBUTES.get(f"{of}.{name}", "")
+def attribute(of: str, name: str, value: object = None) -> str:
+    """What to write in place of an attribute of ROS 1's, with its value where that stays; empty for others."""
+    text = _ATTRIBUTES.get(f"{of}.{name}", "")
+    keeps = isinstance(value, str) and name == "ns"
+    return text.replace('"..."', f'"{value}"') if keeps else text
 
 
 def substitution(inside: str) -> str:

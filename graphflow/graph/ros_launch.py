@@ -186,7 +186,9 @@ class _Translation:
         for key, value in item.entries.items():
             if key not in _KNOWN[name]:
                 ours, known = _FORMER.get(key, ""), sorted(_KNOWN[name] - _IGNORED - _RECORDED - {"children"})
-                former = ros1_launch.attribute(name, key) or (f"it is called {ours!r} here" if ours in known else "")
+                former = ros1_launch.attribute(name, key, value.value) or (
+                    f"it is called {ours!r} here" if ours in known else ""
+                )
                 hint = f"; {former}" if former else did_you_mean(key, known) or f"; there is {', '.join(known)}"
                 self._complain(value.at, f"{name}: unknown attribute {key!r}{hint}")
             elif (fault := shape_fault(key, value)) is not None:

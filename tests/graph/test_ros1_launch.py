@@ -39,7 +39,7 @@ def told(text: str, folder: Path) -> list[str]:
         ('<machine name="a"/>', "1:9: <machine> is ROS 1's: all nodes of a graph run on one machine"),
         (
             '<group ns="a"/>',
-            "1:9: group: unknown attribute 'ns'; write <push_ros_namespace namespace=\"...\"/> as its first element",
+            "1:9: group: unknown attribute 'ns'; write <push_ros_namespace namespace=\"a\"/> as its first element",
         ),
         (
             '<arg name="a" value="1"/>',
