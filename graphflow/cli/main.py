@@ -83,26 +83,6 @@ _OTHER_WORDS = {"kill": "stop", "interfaces": "interface"}
 """What people coming from other tools type."""
 
 
-_OF_ROS1 = {
-    "rostopic": "topic",
-    "rosnode": "node",
-    "rosservice": "service",
-    "rosparam": "param",
-    "rosrun": "run",
-    "roslaunch": "launch",
-    "rosbag": "bag",
-    "rospack": "pkg",
-    "rosmsg": "interface",
-    "rossrv": "interface",
-    "msg": "interface",
-    "srv": "interface",
-    "rqt_graph": "graph",
-    "rqt_plot": "topic plot",
-    "rqt_console": "attach",
-}
-"""Commands of ROS 1, and tools beside it, by the verb that does the same."""
-
-
 class _Verbs(Verbs):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_VERBS)
@@ -119,8 +99,6 @@ class _Verbs(Verbs):
         word, *rest = words
         if word == "ros2":
             return f"leave out ros2: graphflow {' '.join(rest)}".rstrip()
-        if word in _OF_ROS1:
-            return f"no such command {word!r}; write: graphflow {' '.join([_OF_ROS1[word], *rest])}"
         group = self.get_command(ctx, rest[0]) if rest else None
         if isinstance(group, click.Group) and group.get_command(ctx, word) is not None:
             return f"no such command {word!r}; did you mean: graphflow {' '.join([rest[0], word, *rest[1:]])}"

@@ -25,7 +25,6 @@ _NOT_BUILT = "nothing has to be built or sourced: what you edit is what runs; gr
 HABITS = {
     **dict.fromkeys(("colcon", "build", "source", "catkin", "catkin_make"), _NOT_BUILT),
     "rosdep": "Python packages are installed by pip; packages of ROS 2's lie in the workspace, as source",
-    **dict.fromkeys(("roscore", "rosmaster"), "none is needed: nodes find each other without a master"),
     "install": "nothing has to be installed for a package to run; graphflow ws shows the packages",
 }
 """Commands that a ROS 2 workspace needs there and not here, each with the answer to it."""
