@@ -174,8 +174,9 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
 
     Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
-    remarks: names that nothing in the graph answers to. Of a Python file or a folder, node classes are imported, and
-    the nodes that are written for rclpy only read. A launch file in Python is run, in a process of its own.
+    remarks: names that nothing in the graph answers to, and slips in the source that Python runs without a word. Of a
+    Python file or a folder, node classes are imported, and the nodes that are written for rclpy only read. A launch
+    file in Python is run, in a process of its own.
     """
     path = _graph_meant(graph)
     if path is None:
@@ -187,7 +188,7 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     from graphflow.graph.static import findings
 
     try:
-        resolved, found = _checked(path, args)
+        resolved, found, slips = _checked(path, args)
     except GraphFileError as error:
         problems = sorted(error.problems)
         if as_json:
@@ -196,7 +197,7 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
             output_problems(problems)
         return exits.USAGE
     ways = findings(resolved, found)
-    remarks = [*resolved.remarks, *map(str, sorted(loose_ends(resolved, found)))]
+    remarks = [*resolved.remarks, *map(str, sorted(loose_ends(resolved, found))), *slips]
     certain = [way for way in ways if way.grade == "CERTAIN"]
     if as_json:
         deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
@@ -231,8 +232,8 @@ def is_launch_file(file: Path) -> bool:
     return file.is_file() and (named or any(word in found_bytes(file) for word in _DESCRIBING))
 
 
-def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:
-    """A graph and what its classes declare.
+def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces, list[str]]:
+    """A graph, what its classes declare, and the slips in their source.
 
     Raises:
         GraphFileError: Every mistake that was found.
@@ -243,15 +244,16 @@ def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:
     from graphflow.graph.resolve import load
     from graphflow.supervisor.launch_python import described
     from graphflow.supervisor.probe import probe
-    from graphflow.supervisor.probed import read_interfaces
+    from graphflow.supervisor.probed import read_interfaces, slips_in
 
     resolved = load(path, args, describe=described)
     add_interfaces(Path(resolved.root))
-    found = read_interfaces(probe(resolved.classes(), resolved.root))
+    data = probe(resolved.classes(), resolved.root)
+    found = read_interfaces(data)
     problems = check_plan(resolved, found)
     if problems:
         raise GraphFileError(problems)
-    return resolved, found
+    return resolved, found, slips_in(data)
 
 
 def output_problems(problems: Sequence[Problem]) -> None:
@@ -287,7 +289,7 @@ def explain(graph: str, name: str | None, args: tuple[str, ...], as_json: bool) 
         raise UsageFault(f"the graph file stands first: graphflow explain {file} {graph}{runs}")
     if name is not None and ":=" in name:
         args, name = (name, *args), None
-    resolved, found = _checked(find_graph(graph), args)
+    resolved, found, _ = _checked(find_graph(graph), args)
     names = explaining.names(resolved, found)
     if name is not None:
         full = name if name.startswith("/") else f"/{name}"

@@ -20,6 +20,7 @@ from graphflow.graph.project import demos_root, project_root
 from graphflow.graph.unfound import owners, why_no_package
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean, nearest
+from graphflow.runtime.importing import RunsWhenImported
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, nearest_module, node_classes
 
 FOLDERS = 1000
@@ -34,6 +35,7 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
 
     Raises:
         UsageFault: There is none, or several; the text says which there are.
+        RunsWhenImported: The file is a program, which runs nodes by itself.
     """
     _refuse_turned(what, words)
     if what.endswith((".yaml", ".yml")):
@@ -65,6 +67,8 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
         else:
             cls = _dotted(what) if "." in what else _named(what, root, words)
     except GraphflowError as error:
+        if what.endswith(".py") and isinstance(error.__cause__, RunsWhenImported):
+            raise error.__cause__ from None
         raise UsageFault(f"{error}{_source_line(error.__cause__)}") from None
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
         output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")

@@ -45,6 +45,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     from graphflow.names import Resolver
     from graphflow.rclpy.programs import find_program
     from graphflow.runtime.args import cut_off, parse_ros_args
+    from graphflow.runtime.importing import RunsWhenImported
     from graphflow.runtime.run import run as run_node
     from graphflow.runtime.unread import unread
 
@@ -66,7 +67,10 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
         if hasattr(signal, "pthread_sigmask"):
             signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # an interpreter that starts cannot take it
         _become([sys.executable, "-P", "-m", "graphflow.rclpy", *command[1:]])
-    cls, rest = find_class(what, words)
+    try:
+        cls, rest = find_class(what, words)
+    except RunsWhenImported:
+        _become([sys.executable, what, *(["--ros-args", *words] if words and "--ros-args" not in words else words)])
     try:
         ros = parse_ros_args(rest)
     except GraphflowError as error:

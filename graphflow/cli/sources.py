@@ -20,7 +20,7 @@ from graphflow.graph.workspace import uses_ros
 from graphflow.interface import Interface
 from graphflow.reading import found_text
 from graphflow.supervisor.probe import probe
-from graphflow.supervisor.probed import read_interfaces
+from graphflow.supervisor.probed import read_interfaces, slips_in
 
 
 def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
@@ -44,8 +44,9 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
                 seen.unfollowed += unfollowed_in(file)
             elif classes := node_classes_in(file):
                 seen.nodes += len(classes)
-                wrong, ways = _checked(file, classes)
+                wrong, ways, slips = _checked(file, classes)
                 seen.problems += wrong
+                seen.slips += slips
                 seen.ways += ways
     if not (seen.nodes or seen.is_rclpy or seen.problems):
         raise UsageFault(f"{' '.join(map(str, paths))}: no node in it, of graphflow or of rclpy{_graphs_in(paths)}")
@@ -62,6 +63,8 @@ class _Seen:
     problems: list[Problem] = field(default_factory=list)
     ways: list[Finding] = field(default_factory=list)
     """Deadlocks."""
+    slips: list[str] = field(default_factory=list)
+    """What Python runs without a word, and was not meant."""
     unfollowed: list[Place] = field(default_factory=list)
     """Loops in rclpy callbacks that poll what their file does not show being set."""
     nodes: int = 0
@@ -80,12 +83,13 @@ def _unreadable(file: Path) -> Problem | None:
     return None
 
 
-def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[Finding]]:
-    """The mistakes in the classes of a file, which are imported, and the deadlocks that a graph of them could have."""
+def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[Finding], list[str]]:
+    """Mistakes in the classes of a file, which are imported, deadlocks that a graph of them could have, and slips."""
     root, module = module_of(file)
     add_interfaces(root)
     lines = {f"{module}:{name}": line for name, line in classes.items()}
-    interfaces = read_interfaces(probe(lines, str(root)))
+    data = probe(lines, str(root))
+    interfaces = read_interfaces(data)
     nodes = []
     for class_path, line in lines.items():
         interface, place = interfaces[class_path], Place(shown(file), line, 1)
@@ -96,7 +100,8 @@ def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[F
     # Calls to other nodes are known in a graph only.
     ways = [way for way in static.findings(plan, interfaces) if way.grade != "unresolved"]
     # A module that cannot be imported is so for each of its classes.
-    return list({problem.message: problem for found in reversed(alone) for problem in found}.values()), ways
+    problems = {problem.message: problem for found in reversed(alone) for problem in found}
+    return list(problems.values()), ways, slips_in(data)
 
 
 def _tell(paths: Sequence[Path], seen: _Seen, *, as_json: bool) -> None:
@@ -104,10 +109,11 @@ def _tell(paths: Sequence[Path], seen: _Seen, *, as_json: bool) -> None:
         deadlocks = [{"grade": way.grade, "text": str(way), **place_of(way.place)} for way in seen.ways]
         told = [{"message": problem.message, **place_of(problem.place)} for problem in seen.problems]
         unfollowed = [place_of(place) for place in seen.unfollowed]
-        output.as_json({"problems": told, "remarks": [], "deadlocks": deadlocks, "unfollowed": unfollowed})
+        output.as_json({"problems": told, "remarks": seen.slips, "deadlocks": deadlocks, "unfollowed": unfollowed})
         return
     for problem in seen.problems:
         output.talk(str(problem))
+    output.lines(seen.slips)
     output.lines(
         f"{place}: not analysed: a callback polls what this file does not show being set" for place in seen.unfollowed
     )
@@ -124,7 +130,10 @@ def _counts(seen: _Seen) -> Iterator[str]:
     if seen.ways:
         yield f"{_count(seen.ways, 'deadlock')} in the source"
     if not seen.problems and not seen.ways:
-        yield "no problems" if seen.nodes else "no deadlocks to be seen in the source"
+        of_nodes = "no mistakes" if seen.slips else "no problems"
+        yield of_nodes if seen.nodes else "no deadlocks to be seen in the source"
+    if seen.slips:
+        yield _count(seen.slips, "remark")
     if seen.unfollowed:
         yield f"{_count(seen.unfollowed, 'loop')} not analysed"
 

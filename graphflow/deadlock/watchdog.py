@@ -6,8 +6,10 @@ busy is pinged, and counts as blocked when it does not answer.
 
 from __future__ import annotations
 
+import linecache
 import logging
 import random
+import re
 import sys
 import threading
 import time
@@ -16,7 +18,7 @@ from collections import deque
 from collections.abc import Callable
 from types import CodeType
 
-from graphflow.deadlock.frames import stack_of
+from graphflow.deadlock.frames import Frame, stack_of
 from graphflow.deadlock.user_code import called_by_loop, innermost, is_ours, is_users
 
 logger = logging.getLogger("graphflow")
@@ -32,6 +34,9 @@ LOOKS, TOO_MANY = 10, 7
 STACK_SHOWN = 6
 """Lines of that stack, from the user's code inwards."""
 _REMEDY = "Await what takes long, or move it to a thread: thread=True, or await self.offload(...)"
+_LOCKED = re.compile(r"(?:^with\s+|^)(?P<name>\w+(?:\.\w+)*)(?:\.acquire\(|\s*:)")
+"""A line that waits for a lock."""
+_LOCKS = (type(threading.Lock()), type(threading.RLock()))
 _IDLE = ("select", "poll", "_poll", "run_forever", "_run_once", "run_until_complete")
 """Functions in which asyncio's loop waits for something to happen."""
 RING_ANYWAY = 4
@@ -166,10 +171,11 @@ class Watchdog:
         above = next((i for i, file in enumerate(files) if is_users(file)), 0)  # asyncio's own come first
         first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=above)
         where = f" in {shown[last]}" if last >= 0 else ""
+        remedy = _of_lock(frames[last]) or _REMEDY if last >= 0 else _REMEDY
         stack = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
         return (
             f"the event loop has been blocked for {self.blocked_for:.1f} s{where}: nothing else in this process can "
-            f"run.\n{_REMEDY}{stack}"
+            f"run.\n{remedy}{stack}"
         )
 
     @property
@@ -180,3 +186,21 @@ class Watchdog:
     def close(self) -> None:
         """Stop watching."""
         self._ended.set()
+
+
+def _of_lock(frame: Frame) -> str:
+    """What to do about a lock of threads that the loop waits for in a line; empty if it waits for something else."""
+    line = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
+    found = _LOCKED.match(line)
+    if found is None:
+        return ""
+    first, *rest = found["name"].split(".")
+    thing = {**frame.f_globals, **frame.f_locals}.get(first)
+    for part in rest:  # without running any code of the user's
+        thing = getattr(thing, "__dict__", {}).get(part)
+    if not isinstance(thing, _LOCKS):
+        return ""
+    return (
+        f"{found['name']} is a lock of threads, for which all handlers wait here; one that is held across an await "
+        "ends in this for ever: use asyncio.Lock() and async with, or give the handlers one group=Group(1)"
+    )

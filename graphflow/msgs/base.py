@@ -96,6 +96,12 @@ def name_of(cls: type[Message]) -> str:
     return ".".join(cls.__name__.rsplit("_", 1))
 
 
+def made_as(cls: type[Message]) -> str:
+    """How a message is made: `Fibonacci.Feedback(sequence=...)`."""
+    first = f"{cls.SCHEMA.fields[0].name}=..." if cls.SCHEMA.fields else ""
+    return f"{name_of(cls)}({first})"
+
+
 def no_field(cls: type[Message], name: str) -> str:
     """What to say of a field that a message does not have."""
     fields = {f.name: f"{f.type} {f.name}" for f in cls.SCHEMA.fields}

@@ -48,6 +48,25 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
     return unmade or _of_message(name, last) or _of_rclpy(name, str(error), (), {})
 
 
+def called_value(error: BaseException, frames: list[FrameType]) -> str:
+    """What to write where something is called that is a value already: `.value()`, `is_cancel_requested()`."""
+    found = re.match(r"^'(\w+)' object is not callable", str(error))
+    users = own(frames)
+    if not isinstance(error, TypeError) or found is None or not users or users[-1] is not frames[-1]:
+        return ""
+    called = re.findall(r"((?:\b[A-Za-z_]\w*|(?<=\)))(?:\.[A-Za-z_]\w*)*)\(\)", line_of(frames))
+    fits = [path for path in called if type(named(path, users[-1])).__name__ == found[1]]
+    fits = fits or [path for path in called if path.rpartition(".")[2] in _VALUES]
+    fits = fits or (called if len(called) == 1 else [])
+    if not fits:
+        return ""
+    return f"{fits[0].lstrip('.')} is no function: leave out the parentheses behind it"
+
+
+_VALUES = ("value", "is_cancel_requested", "is_active", "request", "status", "nanoseconds", "goal_id")
+"""Properties of rclpy's that are taken for methods."""
+
+
 def _called_at_once(name: str, line: str) -> str:
     """The advice where a callback is called in the place where it is to be given; empty if that is not so."""
     found = re.search(rf"\b({_TAKERS})\((?:.*[(,=])?\s*((?:\w+\.)*{name.rpartition('.')[2]})\(\)", line)

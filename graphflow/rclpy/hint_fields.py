@@ -64,6 +64,9 @@ def _given(checks: list[dict[str, Any]], text: str) -> str:
     """Show a value that is out of its field's range, or a list with an element of the wrong type."""
     last, kind = checks[-1], _ELEMENTS.search(text)
     if "items" in last:
+        if dimensions := getattr(last["item"], "ndim", 0):
+            flat = "tobytes()" if last["item"].dtype.itemsize == 1 else "ravel().tolist()"
+            return f"the array has {dimensions + 1} dimensions, and the field one: write array.{flat}"
         way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and isinstance(last["item"], _PLAIN) else ""
         return f"one of its elements is {reprlib.repr(last['item'])}{way}"
     value = last["value"]

@@ -90,6 +90,7 @@ TEXTS: dict[str, str] = {
     r"rclpy\.\w+\(\) argument after \* must be an iterable": (
         "the arguments of a thread are a tuple: Thread(target=rclpy.spin, args=(node,))"
     ),
+    r"type must be an instance of '<enum 'Type'>'": "the value goes by name: Parameter('name', value=2.0)",
     r"could not convert string to float: ''": (
         "an empty text is no number; of a parameter take .value, since .string_value is empty unless it is a string"
     ),

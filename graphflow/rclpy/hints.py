@@ -13,7 +13,7 @@ from types import FrameType
 
 from graphflow.deadlock.user_code import parts_of
 from graphflow.names import nearest
-from graphflow.rclpy.hint_calls import wrong_call
+from graphflow.rclpy.hint_calls import called_value, wrong_call
 from graphflow.rclpy.hint_fields import message_as_value, missing_field, no_message, wrong_value
 from graphflow.rclpy.hint_frames import PATH, is_defined_by_user, lacking, line_of, named, own
 from graphflow.rclpy.hint_names import missing_name, misspelt_init, unknown_name, unset
@@ -97,6 +97,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     unset,
     misspelt_init,
     wrong_call,
+    called_value,
     _stamp,
     _text,
     message_as_value,

@@ -26,7 +26,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
 from graphflow.msgs import registry
-from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, name_of
+from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, made_as, name_of
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
 from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
@@ -459,7 +459,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             TypeError: The message is not a feedback of this action.
         """
         if feedback.__class__ is not self._feedback_class:
-            raise TypeError(f"{self.name} sends {self._feedback_class.__qualname__}, not {feedback!r}")
+            raise TypeError(f"{self.name} sends feedback as {made_as(self._feedback_class)}, not {feedback!r}")
         self._feedback.publish(self._feedback_message(goal_id={"uuid": list(goal_id)}, feedback=feedback))
 
     def _tell_states(self) -> None:

@@ -5,11 +5,12 @@ A class that answers them itself, by `__getattr__`, reads each of its attributes
 
 from __future__ import annotations
 
+import dis
 import linecache
 import re
-from types import FrameType
+from types import CodeType, FrameType
 
-from graphflow.deadlock.user_code import parts_of
+from graphflow.deadlock.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
 from graphflow.runtime import constructor_errors
 from graphflow.runtime.dictionary import SpeaksRos, translation
@@ -49,8 +50,21 @@ def _better_text(error: AttributeError) -> str:
         return ""
     if text := thing._instead_of(name):
         return text
-    hint = translation(name) or thing._hint(name)
+    hint = translation(name) or thing._hint(name) or _setter(thing, name)
     return f"{error}; {hint}" if hint else ""
+
+
+def _setter(thing: object, name: str) -> str:
+    """The method that sets an attribute and has not run yet; empty where there is none."""
+    for cls in type(thing).__mro__:
+        for method in vars(cls).values():
+            code = getattr(method, "__code__", None)
+            if not isinstance(code, CodeType) or code.co_name == "__init__" or not is_users(code.co_filename):
+                continue
+            if any(step.opname == "STORE_ATTR" and step.argval == name for step in dis.get_instructions(code)):
+                where = short_place(code.co_filename, code.co_firstlineno)
+                return f"{code.co_name} ({where}) sets it, and has not run yet: begin with {name} = None in the class"
+    return ""
 
 
 def _written_to(error: AttributeError) -> tuple[object, str | None]:

@@ -11,6 +11,7 @@ from graphflow.runtime.core import core_of
 from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.lost_errors import tell_lost_errors
 from graphflow.runtime.node import Node
+from graphflow.runtime.other_threads import tell_strangers
 
 
 class Company:
@@ -39,6 +40,7 @@ class Company:
         """
         self.nodes += nodes
         tell_lost_errors(self._context.loop)
+        tell_strangers(self._context.loop)
         asked = asyncio.create_task(self._stop.wait())
         try:
             try:

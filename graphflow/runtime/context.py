@@ -89,6 +89,8 @@ class Context:
         """What else runs callbacks of this process, for the search for deadlocks."""
         self.ledger = Ledger(self.loop)
         """What the handlers of this process wait for."""
+        self.noticed: Callable[[BaseException], object] = id
+        """Called with each error that a node here has reported and does not end by; tests replace it."""
         self._offloads, self._is_full_told = asyncio.Semaphore(OFFLOAD_LIMIT), False
         self.search = Search(self, deadlock)
         self._inspection = Inspection(self, self.search)

@@ -276,8 +276,7 @@ class NodeCore:
                 cls = type(self.instance).__name__
                 raise DeclarationError(f"{cls}: every node has self.{attribute}; choose another name")
         check_made(self.instance)
-        unused = self.parameters.unused_overrides(type(self.instance))
-        if unused:
+        if unused := self.parameters.unused_overrides(type(self.instance)):
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
 
     # its life
@@ -332,8 +331,8 @@ class NodeCore:
         except Exception as error:
             self.refuses_unused = False
             self.warn_unused_remaps()  # which may be why
-            self.report_error("on_start", error)
             self.failure = error
+            self.report_error("on_start", error)
             raise
         finally:
             self.starting = None
@@ -345,8 +344,7 @@ class NodeCore:
 
     def warn_unused_remaps(self) -> None:
         """Warn of remap rules that have matched nothing, or raise a UsageFault where their author waits for it."""
-        problems = self.unused_remaps()
-        if self.refuses_unused and problems:
+        if (problems := self.unused_remaps()) and self.refuses_unused:
             raise UsageFault("; ".join(problems))
         for problem in problems:
             self.log.warning("%s", problem)
@@ -357,7 +355,7 @@ class NodeCore:
 
     def complaints(self) -> list[str]:
         """What is wrong with the node that it knows itself, a sentence for each."""
-        return [*self.unused_remaps(), *self._clock.complaints()]
+        return [*self.unused_remaps(), *self._clock.complaints(), *(c for p in self.parts for c in p.complaints())]
 
     def shutdown(self) -> None:
         """End the node from within, from any thread: the code that runs it will stop it."""
@@ -454,6 +452,8 @@ class NodeCore:
 
     def report_error(self, label: str, error: BaseException) -> None:
         report(self.log, label, error)
+        if self._context is not None and error is not self.failure:
+            self._context.noticed(error)
 
     def _fail(self, error: BaseException) -> None:
         """End the node with an error."""

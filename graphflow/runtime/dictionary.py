@@ -305,6 +305,9 @@ def in_our_words(function: Callable[P, T]) -> Callable[P, T]:
             if hint := translation(word, "keywords"):
                 raise DeclarationError(f"{here()}: {called} has no {word}=; {hint}")
         if len(args) > len(first):
+            if called == "Param" and isinstance(args[1], str):
+                way = f"leave out {args[1]!r}, the parameter has the name of its attribute; write Param({args[2]!r})"
+                raise DeclarationError(f"{here()}: {called} takes no name first: {way}")
             taken = ", ".join(name for name in first if name != "self")
             more = f"; what follows goes by name: {', '.join(rest)}" if rest else ""
             raise DeclarationError(f"{here()}: {called} takes {taken}{more}")

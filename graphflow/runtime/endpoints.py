@@ -219,7 +219,8 @@ class Endpoint(Part):
     def _announced(self) -> Entity:
         if self.entity is None:
             raise ClosedError(
-                f"{self.name}: node {self.host.full_name} is not running; use this from its handlers and tasks"
+                f"{self.name}: node {self.host.full_name} is not running; use this from its handlers and tasks, which "
+                "graphflow.run(node) runs, or in a script within async with graphflow.running(node):"
             )
         return self.entity
 

@@ -91,6 +91,10 @@ class Part(SpeaksRos, ABC):
         """Numbers since the start."""
         return {}
 
+    def complaints(self) -> list[str]:
+        """What is wrong with the part that it knows itself, a sentence for each."""
+        return []
+
     @abstractmethod
     def open(self) -> None:
         """Begin. Called by the node."""

@@ -129,11 +129,15 @@ def check_made(node: object) -> None:
 
 
 def check_hooks(cls: type) -> None:
-    """See that methods that are awaited can be: an `async def`, or one that returns something.
+    """See that methods that are awaited can be: an `async def`, or one that returns something; `__init__` is not.
 
     Raises:
         DeclarationError: One cannot.
     """
+    if inspect.iscoroutinefunction(init := vars(cls).get("__init__")):
+        place = Place(init.__code__.co_filename, init.__code__.co_firstlineno)
+        way = "write def __init__, and await in async def on_start(self)"
+        raise DeclarationError(f"{place}: Python does not await {cls.__name__}.__init__; {way}")
     for name in ("on_start", "on_shutdown"):
         hook = vars(cls).get(name)
         if inspect.isfunction(hook) and not inspect.iscoroutinefunction(hook) and _returns_nothing(hook.__code__):

@@ -34,6 +34,7 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.core import NodeCore
 from graphflow.runtime.declare import Group, Param
 from graphflow.runtime.dictionary import OF_PARTS, SpeaksRos, in_our_words
+from graphflow.runtime.doubled import tell_doubled
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
@@ -259,6 +260,8 @@ class Node(SpeaksRos):
             hint = "" if takes_info else "; with takes_info=True it gets the message and a MessageInfo"
             check_callback(callback, range(2, 3) if takes_info else range(1, 2), what, place, hint)
         core, resolved = self._core, self._core.names.resolve(name)
+        same = (part for part in core.parts if isinstance(part, TopicSubscription) and part.name == resolved)
+        tell_doubled(core.log, callback, place, f"each message of {resolved}", same)
         label, call, slots = core.place(callback, f"subscription {name}", group, thread)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
         made = TopicSubscription(core, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
@@ -391,6 +394,8 @@ class Node(SpeaksRos):
         check_group(group, (Group, HandlerGroup), what, place)
         check_callback(callback, range(1, 2) if takes_info else range(1), what, place)
         nanoseconds = period_ns(period, None)
+        same = (part for part in self._core.parts if isinstance(part, Timer) and part.period == nanoseconds / 1e9)
+        tell_doubled(self._core.log, callback, place, "each period", same)
         label, call, slots = self._core.place(callback, "timer", group, thread)
         made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)
         tell_same(self._core, self._core.parts, made, callback)

@@ -12,7 +12,7 @@ _PACKAGES = (str(Path(__file__).parent), str(Path(__file__).parents[1] / "testin
 
 
 def here(depth: int = 2) -> Place:
-    """The line that called the calling function; the first outside of this package."""
+    """The line that called the calling function; the first outside of this package and of that for tests."""
     frame = sys._getframe(depth)
     while frame.f_code.co_filename.startswith(_PACKAGES) and frame.f_back is not None:
         frame = frame.f_back

@@ -85,6 +85,11 @@ REMARKS = (
     Remark(r"^'Parameters' object has no attribute '(?P<name>\w+)'", "", 'parameters.get("{name}") reads a value'),
     Remark("^name 'self' is not defined", r"self\.(?P<name>\w+)", "the body of a class has no self: write {name}"),
     Remark(
+        f"-: 'Time' and '{_SECONDS}'",
+        r"-\s*(?P<name>self\.\w+)",
+        "{name} is a number: begin with {name} = self.clock.now(); a span of seconds is Duration.of({name})",
+    ),
+    Remark(
         f"'{_SPANS}' and '{_SECONDS}'|'{_SECONDS}' and '{_SPANS}'",
         "",
         "a span of seconds is written Duration.of(0.5), and .seconds makes a number of one",
@@ -155,6 +160,16 @@ REMARKS = (
         r"^Qos\.__init__\(\) got an unexpected keyword",
         "",
         "it takes depth, reliability, durability, history, deadline_ns, lifespan_ns, liveliness and lease_ns",
+    ),
+    Remark(
+        r"^object (?!coroutine)\w+ can't be used in 'await'|^'\w+' object can't be awaited",
+        _AWAITED + r"\(",
+        "{name} is no `async def`, and returns at once: leave out await",
+    ),
+    Remark(
+        r"^'(?!NoneType)[A-Z]\w*' object is not subscriptable",
+        r"\b(?P<name>\w+)\[['\"](?P<field>\w+)['\"]\]",
+        "the fields of a message are attributes: write {name}.{field}",
     ),
     Remark(r"unsupported operand .*'Param'", "", "a Param has its value on a node: @timer(hz=rate) reads it there"),
 )

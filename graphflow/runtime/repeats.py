@@ -72,21 +72,16 @@ def tell_same(host: Host, parts: Iterable[Part], made: Part, callback: Callable[
     Args:
         parts: Those that the node has already.
         made: The one that is about to be added; a subscription, or a timer.
-        callback: What it calls.
+        callback: What it calls. One that the class declares is told by `doubled`.
     """
-    if callback is None:
+    is_timer = not hasattr(made, "type_name")  # another of them may have been cancelled, or begin at another time
+    if callback is None or is_timer or getattr(callback, MARK, None) is not None:
         return
-    mark = getattr(callback, MARK, None)
     for other in parts:
         if type(other) is type(made) and _calls(other) == _calls(made):
-            is_timer = not hasattr(made, "type_name")
-            if is_timer and mark is None:  # which may have been cancelled, or begin at another time
-                continue
-            name, what = _name(made), "period" if is_timer else "message"
-            way = f"leave out create_{mark.kind}, since @{mark.kind} makes one" if mark is not None else "keep one"
-            text = "%s calls %s (%s) twice for each %s: %s"
+            text = "%s calls %s (%s) twice for each message: keep one"
             called = getattr(callback, "__name__", repr(callback))
-            host.log.warning(text, name, called, written_at(callback), what, way)
+            host.log.warning(text, _name(made), called, written_at(callback))
             return
 
 

@@ -18,10 +18,12 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.ending import StopRequest, catch_signals
 from graphflow.runtime.failures import log_with_traceback
+from graphflow.runtime.importing import refuse_to_run
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.lost_errors import tell_lost_errors
 from graphflow.runtime.node import Node
 from graphflow.runtime.one_by_one import one_by_one
+from graphflow.runtime.other_threads import tell_strangers
 from graphflow.runtime.place import here
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.surroundings import Surroundings, make_within
@@ -64,12 +66,14 @@ class _Running(Unentered[Context]):
 
 @asynccontextmanager
 async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerator[Context, None]:
+    refuse_to_run("graphflow.running")
     failure: BaseException | None = None
     async with AsyncExitStack() as stack:
         if own := context is None:
             context = await Context.open()
             stack.push_async_callback(context.close)
         tell_lost_errors(context.loop)
+        tell_strangers(context.loop)
         for node in nodes:
             core = core_of(node)
             await core.start(context)
@@ -112,6 +116,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
         RuntimeError: An event loop is running here, as in a notebook.
         SystemExit: With 1 and a message when a node failed, with 2 when the arguments are wrong.
     """
+    refuse_to_run("graphflow.run")
     _refuse_running_loop(nodes)
     setup_console()
     if not nodes:

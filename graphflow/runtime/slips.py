@@ -2,7 +2,7 @@
 
 A handler without its decorator, `self.rat = 2.0` beside a parameter `rate`, `Talker.rate = 2.0` in its place, and
 `message.dat = ...`, or a text for a number, in a message that a method has made or been given; `self.close` without
-parentheses.
+parentheses, callbacks that give a method back or see the last value of a loop.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ from graphflow.msgs.base import Message, no_field
 from graphflow.names import nearest
 from graphflow.runtime import declared
 from graphflow.runtime.declare import Param
+from graphflow.runtime.misgiven import misgiven
+from graphflow.runtime.swallowed import caught_in_vain
 from graphflow.runtime.twice import definition_of
 from graphflow.runtime.uncalled import uncalled_methods
 
@@ -59,7 +61,8 @@ def _slips(cls: type) -> Iterator[str]:
             for method in definition.body:
                 if isinstance(method, FunctionNode):
                     yield from _wrong_fields(method, file, space)
-            yield from (f"{Place(file, line)}: {text}" for line, text in uncalled_methods(definition))
+            told = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
+            yield from (f"{Place(file, line)}: {text}" for line, text in told)
 
 
 def _other_modules(file: str) -> Iterator[ast.Module]:
@@ -164,8 +167,22 @@ def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned:
             if node.attr in mentioned or hasattr(cls, node.attr) or any(isinstance(p, ast.ClassDef) for p in parents):
                 continue
             near = nearest(node.attr, names, cutoff=0.75)
-            if near is not None:
+            if near is None or _is_another(node.attr, near):
+                continue
+            if not any(node.attr in _mentioned(module) for module in _other_modules(file)):
                 yield f"{Place(file, node.lineno)}: self.{node.attr} is set and never read; did you mean self.{near}?"
+
+
+def _is_another(name: str, near: str) -> bool:
+    """Whether a name that is nearly another one is meant as it is: `speeds` by `speed`, `goal_y` by `goal_x`."""
+    short, long = sorted((name, near), key=len)
+    if long in (f"{short}s", f"{short}es", f"_{short}", f"{short}_"):
+        return True
+    return len(short) == len(long) and short[:-1] == long[:-1] and {short[-1], long[-1]} <= _COUNTING
+
+
+_COUNTING = {*"0123456789xyzabclr"}
+"""Ends of names of which there are several."""
 
 
 def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, Any]) -> Iterator[str]:

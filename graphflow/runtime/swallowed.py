@@ -1,4 +1,4 @@
-"""Lines of a handler that catch CancelledError and do not let it pass, read from its source."""
+"""Lines of a source that catch CancelledError and do not let it pass, or KeyboardInterrupt, which does not come."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator
 from types import CodeType
 from typing import Any
 
-from graphflow.deadlock.syntax import first_line, syntax_of
+from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
 from graphflow.deadlock.user_code import short_place
 from graphflow.errors import Place
 
+_INTERRUPT = "KeyboardInterrupt"
+_INSTEAD = "write finally: in place of except, or do this in async def on_shutdown(self)"
 _CAUGHT = {"CancelledError", "BaseException"}
 
 
@@ -40,6 +42,24 @@ def _lines(function: ast.AST) -> Iterator[int]:
                 yield node.lineno
         elif isinstance(node, ast.Call) and _word(node.func) == "suppress" and any(map(_catches, node.args)):
             yield node.lineno
+
+
+def caught_in_vain(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
+    """Lines of a node's handlers and coroutines that catch KeyboardInterrupt, as to stop a robot, and what to write.
+
+    Ctrl-C is a signal that graphflow takes: it cancels what runs.
+    """
+    for method in definition.body:
+        if not isinstance(method, FunctionNode):
+            continue
+        marks = {_word(d.func if isinstance(d, ast.Call) else d) for d in method.decorator_list}
+        if marks & {"staticmethod", "classmethod"} or not (marks or isinstance(method, ast.AsyncFunctionDef)):
+            continue  # it may be called where nothing runs yet
+        for node in ast.walk(method):
+            if isinstance(node, ast.ExceptHandler) and node.type is not None and _word(node.type) == _INTERRUPT:
+                does = [s for s in node.body if not isinstance(s, (ast.Raise, ast.Pass))]
+                told = f"{_INTERRUPT} does not come to a node, which Ctrl-C cancels: {_INSTEAD}"
+                yield from [(node.lineno, told)] if does else []
 
 
 def _catches(caught: ast.expr | None) -> bool:

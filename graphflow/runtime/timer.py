@@ -12,6 +12,7 @@ from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.runtime.dictionary import in_our_words
 from graphflow.runtime.host import Host, Part
+from graphflow.runtime.overruns import Overruns
 
 
 class TimerInfo(NamedTuple):
@@ -56,6 +57,7 @@ class Timer(Part):
         self._due: deque[TimerInfo] = deque()
         self.runner: Runner | None = None
         self._missed = 0
+        self._overruns, self._outlasted = Overruns(host, self.title), 0
         self._was_armed = False
 
     def __repr__(self) -> str:
@@ -73,6 +75,9 @@ class Timer(Part):
         """Runs, failed runs and skipped periods since the start."""
         runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
         return {"runs": runs, "errors": errors, "skipped": self.skipped}
+
+    def complaints(self) -> list[str]:
+        return self._overruns.complaints()
 
     @property
     def period(self) -> float:
@@ -127,9 +132,12 @@ class Timer(Part):
             self._missed += 1
             if not self._due:
                 self.runner.stalled()  # its own run is in the way
+                self._outlasted += 1
+                self._overruns.in_the_way(self.runner.active, self._outlasted, now, self._period_ns)
             return
         self._due.append(TimerInfo(due, now, self._missed))
-        self._missed = 0
+        self._overruns.begins(self._outlasted)
+        self._missed = self._outlasted = 0
         self.runner.wake()
 
     def _invoke(self, info: TimerInfo) -> Any:

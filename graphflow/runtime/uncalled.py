@@ -13,6 +13,8 @@ _METHODS = (
     *("succeed", "abort", "canceled", "execute", "stop", "close"),
 )
 """Methods of nodes and their parts that are called without arguments."""
+_QUESTIONS = ("service_is_ready", "server_is_ready", "wait_for_service", "wait_for_server", "is_canceled")
+"""Methods that answer yes or no."""
 _LAUNCH = "generate_launch_description"
 """The function by which a launch file is known."""
 
@@ -57,11 +59,50 @@ def uncalled(source: str, file: str) -> str:
 
 def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
     """The lines that name a method and do nothing else, such as `self.timer.cancel`, each with what to write."""
+    own = _own_attributes(code)
     for node in ast.walk(code):
         match node:
             case ast.Expr(value=ast.Attribute(attr=name) as method) if name in _METHODS:
                 shown = ast.unparse(method)
                 yield node.lineno, f"{shown} without parentheses calls nothing; write: {shown}()"
+            case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test) | ast.Assert(test=test):
+                for method in _conditions(test):
+                    if _asks(method) and method.attr not in own:
+                        shown = ast.unparse(method)
+                        yield method.lineno, f"{shown} without parentheses is always true; write: {shown}()"
+
+
+def _conditions(test: ast.expr) -> Iterator[ast.Attribute]:
+    """The attributes whose truth decides a condition."""
+    match test:
+        case ast.Attribute():
+            yield test
+        case ast.UnaryOp(op=ast.Not(), operand=inner):
+            yield from _conditions(inner)
+        case ast.BoolOp(values=values):
+            for value in values:
+                yield from _conditions(value)
+
+
+def _asks(method: ast.Attribute) -> bool:
+    """Whether an attribute is a method that answers yes or no: of rclpy, of a client, or of a future."""
+    owner = ast.unparse(method.value).rpartition(".")[2]
+    if method.attr == "ok":
+        return owner == "rclpy"
+    if method.attr in ("done", "cancelled"):
+        return "future" in owner.lower()
+    return method.attr in _QUESTIONS
+
+
+def _own_attributes(code: ast.AST) -> set[str]:
+    """Attributes that a program sets, or defines as properties."""
+    found = {
+        node.attr for node in ast.walk(code) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
+    }
+    for node in ast.walk(code):
+        if isinstance(node, _FUNCTIONS) and node.decorator_list:
+            found.add(node.name)
+    return found
 
 
 def _other_names(module: ast.Module) -> Iterator[tuple[int, str]]:

@@ -20,8 +20,10 @@ from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.hiding import hidden
+from graphflow.runtime.importing import importing
 from graphflow.runtime.node import Node
 from graphflow.runtime.python_errors import remark_on
+from graphflow.runtime.slips import slips
 from graphflow.runtime.surroundings import why_not
 from graphflow.typographic import plain
 
@@ -74,7 +76,8 @@ def import_module_of(name: str, class_name: str = "") -> ModuleType:
     """
     bundled = f"graphflow.{name}" if name.startswith("nodes.") else ""
     try:
-        return import_module(bundled if bundled and _roots[-1:] == [str(INSTALLED_DEMOS)] else name)
+        with importing(name):
+            return import_module(bundled if bundled and _roots[-1:] == [str(INSTALLED_DEMOS)] else name)
     except (Exception, SystemExit) as error:
         if isinstance(error, ModuleNotFoundError) and error.name and name.startswith(error.name):
             if bundled and _is_there(bundled):  # a project has no such node of its own
@@ -216,10 +219,11 @@ def _instead_of(word: str) -> str:
     return f"write from graphflow import {meant[near]}" if near is not None else ""
 
 
-def interfaces(class_paths: list[str]) -> dict[str, Any]:
+def interfaces(class_paths: list[str], *, with_slips: bool = False) -> dict[str, Any]:
     """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
 
-    Beside each stands `needs_numpy`: whether nodes of the class will load it.
+    Beside each stands `needs_numpy`: whether nodes of the class will load it; and, if that is asked for, `slips`: those
+    in its source, which a node tells when it starts.
     """
     found: dict[str, Any] = {}
     for path in class_paths:
@@ -231,6 +235,8 @@ def interfaces(class_paths: list[str]) -> dict[str, Any]:
             interface = cls.interface()
             has_arrays = any(registry.has_numeric_arrays(e.type) for e in interface.endpoints if e.type)
             found[path] = {**interface.to_json(), "needs_numpy": has_arrays or "numpy" in sys.modules}
+            if with_slips:
+                found[path]["slips"] = [*slips(cls)]  # type: ignore[arg-type] # it can be hashed
         except GraphflowError as error:
             found[path] = {"problem": str(error)}
     return found

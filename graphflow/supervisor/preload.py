@@ -192,10 +192,11 @@ class _Preload:
     def _probe_classes(self, request: dict[str, Any]) -> dict[str, Any]:
         """Import classes in a child of its own, so that what they do stays there."""
         read, write = os.pipe()
-        pid = os.fork()
+        parent, pid = os.getpid(), os.fork()
         if pid == 0:
             try:
                 os.setpgid(0, 0)
+                end_with_parent(parent, signal.SIGKILL)
                 self._channel.close()
                 os.close(read)
                 answer_probe(request, write)
@@ -367,7 +368,7 @@ def answer_probe(request: dict[str, Any], write: int) -> None:
     null = os.open(os.devnull, os.O_RDWR)
     for fd in (0, 1, 2):  # what a module prints while it is imported is dropped
         os.dup2(null, fd)
-    data = json.dumps(interfaces(request["classes"])).encode()
+    data = json.dumps(interfaces(request["classes"], with_slips=request.get("slips", False))).encode()
     while data:
         data = data[os.write(write, data) :]
 

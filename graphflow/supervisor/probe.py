@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterable
 from typing import Any
 
 from graphflow.supervisor.preload import PROBE_LIMIT, answer_probe, probe_result, sweep
-from graphflow.system import detached
+from graphflow.system import detached, end_with_parent
 
 
 def probe(classes: Iterable[str], root: str) -> dict[str, Any]:
-    """What each class declares, as `classes.interfaces` returns it."""
-    return finish(begin(classes, root), classes)
+    """What each class declares, as `classes.interfaces` returns it, with the slips in its source."""
+    return finish(begin(classes, root, with_slips=True), classes)
 
 
-def begin(classes: Iterable[str], root: str) -> subprocess.Popen[bytes]:
+def begin(classes: Iterable[str], root: str, *, with_slips: bool = False) -> subprocess.Popen[bytes]:
     """Start importing classes."""
-    request = json.dumps({"classes": sorted(set(classes)), "root": root})
+    asked = {"classes": sorted(set(classes)), "root": root, "slips": with_slips, "parent": os.getpid()}
+    request = json.dumps(asked)
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.probe", request]
     quiet: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, **detached()}
     return subprocess.Popen(command, stdout=subprocess.PIPE, **quiet)
@@ -41,5 +43,7 @@ def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str
 
 
 if __name__ == "__main__":
-    answer_probe(json.loads(sys.argv[1]), os.dup(1))
+    asked: dict[str, Any] = json.loads(sys.argv[1])
+    end_with_parent(asked["parent"], int(signal.SIGKILL))  # an import that never ends ends with who waits for it
+    answer_probe(asked, os.dup(1))
     os._exit(0)  # a thread that the import has started may never end

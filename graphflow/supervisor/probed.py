@@ -14,3 +14,8 @@ def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
         path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
         for path, value in data.items()
     }
+
+
+def slips_in(data: dict[str, Any]) -> list[str]:
+    """The slips in the source of the classes, each once; a class that is there twice, or derived from, has the same."""
+    return list(dict.fromkeys(text for value in data.values() for text in value.get("slips", ())))

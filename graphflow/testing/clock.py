@@ -11,6 +11,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from graphflow.executor.clock import Clock
+from graphflow.testing.forgotten import awaited
 from graphflow.testing.outside import outside
 from graphflow.times import to_ns
 
@@ -49,6 +50,7 @@ class ManualClock(Clock):
         heapq.heappush(self._alarms, (when_ns, next(self._order), alarm))
         return alarm
 
+    @awaited
     async def advance(self, seconds: float) -> None:
         """Let `seconds` pass: whatever falls due happens in order, each with all its consequences."""
         if seconds < 0:

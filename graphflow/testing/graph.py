@@ -20,6 +20,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.testing.clock import ManualClock, settle
+from graphflow.testing.forgotten import awaited
 from graphflow.testing.outside import outside
 from graphflow.transport.memory import Network
 from graphflow.wire.liveliness import Kind
@@ -84,6 +85,9 @@ _INSTEAD = {
 class Graph(SpeaksRos):
     """Nodes, a clock and a network for the length of a test. Made by the fixture `graph`."""
 
+    def _hint(self, name: str) -> str:
+        return _WAYS.get(name, "")
+
     def __init__(self) -> None:
         self.clock = ManualClock()
         self.network = Network()
@@ -99,6 +103,8 @@ class Graph(SpeaksRos):
         """Each with the full name of its topic."""
         self.unheard: list[tuple[TopicPublisher[Any], int, str]] = []
         """Publishers of the test, with how many messages they had published before the node of that name listened."""
+        self.failed: list[BaseException] = []
+        """Assertions that have failed in nodes, each of which fails the test; one that means them clears the list."""
         self.loop: asyncio.AbstractEventLoop | None = None
         """The event loop that its nodes run in, from the first on."""
 
@@ -113,6 +119,7 @@ class Graph(SpeaksRos):
         if self.loop is not None:
             outside(self.loop).is_awaited = value
 
+    @awaited
     async def start(self, *nodes: Node) -> None:
         """Start nodes, each as if in a process of its own, and let them settle."""
         for node in nodes:
@@ -148,6 +155,7 @@ class Graph(SpeaksRos):
         given = Surroundings(name, namespace, rules, {key: (value, "graph.make") for key, value in parameters.items()})
         return make_within(cls, given, cls.interface().node_name)
 
+    @awaited
     async def stop(self, node: Node) -> None:
         """Stop one node."""
         await core_of(node).stop()
@@ -168,6 +176,7 @@ class Graph(SpeaksRos):
         """A publisher for the test to use."""
         return self._test_node().create_publisher(type_, topic, qos)
 
+    @awaited
     async def call(
         self, type_: type[Service[Request, Response]], name: str, request: Request, *, timeout: float = 10.0
     ) -> Response:
@@ -189,12 +198,13 @@ class Graph(SpeaksRos):
         """A client for the test to send goals with."""
         return self._test_node().create_action_client(type_, name)
 
+    @awaited
     async def settle(self) -> None:
         """Let everything happen that can without time passing."""
         await settle()
 
     async def close(self) -> None:
-        """Stop all nodes; raises the error of a failed node if the test did not catch it."""
+        """Stop all nodes; raises the error of a failed node, if the test did not catch it, or of a failed assertion."""
         for node in reversed(self.nodes):
             await core_of(node).stop()
         for context in self._contexts:
@@ -202,6 +212,20 @@ class Graph(SpeaksRos):
         for core in map(core_of, self.nodes):
             if core.failure is not None and not core.failure_taken:
                 raise core.failure
+        self.raise_failed()
+
+    def raise_failed(self) -> None:
+        """Raise the first assertion that has failed in a node, once: its handler has only logged it."""
+        failures = [core_of(node).failure for node in self.nodes]  # which `close` raises, or the test has taken
+        failed = [error for error in self.failed if error not in failures]
+        self.failed.clear()
+        if failed:
+            raise failed[0]
+
+    def _noticed(self, error: BaseException) -> None:
+        """A node has reported an error: remember what is meant for the test, as `assert` and `pytest.fail` are."""
+        if isinstance(error, AssertionError) or not isinstance(error, (Exception, *_OF_PROGRAMS)):
+            self.failed.append(error)
 
     def _instead_of(self, name: str) -> str:
         known = [word for word in dir(self) if not word.startswith("_")]
@@ -228,6 +252,7 @@ class Graph(SpeaksRos):
         except RuntimeError:
             raise RuntimeError("nodes need the event loop of a test: write async def in place of def") from None
         self._contexts.append(Context(self.network.session(self.loop), clock=self.clock, deadlock=deadlock))
+        self._contexts[-1].noticed = self._noticed
         outside(self.loop).is_awaited = self.waits_outside
         outside(self.loop).ledgers.append(self._contexts[-1].ledger)
         return self._contexts[-1]
@@ -241,5 +266,15 @@ def _run_now(coroutine: Any) -> None:
     raise AssertionError("starting a bare node waited")
 
 
+_ADVANCE = "time passes by await graph.clock.advance(1.0)"
+_WAYS = {
+    **dict.fromkeys(("advance", "sleep", "spin", "spin_once", "run", "wait"), _ADVANCE),
+    "publish": "write graph.publisher(Type, topic).publish(message)",
+    **dict.fromkeys(("subscribe", "subscription", "listen"), "write heard = graph.tap(Type, topic)"),
+    **dict.fromkeys(("add", "add_node", "launch"), "write await graph.start(node)"),
+}
+"""What to write in place of attributes that the fixture has not."""
+_OF_PROGRAMS = (SystemExit, KeyboardInterrupt, GeneratorExit, asyncio.CancelledError)
+"""What is no error of a test's, though no `Exception`."""
 TRANSIENT_LOCAL = Qos(depth=1000, durability=Durability.TRANSIENT_LOCAL)
 """For taps on latched topics."""

@@ -70,15 +70,23 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
             generated.inner_test = test
     if inspect.iscoroutinefunction(item.obj):
         item.obj = _limited(item, item.obj)
-    return (yield)
+        return (yield)
+    result = yield
+    _raise_forgotten("; write async def in place of def")
+    return result
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
-    """Say what could be meant by an attribute that is not there, as the logs of nodes do."""
+    """Say what could be meant by an attribute that is not there, as the logs of nodes do, and what to write."""
     errors = sys.modules.get("graphflow.runtime.attribute_errors")
     if call.excinfo is not None and errors is not None:
         errors.explain(call.excinfo.value)
+        if "graphflow_runner" in getattr(item, "fixturenames", ()):
+            from graphflow.runtime.python_errors import remark_on
+
+            if remark := remark_on(call.excinfo.value):
+                call.excinfo.value.add_note(remark)
     if call.when == "call" and errors is not None and _is_unrun(item, call.excinfo):
         text = f"graphflow runs async tests that use its fixture: write async def {item.name}(graph)"
         item.add_report_section("call", "graphflow", text)
@@ -135,6 +143,10 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                 watching = asyncio.create_task(_end_when_idle(limit)) if graph is not None else None
                 try:
                     await test(*args, **kwargs)
+                    if graph is not None:
+                        graph.raise_failed()
+                        await asyncio.sleep(0)  # what has become a task begins
+                        _raise_forgotten()
                 except (Exception, pytest.fail.Exception):
                     if graph is not None and graph.loop is loop:
                         await _tell_unmet(item, graph)
@@ -155,14 +167,25 @@ def _limited(item: pytest.Function, test: Test) -> Test:
     return limited
 
 
+def _raise_forgotten(way: str = "") -> None:
+    """Fail a test that has not awaited what it has called of its graph."""
+    from graphflow.testing.forgotten import forgotten
+
+    if found := forgotten():
+        raise RuntimeError(f"{found[0]}{way}")
+
+
 async def _tell_unmet(item: pytest.Function, graph: Graph) -> None:
     """Add to the report of a failing test what it may have waited for in vain."""
+    from graphflow.testing.forgotten import forgotten
     from graphflow.testing.unmet import unmet
 
+    await asyncio.sleep(0)  # what has become a task begins
+    found = forgotten()
     try:
-        found = await unmet(graph)
+        found += await unmet(graph)
     except RuntimeError as error:  # it does not come to rest
-        found = [str(error)]
+        found.append(str(error))
     if found:
         item.add_report_section("call", "graphflow", "\n".join(found))
 

@@ -11,8 +11,10 @@ import math
 import select
 import selectors
 from collections.abc import Callable
+from contextvars import Context
 from select import EPOLLIN, EPOLLOUT
 from selectors import EVENT_READ, EVENT_WRITE
+from threading import get_ident
 from typing import Any
 
 
@@ -56,9 +58,32 @@ class _BellSelector(selectors.EpollSelector):
 
 
 class BellLoop(asyncio.SelectorEventLoop):
-    """asyncio's loop; `hang_bell(fd, answer)` calls `answer` when `fd` can be read."""
+    """asyncio's loop; `hang_bell(fd, answer)` calls `answer` when `fd` can be read.
+
+    Attributes:
+        stranger: Called in a thread that has called `call_soon`, which only the loop's own may: the loop sees it when
+            something else has woken it.
+    """
+
+    _closed: bool
+    _debug: bool
+    _ready: Any
+    _thread_id: int | None
+
+    def call_soon(  # type: ignore[override] # which has a variable for the types of the arguments
+        self, callback: Callable[..., object], *args: Any, context: Context | None = None
+    ) -> asyncio.Handle:
+        """As in BaseEventLoop, in one step in place of three; and it looks at the thread."""
+        if self._closed or self._debug:
+            return super().call_soon(callback, *args, context=context)
+        handle = asyncio.Handle(callback, args, self, context)
+        self._ready.append(handle)
+        if get_ident() != self._thread_id and self._thread_id is not None:
+            self.stranger()
+        return handle
 
     def __init__(self) -> None:
+        self.stranger: Callable[[], object] = int
         selector = _BellSelector()
         super().__init__(selector)
         self.hang_bell = selector.hang

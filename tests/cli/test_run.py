@@ -218,3 +218,14 @@ def test_where_logs_go(machine: Machine) -> None:
     node.wait_for("Hello World: 2")
     assert "/rosout" not in machine.look("node", "info", "/talker")
     assert node.end() == 0
+
+
+def test_a_file_that_runs_itself(machine: Machine, tmp_path: Path) -> None:
+    """A file that calls `graphflow.run` for itself is run as the program that it is, with the words of the command."""
+    (tmp_path / "one.py").write_text(
+        "import graphflow\n\n\nclass Talk(graphflow.Node):\n"
+        "    async def on_start(self) -> None:\n        self.log.info('I am here')\n\n\ngraphflow.run(Talk)\n"
+    )
+    program = machine.start("run", "one.py", "-r", "__node:=other", cwd=tmp_path)
+    program.wait_for("[other]: I am here")
+    assert program.end() == 0

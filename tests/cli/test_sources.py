@@ -92,3 +92,16 @@ def test_a_node_where_a_graph_is_wanted(here: Machine, tmp_path: Path, verb: str
     )
     assert "nodes: {/talker: {class: nodes.talk:Talker}}" in text
     assert here.look(verb, "ros/move.py", cwd=tmp_path, code=2).endswith("run it with: graphflow run ros/move.py\n")
+
+
+def test_slips_in_source(here: Machine, tmp_path: Path) -> None:
+    """They are remarks, of a file and of a graph, and change no exit code."""
+    source = NODES.replace(
+        "class Other(Node):", "class Other(Node):\n    def work(self) -> None:\n        self.close\n"
+    )
+    (tmp_path / "nodes" / "talk.py").write_text(source)
+    (tmp_path / "graphs" / "g.yaml").write_text("nodes:\n  /a: {class: nodes.talk:Other}\n")
+    said = f"{tmp_path}/nodes/talk.py:15: self.close without parentheses calls nothing; write: self.close()"
+    assert here.look("check", "nodes", cwd=tmp_path) == f"{said}\nnodes: 2 node classes, no mistakes, 1 remark\n"
+    assert json.loads(here.look("check", "nodes", "--json", cwd=tmp_path))["remarks"] == [said]
+    assert json.loads(here.look("check", "graphs/g.yaml", "--json", cwd=tmp_path))["remarks"] == [said]

@@ -8,10 +8,13 @@ from __future__ import annotations
 import asyncio
 import logging
 import operator
+import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from itertools import starmap
 from queue import SimpleQueue
 from typing import Any, cast
@@ -247,3 +250,46 @@ async def test_closing_it(graphflow_runner: asyncio.Runner, watched: Watched) ->
     watched.watchdog._thread.join(LIMIT)
 
     assert not watched.watchdog._thread.is_alive()
+
+
+class Locked:
+    """Code that waits for what is taken."""
+
+    def __init__(self) -> None:
+        self.lock, self.queue = threading.Lock(), SimpleQueue[type[OSError]]()
+
+    def by_with(self) -> None:
+        with self.lock:
+            pass
+
+    def by_name(self, lock: Any) -> None:
+        lock.acquire()
+        lock.release()
+
+    def otherwise(self) -> None:
+        with suppress(self.queue.get()):
+            pass
+
+
+@pytest.mark.parametrize(
+    ("waits", "name"),
+    [(Locked.by_with, "self.lock"), (lambda it: it.by_name(it.lock), "lock"), (Locked.otherwise, "")],
+)
+def test_a_lock_of_threads(waits: Callable[[Locked], None], name: str) -> None:
+    """The loop that waits for one is told what to have in its place; nothing else is taken for one."""
+    it = Locked()
+    it.lock.acquire()
+    thread = threading.Thread(target=waits, args=(it,), daemon=True)
+    thread.start()
+    lines = [Locked.by_with, Locked.by_name, Locked.otherwise]
+    until = time.monotonic() + LIMIT
+    while True:
+        frame = sys._current_frames()[cast("int", thread.ident)]
+        if any(frame.f_code is fn.__code__ and frame.f_lineno == frame.f_code.co_firstlineno + 1 for fn in lines):
+            break
+        assert time.monotonic() < until
+    told = module._of_lock(cast("Any", frame))
+    assert told.startswith(f"{name} is a lock of threads") if name else told == ""
+    it.queue.put(OSError)
+    it.lock.release()
+    thread.join(LIMIT)

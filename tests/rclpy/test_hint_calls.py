@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,13 +17,16 @@ from tf2_ros import TransformListener
 import rclpy
 from graphflow.rclpy import hints
 from rclpy.action import ActionClient, ActionServer
-from rclpy.executors import ExternalShutdownException
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
 from tests.rclpy.hinted import hint_of
 
 SUPER: Any = super
 LISTENER: Any = TransformListener
+EXECUTOR: Any = SingleThreadedExecutor(context=Context())
 MISTAKES: list[tuple[Callable[[Any], Any], str]] = [
     (
         lambda n: n.create_service(AddTwoInts, "add", n.tick, 10),
@@ -37,6 +41,7 @@ MISTAKES: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: SUPER.__init__("node"), "super is called: write super().__init__('node_name')"),
     (lambda n: rclpy.task.Future().add_done_callback(n.tick()), "without parentheses: n.tick"),
     (lambda n: n.tick(), ""),
+    (lambda n: EXECUTOR.spin(n), "executor.add_node(node), and then executor.spin()"),
 ]
 
 
@@ -141,3 +146,33 @@ def test_a_service_that_returns_no_response(node: Node) -> None:
         rclpy.spin(node)
 
     assert hint_of(run) == "set the fields of response, and return response"
+
+
+class Handle:
+    """Has a property, and a value that is a text."""
+
+    is_cancel_requested = False
+
+    def __init__(self) -> None:
+        self.name = "x"
+
+
+@pytest.mark.parametrize(
+    ("line", "path"),
+    [
+        ("handle.is_cancel_requested()", "handle.is_cancel_requested"),
+        ("print(param.value(), str(handle))", "param.value"),
+        ("given('n').value()", "value"),
+        ("qos()", "qos"),
+        ("print(str()); handle.name()", "handle.name"),
+        ("handle.name(3)", ""),
+    ],
+)
+def test_values_that_are_called(tmp_path: Path, line: str, path: str) -> None:
+    """The one of the line is named."""
+    file = tmp_path / "wrong.py"
+    file.write_text(line)
+    known: dict[str, Any] = {"handle": Handle(), "param": Parameter("n", value=1.5), "qos": QoSProfile(depth=1)}
+    known |= {"given": lambda name: Parameter(name, value=1.5), "print": str}
+    found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
+    assert found == (f"{path} is no function: leave out the parentheses behind it" if path else "")

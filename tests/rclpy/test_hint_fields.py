@@ -5,15 +5,18 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.msg import ParameterValue
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Bool, Header, Int32
 
 from rclpy.clock import Clock
 from rclpy.parameter import Parameter
 from tests.rclpy.hinted import hint_of
+
+ONE = "dimensions, and the field one: write "
 
 
 @pytest.mark.parametrize(
@@ -36,6 +39,14 @@ from tests.rclpy.hinted import hint_of
         ("t.linear.x = n", "write t.linear.x = float(n)"),
         ("t.linear.x = '2'", "write t.linear.x = float('2')"),
         ("t.linear.x = None", ""),
+        (
+            "image.data = zeros((2, 3, 3), 'uint8')",
+            f"the array has 3 {ONE}array.tobytes()",
+        ),
+        (
+            "joints.position = zeros((2, 3))",
+            f"the array has 2 {ONE}array.ravel().tolist()",
+        ),
         ("m.data = 1 << 40", "it was given 1099511627776"),
         ("b.data = 'yes'", "it was given 'yes': write True or False"),
         ("j.name = ['a', 2]", "one of its elements is 2: write [str(v) for v in ...]"),
@@ -57,6 +68,6 @@ def test_values_of_fields(tmp_path: Path, line: str, sentence: str) -> None:
     known = {"m": Int32(), "h": Header(), "t": Twist(), "n": 3, "words": ["a", "7"], "clock": Clock()}
     known |= {"b": Bool(), "j": JointState()}
     known |= {"Int32": Int32, "Twist": Twist, "Vector3": Vector3, "param": Parameter("n", value=1)}
-    known |= {"time": time, "value": ParameterValue()}
+    known |= {"time": time, "value": ParameterValue(), "image": Image(), "joints": JointState(), "zeros": np.zeros}
     found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
     assert found.startswith(sentence) if sentence else found == ""

@@ -78,6 +78,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: n.declare_parameter("gains", [1, 2.5]), "all elements are of one type, as in [1.0, 2.5]"),
     (lambda n: n.declare_parameter("rate", 1.0, "the rate"), "is a ParameterDescriptor(description='the rate')"),
     (lambda n: n.set_parameters(Parameter("n", value=6)), ""),
+    (lambda n: Parameter("n", 2.0), "the value goes by name: Parameter('name', value=2.0)"),  # type: ignore[arg-type]
     (lambda n: [Parameter("n", value=6)].name, "that is a list of parameters: for parameter in parameters"),  # type: ignore[attr-defined]
     (lambda n: n.set_parameters({"n": 6}), "write set_parameters([Parameter('name', value=6)])"),
     (lambda n: n.create_publisher(String, "chat", 1).publish(String), "that is a class and no message: write String()"),

@@ -394,3 +394,20 @@ async def test_a_result_that_cannot_be_sent(graph: Graph, caplog: pytest.LogCapt
         await goal.result()
     assert "sequence" in caplog.text
     assert str(2**40) in caplog.text
+
+
+async def test_feedback_of_another_type(graph: Graph) -> None:
+    """The goal is aborted with how feedback is made."""
+
+    class Server(Node):
+        @action(Fibonacci, "count")
+        async def count(self, goal: Any) -> Fibonacci.Result:
+            goal.feedback([0, 1])
+            return Fibonacci.Result()
+
+    asker = Node("asker")
+    client = asker.create_action_client(Fibonacci, "count")
+    await graph.start(Server(), asker)
+    async with client.send(Fibonacci.Goal(order=1)) as goal:
+        with pytest.raises(GoalAborted, match=r"sends feedback as Fibonacci.Feedback\(sequence=...\), not \[0, 1\]"):
+            await goal.result()

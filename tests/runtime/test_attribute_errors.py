@@ -140,3 +140,28 @@ def test_fields_that_are_set() -> None:
         texts[2],  # Python's own words
     ]
     assert texts[2].startswith("'AddTwoInts_Response' object has no attribute 'summ'")
+
+
+class Follower(Node):
+    """Sets an attribute in a handler, and another when it is made."""
+
+    def __init__(self) -> None:
+        super().__init__("follower")
+        if self.name == "other":
+            self.unmade = 1
+
+    def moved(self, pose: str) -> None:
+        self.pose = pose
+
+
+def test_attributes_that_a_method_sets_later() -> None:
+    """The method is named, unless it has run long ago."""
+    node = Follower()
+    later = "; moved (test_attribute_errors.py:{}) sets it, and has not run yet: begin "
+    for name, text in (("pose", later), ("unmade", "")):
+        with pytest.raises(AttributeError) as caught:
+            getattr(node, name)
+        explain(caught.value)
+        begin = f"'Follower' object has no attribute '{name}'" + text.format(Follower.moved.__code__.co_firstlineno)
+        assert str(caught.value).startswith(begin)
+        assert text or str(caught.value) == begin

@@ -53,6 +53,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: Subscription(String, "x", Qos(depth=5), depth=5), "give a Qos or a depth, not both"),
     (lambda: ActionClient(anything(AddTwoInts), "x"), "ActionClient needs an action class, not <class"),
     (lambda: Client(AddTwoInts, "x", group=anything(1)), "Client: group= takes a Group, not 1"),
+    (lambda: anything(Param)("speed", 1.0), "leave out 'speed', the parameter has the name of its attribute"),
     (lambda: Param(5, step=-1), "a step cannot be -1"),
     (lambda: Param(5, step=0.5), "a step cannot be 0.5"),
     (lambda: Param(1.0).check(anything(of_two_later)), "of_two_later: a check must decide at once; make it a `def`"),

@@ -140,4 +140,6 @@ def test_hooks_are_awaited() -> None:
         made("def on_start(self):\n        print('up')")
     with pytest.raises(DeclarationError, match="on_shutdown is awaited"):
         made("def on_shutdown(self):\n        if self.name:\n            return\n        print('down')")
+    with pytest.raises(DeclarationError, match=r"does not await N.__init__; write def __init__, and await in async"):
+        made("async def __init__(self):\n        super().__init__()")
     made("def on_start(self):\n        return self.begin()\n    async def begin(self): ...")

@@ -12,7 +12,10 @@ import pytest
 from graphflow import ClosedError, MessageInfo, Node, WrongThread, subscription
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Trigger
+from graphflow.runtime.other_threads import tell_strangers
+from graphflow.system import is_portable
 from graphflow.testing import Graph
+from graphflow.transport.loop import new_event_loop
 from tests.runtime.cast import Talker
 
 
@@ -101,3 +104,37 @@ async def test_a_thread_that_goes_on_after_the_end_is_told(graph: Graph) -> None
     for late in (lambda: publisher.publish(String()), lambda: node.call_soon(print), lambda: node.spawn(node.on_start)):
         with pytest.raises(ClosedError):
             await in_a_thread(late)
+
+
+WAY = "changes something of the event loop's, which notices it when something else wakes it, perhaps seconds later"
+
+
+@pytest.mark.skipif(is_portable(), reason="asyncio's own loop does not look")
+def test_what_a_thread_does_to_the_loop(caplog: pytest.LogCaptureFixture) -> None:
+    """Is told once with its line and the way, whether asyncio's code is between or not."""
+
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+        tell_strangers(loop)
+        queue, future, event = asyncio.Queue[int](), loop.create_future(), asyncio.Event()
+        waiting = asyncio.gather(queue.get(), future, event.wait())
+        await asyncio.sleep(0)
+
+        def vendor() -> None:
+            for _ in range(2):
+                queue.put_nowait(1)
+                event.set()
+            future.set_result(None)
+            loop.call_soon_threadsafe(print)
+
+        await in_a_thread(vendor)
+        await waiting
+        lines = [vendor.__code__.co_firstlineno + n for n in (2, 3, 4)]
+        ways = ["queue.put_nowait, ...", "event.set", "future.set_result, ..."]
+        assert [record.message for record in caplog.records] == [
+            f"{__file__}:{line}: thread 'vendor_0' {WAY}; write self.call_soon({way})"
+            for line, way in zip(lines, ways, strict=True)
+        ]
+
+    with asyncio.Runner(loop_factory=new_event_loop) as runner:
+        runner.run(main())

@@ -49,6 +49,28 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         (EXPRESSION.format("NoneType"), "await self.words.publish(String())", PUBLISH),
         ("'NoneType' object can't be awaited", "await self.words.publish(String())", PUBLISH),
         (EXPRESSION.format("method"), "await self.tick", TICK),
+        (
+            EXPRESSION.format("int"),
+            "x = await self.compute(3)",
+            "compute is no `async def`, and returns at once: leave out await",
+        ),
+        (
+            "'float' object can't be awaited",
+            "await total(3)",
+            "total is no `async def`, and returns at once: leave out await",
+        ),
+        (
+            "'AddTwoInts_Response' object is not subscriptable",
+            'print(r["sum"])',
+            "the fields of a message are attributes: write r.sum",
+        ),
+        ("'NoneType' object is not subscriptable", 'print(r["sum"])', ""),
+        (
+            "unsupported operand type(s) for -: 'Time' and 'int'",
+            "dt = self.clock.now() - self.last",
+            "self.last is a number: begin with self.last = self.clock.now(); a span of seconds is "
+            "Duration.of(self.last)",
+        ),
         ("'method' object can't be awaited", "await self.tick", TICK),
         (EXPRESSION.format("TopicSubscription"), "message = await self.heard", HEARD),
         ("'TopicSubscription' object can't be awaited", "message = await self.heard", HEARD),

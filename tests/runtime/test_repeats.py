@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow import Node, subscription, timer
+from graphflow import Node, timer
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime import repeats
 from graphflow.runtime.core import core_of
@@ -95,36 +95,8 @@ def test_what_the_program_has_not_made(
     assert told(caplog) == []
 
 
-class Doubled(Node):
-    """Subscribes what is subscribed, and times what is timed."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.create_subscription(String, "/chatter", self.heard)
-        self.create_timer(1.0, self.tick)
-
-    @subscription(String, "chatter")
-    def heard(self, message: String) -> None:
-        """Do nothing."""
-
-    @timer(1.0)
-    def tick(self) -> None:
-        """Do nothing."""
-
-
 def twice(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.message for record in caplog.records if "twice" in record.message]
-
-
-async def test_what_is_declared_and_made(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Told with the method's line, and which of the two to leave out."""
-    await graph.start(Doubled())
-    heard, tick = (f"{__file__}:{fn.__code__.co_firstlineno}" for fn in (Doubled.heard, Doubled.tick))
-    assert sorted(twice(caplog)) == [
-        f"subscription /chatter calls heard ({heard}) twice for each message: leave out create_subscription, since "
-        "@subscription makes one",
-        f"timer tick calls tick ({tick}) twice for each period: leave out create_timer, since @timer makes one",
-    ]
 
 
 async def test_what_is_made_twice_by_right(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:

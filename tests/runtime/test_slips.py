@@ -108,6 +108,8 @@ def test_slips(robot: object, body: str, told: str) -> None:
         "def on_pose(self, m: String) -> None: ...\nasync def on_start(self) -> None:\n    self.use(self.on_pose)",
         "def work(self):\n    self.rats = 2.0\n    return self.rats",
         "def work(self):\n    self.position = 2.0",
+        "def work(self):\n    self.rates = []",
+        "goal_x = Param(1.0)\ndef work(self):\n    self.goal_y = 2.0",
         "def work(self, other):\n    Robot.times = 2\n    other.rate = 2.0\n    self.rate = 2.0",
         "def work(self, m):\n    m.dat = 'x'",
         "def work(self):\n    m = String()\n    m.data = 'x'",
@@ -152,6 +154,20 @@ def test_a_method_that_another_module_of_the_project_calls(robot: object, tmp_pa
         assert slips(cls) == ()
     finally:
         del sys.modules["slip_other"]
+
+
+def test_an_attribute_that_another_module_of_the_project_reads(robot: object, tmp_path: Path) -> None:
+    """As a test does."""
+    cls = robot("def work(self):\n    self.rat = 2.0")  # type: ignore[operator]
+    other = tmp_path / "slip_test.py"
+    other.write_text("def use(robot):\n    assert robot.rat == 2.0\n")
+    spec = importlib.util.spec_from_file_location("slip_test", other)
+    assert spec is not None
+    sys.modules["slip_test"] = importlib.util.module_from_spec(spec)
+    try:
+        assert slips(cls) == ()
+    finally:
+        del sys.modules["slip_test"]
 
 
 def test_nothing_of_the_users_runs(robot: object) -> None:

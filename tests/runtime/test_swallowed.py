@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import asyncio
 from contextlib import suppress
 from typing import Any
 
-from graphflow.runtime.swallowed import where_caught
+from graphflow.runtime.swallowed import caught_in_vain, where_caught
 
 NAME = "test_swallowed.py"
 
@@ -51,3 +52,49 @@ def test_lines_that_do_not_let_it_pass() -> None:
     made: dict[str, Any] = {}
     exec("def made(): ...", made)
     assert [where_caught(fn) for fn in (waits.lets_it_pass, print, made["made"])] == ["", "", ""]
+
+
+def test_interrupts_that_do_not_come() -> None:
+    """Are told in handlers and coroutines; not where the program runs its nodes, nor where they pass."""
+    source = """
+class Robot(Node):
+    @task
+    async def drive(self):
+        try: ...
+        except KeyboardInterrupt:
+            self.stop()
+
+    @timer(1.0)
+    def tick(self):
+        try: ...
+        except builtins.KeyboardInterrupt:
+            self.stop()
+            raise
+
+    @task
+    async def passes(self):
+        try: ...
+        except KeyboardInterrupt:
+            raise
+        except (KeyboardInterrupt, ValueError):
+            self.stop()
+
+    def main(self):
+        try:
+            graphflow.run(self)
+        except KeyboardInterrupt:
+            self.stop()
+
+    @staticmethod
+    def begin():
+        try: ...
+        except KeyboardInterrupt:
+            print("bye")
+"""
+    definition = ast.parse(source).body[0]
+    assert isinstance(definition, ast.ClassDef)
+    text = (
+        "KeyboardInterrupt does not come to a node, which Ctrl-C cancels: write finally: in place of except, or do "
+        "this in async def on_shutdown(self)"
+    )
+    assert list(caught_in_vain(definition)) == [(6, text), (12, text)]

@@ -57,6 +57,30 @@ def test_a_main_that_nothing_calls(source: str, told: str) -> None:
     assert uncalled(source, "talk.py") == told
 
 
+ALWAYS = "{0} without parentheses is always true; write: {0}()"
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        ("while not self.adder.service_is_ready: pass", "self.adder.service_is_ready"),
+        ("assert self.adder.server_is_ready, 'no'", "self.adder.server_is_ready"),
+        ("if a and not (b or self.adder.wait_for_service): pass", "self.adder.wait_for_service"),
+        ("x = 1 if rclpy.ok else 2", "rclpy.ok"),
+        ("while not self.future.done: pass", "self.future.done"),
+        ("while not self.adder.service_is_ready(): pass", ""),
+        ("if goal.done: pass", ""),
+        ("if self.is_canceled: self.is_canceled = False", ""),
+        ("if self.lamp.ok: pass", ""),
+        ("if asks(self.adder.service_is_ready): pass", ""),
+    ],
+)
+def test_questions_that_are_not_asked(line: str, shown: str) -> None:
+    """Are told where they decide something; attributes of the user's by such names are not."""
+    told = [text for _, text in uncalled_methods(ast.parse(f"def tick(self):\n    {line}\n"))]
+    assert told == ([ALWAYS.format(shown)] if shown else [])
+
+
 def test_methods_without_parentheses() -> None:
     """Known ones that are a statement of their own, and no others."""
     source = "def tick(self):\n    self.timer.cancel\n    self.rate\n    x = self.close\n    self.close()\n"

@@ -37,6 +37,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         "declares": "from graphflow import Node, Param\n\n\nclass Robot(Node):\n    rate = Param(1, ge=3)\n",
         "ends": "raise SystemExit(3)\n",
         "parses": "import json\n\njson.loads('nonsense')\n",
+        "runs": "import graphflow\n\n\ndef main():\n    graphflow.run()\n\n\nmain()\n",
         "asks": "from graphflow import Qos\n\nQos(\n    depth='10')\n",
     }.items():
         (folder / f"{name}.py").write_text(text)
@@ -61,8 +62,7 @@ def test_a_class_by_its_path(project: Path) -> None:
         ("machines.robot:Wheel", "machines.robot:Wheel is not a node class: it does not derive from graphflow.Node"),
         (
             "machines.nowhere:Robot",
-            "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
-            "there is asks, declares, elderly, ends, from_robot, needs, parses, raises, robot, ros, slide, syntax",
+            "cannot import machines.nowhere: there is no module 'machines.nowhere'; modules are looked for in {project}",
         ),
         (
             "nowhere.robot:Robot",
@@ -87,6 +87,11 @@ def test_a_class_by_its_path(project: Path) -> None:
             "machines.from_robot:Robot",
             "cannot import machines.from_robot: {machines}/from_robot.py:1: ImportError: "
             "cannot import name 'Robto' from 'machines.robot' ({machines}/robot.py)",
+        ),
+        (
+            "machines.runs:Robot",
+            "cannot import machines.runs: {machines}/runs.py:8: this calls graphflow.run when it is imported; write it "
+            "below if __name__ == '__main__':",
         ),
         ("machines.ends:Robot", "cannot import machines.ends: {machines}/ends.py:1: SystemExit: 3"),
         (

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -105,4 +107,22 @@ def test_what_an_import_starts_ends_with_it(tmp_path: Path) -> None:
     pid = int((tmp_path / "pid").read_text())
     while alive(pid):
         assert time.monotonic() - began < PROBE_LIMIT
+        time.sleep(0.01)
+
+
+@pytest.mark.real
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a child of its parent's end")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_an_import_ends_with_those_who_wait_for_it(project: Path, number: int) -> None:
+    """However they end."""
+    begins = f"probe.begin(['machines.hangs:Robot'], {str(project)!r})"
+    text = f"from graphflow.supervisor import probe; import time; print({begins}.pid, flush=True); time.sleep(600)"
+    with subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE) as waiting:
+        assert waiting.stdout is not None
+        pid = int(waiting.stdout.readline())
+        assert alive(pid)
+        waiting.send_signal(number)
+    until = time.monotonic() + PROBE_LIMIT
+    while alive(pid):
+        assert time.monotonic() < until
         time.sleep(0.01)

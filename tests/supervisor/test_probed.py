@@ -8,7 +8,7 @@ import sys
 from graphflow.errors import Place, Problem
 from graphflow.interface import Interface
 from graphflow.supervisor.classes import interfaces
-from graphflow.supervisor.probed import read_interfaces
+from graphflow.supervisor.probed import read_interfaces, slips_in
 
 
 def test_an_answer_is_read() -> None:
@@ -19,6 +19,13 @@ def test_an_answer_is_read() -> None:
     assert isinstance(talker, Interface)
     assert [param.name for param in talker.params] == [*talker_params(told)]
     assert read["a:A"] == Problem(Place(""), "there is no module a")
+
+
+def test_slips_are_told_once() -> None:
+    """Two classes may have one of their parent's; where they were not asked for there are none."""
+    assert slips_in({"a:A": {"slips": ["x", "y"]}, "a:B": {"slips": ["y", "z"]}, "a:C": {}}) == ["x", "y", "z"]
+    found = interfaces(["graphflow.nodes.talker:Talker"], with_slips=True)
+    assert slips_in(found) == slips_in(interfaces(["graphflow.nodes.talker:Talker"])) == []
 
 
 def talker_params(told: dict[str, dict[str, list[dict[str, str]]]]) -> list[str]:

@@ -7,7 +7,16 @@ from typing import Any
 
 import pytest
 
-from graphflow import DeclarationError, Node, ParameterError, Publisher, ServiceUnavailable, service, task
+from graphflow import (
+    DeclarationError,
+    Node,
+    ParameterError,
+    Publisher,
+    ServiceUnavailable,
+    service,
+    subscription,
+    task,
+)
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.attribute_errors import explain
@@ -260,3 +269,57 @@ def test_a_test_without_an_event_loop(graph: Graph) -> None:
     """It is told how it gets one."""
     with pytest.raises(RuntimeError, match="write async def in place of def"):
         graph.tap(String, "out")
+
+
+class Probe(Node):
+    """Looks at what it hears."""
+
+    @subscription(String, "words")
+    async def heard(self, message: String) -> None:
+        if message.data == "bad":
+            raise ValueError(message.data)
+        assert message.data == "good", message.data
+
+
+async def test_an_assertion_that_fails_in_a_handler(graph: Graph) -> None:
+    """Fails the test, unless it says that it means it; other errors there do not."""
+    await graph.start(Probe())
+    words = graph.publisher(String, "/words")
+    for data in ("good", "bad"):
+        words.publish(String(data=data))
+    await graph.settle()
+    graph.raise_failed()
+    words.publish(String(data="other"))
+    await graph.settle()
+    with pytest.raises(AssertionError, match="other"):
+        graph.raise_failed()
+    words.publish(String(data="other"))
+    await graph.settle()
+    graph.failed.clear()
+
+
+async def test_an_assertion_that_ends_a_node(graph: Graph) -> None:
+    """Is the test's to take, as other errors that end one are."""
+
+    class Asserts(Node):
+        @task
+        async def work(self) -> None:
+            raise AssertionError
+
+    class Never(Node):
+        async def on_start(self) -> None:
+            raise AssertionError
+
+    node = Asserts()
+    await graph.start(node)
+    with pytest.raises(AssertionError):
+        await node.wait_ended()
+    with pytest.raises(AssertionError):
+        await graph.start(Never())
+    graph.raise_failed()
+
+
+def test_without_an_event_loop() -> None:
+    """The test is a plain function: the way is told."""
+    with pytest.raises(RuntimeError, match="write async def in place of def"):
+        Graph().tap(String, "/words")

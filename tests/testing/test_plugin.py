@@ -111,6 +111,52 @@ def test_a_failing_node_fails_the_test(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*ValueError: broken*"])
 
 
+def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
+    """Fail: where an assertion has failed in a handler, where an `await` is missing, and the `async` of a test."""
+    result = run(
+        pytester,
+        """
+        from counter import Counter
+        from graphflow import Node, subscription
+        from graphflow.msgs.std_msgs.msg import String
+
+        class Probe(Node):
+            @subscription(String, "out")
+            async def heard(self, message):
+                assert message.data == "2"
+
+        async def test_probe(graph):
+            await graph.start(Counter(), Probe())
+            await graph.clock.advance(2.0)
+
+        async def test_advance(graph):
+            graph.clock.advance(2.0)
+
+        def test_start(graph):
+            graph.start(Counter())
+
+        async def test_settle(graph):
+            await graph.settle
+
+        async def test_words(graph):
+            heard = graph.tap(String, "out")
+            assert repr(heard) == "<Tap /out []>"
+            graph.advance(1.0)
+        """,
+    )
+
+    result.assert_outcomes(failed=5)
+    result.stdout.fnmatch_lines(
+        [
+            "*assert *'1' == '2'*",
+            "*test_it.py:15: this does nothing until it is awaited; write await graph.clock.advance(2.0)*",
+            "*test_it.py:18: this * write await graph.start(Counter()); write async def in place of def*",
+            "*call it: await settle()*",
+            "*'Graph' object has no attribute 'advance'; write await graph.clock.advance(1.0)*",
+        ]
+    )
+
+
 def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """After a limit of real time, with an error that shows where it waited."""
     monkeypatch.setattr("graphflow.testing.plugin.LIMIT", 0.01)

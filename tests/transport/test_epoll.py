@@ -6,6 +6,7 @@ import asyncio
 import socket
 import sys
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -137,3 +138,48 @@ def test_an_error_of_one_inbox_is_not_the_others(monkeypatch: pytest.MonkeyPatch
 
     run(main())
     assert [str(error) for error in told_of] == ["no"]
+
+
+async def _in_a_thread(fn: Callable[[], object]) -> None:
+    thread = threading.Thread(target=fn)
+    thread.start()
+    await asyncio.to_thread(thread.join)
+
+
+def test_call_soon_of_another_thread() -> None:
+    """Is told in that thread; the loop's own calls, those of `call_soon_threadsafe` and of a loop at rest are not."""
+    told, called = list[int](), list[int]()
+
+    async def main() -> None:
+        loop: Any = asyncio.get_running_loop()
+        loop.stranger = lambda: told.append(threading.get_ident())
+        loop.call_soon(called.append, 1)
+        await _in_a_thread(lambda: loop.call_soon_threadsafe(called.append, 2))
+        assert told == []
+        await _in_a_thread(lambda: loop.call_soon(called.append, 3))
+        await asyncio.sleep(0)
+
+    loop = BellLoop()
+    loop.call_soon(called.append, 0)
+    loop.run_until_complete(main())
+    loop.close()
+    assert called == [0, 1, 2, 3]
+    assert len(told) == 1
+    assert told != [threading.get_ident()]
+    with pytest.raises(RuntimeError, match="closed"):
+        loop.call_soon(print)
+
+
+def test_call_soon_in_debug_mode() -> None:
+    """Is asyncio's own: it refuses other threads."""
+
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+        with pytest.raises(RuntimeError, match="Non-thread-safe"):
+            await asyncio.to_thread(loop.call_soon, print)
+
+    loop = BellLoop()
+    loop.set_debug(True)
+    loop.run_until_complete(main())
+    loop.run_until_complete(loop.shutdown_default_executor())
+    loop.close()

@@ -86,3 +86,43 @@ def test_messages_without_a_stamp(capfd: pytest.CaptureFixture[str]) -> None:
         source.signalMessage(Int32(data=1))
     assert heard == [(Int32(data=1), Int32(data=1))]
     assert "allow_headerless=True" in capfd.readouterr().err
+
+
+def told(caplog: pytest.LogCaptureFixture, text: str) -> list[str]:
+    return [message for record in caplog.records if text in (message := record.getMessage())]
+
+
+def test_a_synchronizer_without_a_callback(caplog: pytest.LogCaptureFixture) -> None:
+    """Is told once, with its line; one that gets its callback meanwhile, or that hands on, is not."""
+    source, after = SimpleFilter(), SimpleFilter()
+    made = [TimeSynchronizer([source], 10), ApproximateTimeSynchronizer([source], 10, 0.1)]
+    line = test_a_synchronizer_without_a_callback.__code__.co_firstlineno + 3
+    late, chained = TimeSynchronizer([source], 10), TimeSynchronizer([source], 10)
+    Cache(chained)
+    for ms in (10, 20):
+        source.signalMessage(at(ms))
+    late.registerCallback(after.signalMessage)
+    for ms in (30, 40, 50):
+        source.signalMessage(at(ms))
+    text = "this synchronizer has put messages together, and nothing is called with them"
+    way = "write synchronizer.registerCallback(self.callback)"
+    assert told(caplog, text) == [f"test_message_filters.py:{line}: {text}; {way}"] * len(made)
+
+
+def test_a_subscription_that_is_no_filter(node: Node) -> None:
+    """Is refused with the filter to write."""
+    plain = node.create_subscription(PointStamped, "points", print, 10)
+    text = r"TimeSynchronizer takes filters, .* write message_filters.Subscriber\(self, PointStamped, '/points'\)"
+    with pytest.raises(AttributeError, match=text):
+        TimeSynchronizer([plain], 10)  # type: ignore[list-item]
+    with pytest.raises(AttributeError, match="Cache takes filters"):
+        Cache(plain)  # type: ignore[arg-type]
+
+
+def test_messages_without_a_stamp_are_told_now_and_then(caplog: pytest.LogCaptureFixture) -> None:
+    """Not each of them."""
+    source = SimpleFilter()
+    ApproximateTimeSynchronizer([source], 10, 0.1)
+    for _ in range(5):
+        source.signalMessage(Int32())
+    assert len(told(caplog, "a message without a stamp is left out")) <= 1

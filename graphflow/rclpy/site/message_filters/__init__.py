@@ -5,15 +5,24 @@ Source: the Python API of message_filters.
 
 from __future__ import annotations
 
+import logging
+import sys
 import threading
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 from itertools import product
 from typing import Any
 
+from graphflow.deadlock.user_code import short_place, users_frame
 from rclpy.clock import ROSClock
 from rclpy.duration import Duration
 from rclpy.logging import get_logger
+from rclpy.subscription import Subscription
 from rclpy.time import Time
+
+UNHEARD = 3
+"""Times that a synchronizer without a callback puts messages together until that is told."""
+logger = logging.getLogger("graphflow")
 
 __all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
 
@@ -59,6 +68,20 @@ class Subscriber(SimpleFilter):
         return getattr(self.__dict__["sub"], key)
 
 
+def _connected(f: Any, who: object, callback: Callable[..., Any], *args: Any) -> int:
+    """Have a callback called with what comes out of a filter.
+
+    Raises:
+        AttributeError: It is none, such as a subscription.
+    """
+    if isinstance(f, Subscription):
+        kind, name = type(who).__name__, f.msg_type.__name__
+        made = f"message_filters.Subscriber(self, {name}, {f.topic_name!r})"
+        raise AttributeError(f"{kind} takes filters, and a subscription is none; in place of it write {made}")
+    number: int = f.registerCallback(callback, *args)
+    return number
+
+
 class Cache(SimpleFilter):
     """The last messages of a filter, with their times.
 
@@ -77,7 +100,7 @@ class Cache(SimpleFilter):
 
     def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802 - its name there
         """Take messages from a filter."""
-        self.incoming_connection = f.registerCallback(self.add)
+        self.incoming_connection = _connected(f, self, self.add)
 
     def add(self, msg: Any) -> None:
         """Keep a message, and pass it on."""
@@ -132,13 +155,16 @@ class TimeSynchronizer(SimpleFilter):
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
         super().__init__()
         self.queue_size, self.lock = queue_size, threading.Lock()
+        frame = users_frame(sys._getframe(1))
+        self._graphflow_place = f"{short_place(frame.f_code.co_filename, frame.f_lineno)}: " if frame else ""
+        self._graphflow_unheard = 0
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802 - its name there
         """Take messages from filters."""
         self.queues: list[dict[int, Any]] = [{} for _ in fs]
         pairs = enumerate(zip(fs, self.queues, strict=True))
-        self.input_connections = [f.registerCallback(self.add, queue, index) for index, (f, queue) in pairs]
+        self.input_connections = [_connected(f, self, self.add, queue, index) for index, (f, queue) in pairs]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
         """A message has come out of a filter."""
@@ -148,6 +174,14 @@ class TimeSynchronizer(SimpleFilter):
             found = [[queue.pop(stamp) for queue in self.queues] for stamp in common]
         for together in found:
             self.signalMessage(*together)
+
+    def signalMessage(self, *msg: Any) -> None:  # noqa: N802 - its name there
+        super().signalMessage(*msg)
+        if not self.callbacks:
+            self._graphflow_unheard += 1
+            if self._graphflow_unheard == UNHEARD:
+                text = "%sthis synchronizer has put messages together, and nothing is called with them; write %s"
+                logger.warning(text, self._graphflow_place, "synchronizer.registerCallback(self.callback)")
 
     def _keep(self, stamp_ns: int, msg: Any, queue: dict[int, Any]) -> None:
         queue[stamp_ns] = msg
@@ -195,6 +229,10 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return next((stamps for stamps in product(*choices) if max(stamps) - min(stamps) < slop_ns), ())
 
 
+_logger = cache(get_logger)
+"""Loggers that are kept: each knows by itself when it has said something last."""
+
+
 def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Time | None:
     """When a message was made; None, with a warning, if it does not say."""
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
@@ -202,7 +240,8 @@ def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Time | None:
         return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
     if allow_headerless:
         return ROSClock().now()
-    get_logger(logger).warn(
-        "a message without a stamp is left out; allow_headerless=True takes the time of its arrival"
+    _logger(logger).warn(
+        "a message without a stamp is left out; allow_headerless=True takes the time of its arrival",
+        throttle_duration_sec=10.0,
     )
     return None

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 
 from rclpy.duration import Duration
+from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.logging import get_logger
 from rclpy.time import Time
 from tf2_py.exceptions import InvalidArgumentException, TransformException
@@ -44,6 +46,12 @@ def message(pose: Pose, target: str, source: str, stamp: int) -> TransformStampe
     return out
 
 
+@lru_cache(100)
+def _logger(about: str) -> RcutilsLogger:
+    """One for each thing to be said, that is kept: it knows when it has said it last."""
+    return get_logger("tf2")
+
+
 class BufferCore:
     """Transforms between frames over time. May be used by several threads.
 
@@ -70,7 +78,7 @@ class BufferCore:
         pose = pose_of(transform.transform)
         fault = _fault(frame, parent, pose)
         if fault is not None:
-            get_logger("tf2").error(f"transform from {authority!r} is left out: {fault}", throttle_duration_sec=1.0)
+            _logger(fault).error(f"transform from {authority!r} is left out: {fault}", throttle_duration_sec=1.0)
             return
         with self._graphflow_lock:
             stamp = nanoseconds(transform.header.stamp)
@@ -81,7 +89,7 @@ class BufferCore:
             text = (
                 f"transform of {frame!r} from {authority!r} is left out: it is older than what is kept, or one too many"
             )
-            get_logger("tf2").warning(text, throttle_duration_sec=1.0)
+            _logger(frame).warning(text, throttle_duration_sec=1.0)
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:
         """The transform that takes coordinates in `source_frame` to those in `target_frame`.

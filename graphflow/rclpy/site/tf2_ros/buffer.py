@@ -9,10 +9,11 @@ from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.srv import FrameGraph
-from tf2_py import BufferCore
+from tf2_py import BufferCore, LookupException
 
 from rclpy.duration import Duration
 from rclpy.impl.buffers import know_buffer
+from rclpy.impl.unfilled import Unfilled
 from rclpy.task import Future
 from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
 
@@ -31,6 +32,7 @@ class Buffer(BufferCore, BufferInterface):
         self._graphflow_changed = threading.Condition()
         self._graphflow_waiting: dict[Future[Any], Callable[[], tuple[bool, str]]] = {}
         self._graphflow_node = node
+        self._graphflow_unfilled = Unfilled()
         if node is not None:
             self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_answer_frames)
 
@@ -39,10 +41,12 @@ class Buffer(BufferCore, BufferInterface):
         return response
 
     def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+        self._graphflow_unfilled.is_filled = True
         super().set_transform(transform, authority)
         self._graphflow_tell()
 
     def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+        self._graphflow_unfilled.is_filled = True
         super().set_transform_static(transform, authority)
         self._graphflow_tell()
 
@@ -69,7 +73,12 @@ class Buffer(BufferCore, BufferInterface):
             TransformException: One of its kinds says why there is none.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
-        return self.lookup_transform_core(target_frame, source_frame, time)
+        try:
+            return self.lookup_transform_core(target_frame, source_frame, time)
+        except LookupException as error:
+            if self._graphflow_unfilled.remark:
+                error.__notes__ = [f"note: {self._graphflow_unfilled.remark}"]
+            raise
 
     def lookup_transform_full(
         self,
@@ -119,8 +128,11 @@ class Buffer(BufferCore, BufferInterface):
                 left = until - clocks.monotonic()
                 is_over = self._graphflow_node is not None and not self._graphflow_node.context.ok()
                 if answer[0] or left <= 0 or is_over:
-                    return answer
+                    break
                 self._graphflow_changed.wait(min(left, 0.1))  # the end of a context tells nobody
+        if not answer[0]:
+            self._graphflow_unfilled.asked_in_vain(self)
+        return answer
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[bool]:
         """A future that is done as soon as there is that transform."""

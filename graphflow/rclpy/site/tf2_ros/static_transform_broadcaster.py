@@ -8,6 +8,7 @@ from typing import Any
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
+from rclpy.impl.nameless_frames import check
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_ros.transform_broadcaster import as_list
 
@@ -24,5 +25,8 @@ class StaticTransformBroadcaster:
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
         """Publish one transform, or several, with all that were published before: only the last message is kept."""
-        self._sent |= {one.child_frame_id: one for one in as_list(transform)}
+        transforms = as_list(transform)
+        for one in transforms:
+            check(one)
+        self._sent |= {one.child_frame_id: one for one in transforms}
         self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))

@@ -8,6 +8,7 @@ from typing import Any
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
+from rclpy.impl.nameless_frames import check
 from rclpy.qos import QoSProfile
 
 
@@ -19,7 +20,10 @@ class TransformBroadcaster:
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
         """Publish one transform, or several."""
-        self.pub_tf.publish(TFMessage(transforms=as_list(transform)))
+        transforms = as_list(transform)
+        for one in transforms:
+            check(one)
+        self.pub_tf.publish(TFMessage(transforms=transforms))
 
 
 def as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:

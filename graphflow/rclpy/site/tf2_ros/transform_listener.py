@@ -11,6 +11,7 @@ from tf2_py import BufferCore
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from tf2_ros.buffer import Buffer
 
 DEFAULT_TF_TOPIC = "/tf"
 DEFAULT_STATIC_TF_TOPIC = "/tf_static"
@@ -38,6 +39,8 @@ class TransformListener:
         tf_static_topic: str = DEFAULT_STATIC_TF_TOPIC,
     ) -> None:
         self.buffer, self.node = buffer, node
+        if isinstance(buffer, Buffer):
+            buffer._graphflow_unfilled.is_filled = True
         self.group = ReentrantCallbackGroup()
         if static_qos is None:
             kept = DurabilityPolicy.TRANSIENT_LOCAL

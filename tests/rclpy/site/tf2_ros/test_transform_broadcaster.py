@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 
 from geometry_msgs.msg import TransformStamped
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 from tf2_ros.transform_broadcaster import TransformBroadcaster, as_list
 
@@ -26,7 +27,7 @@ def test_they_go_out_on_tf(node: Node) -> None:
     def send() -> None:
         while not broadcaster.pub_tf.get_subscription_count():
             pass
-        broadcaster.sendTransform(TransformStamped(child_frame_id="base"))
+        broadcaster.sendTransform(TransformStamped(header=Header(frame_id="odom"), child_frame_id="base"))
 
     threading.Thread(target=send).start()
     came, message = wait_for_message(TFMessage, node, "/tf", time_to_wait=10)

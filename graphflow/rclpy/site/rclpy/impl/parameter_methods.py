@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from graphflow.deadlock.user_code import place_in
 from graphflow.rclpy import held
+from graphflow.rclpy.hints import hint
 from graphflow.rclpy.life import LOOP
 from graphflow.rclpy.parameter_answers import ParameterAnswers
 from rclpy.impl.arguments import explained
@@ -240,5 +243,9 @@ class ParameterMethods:
 
         try:
             return self.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in given])
-        except Exception as error:  # whatever a user's check raises is told to who asked
+        except Exception as error:  # whatever a user's check raises is told to who asked, and here
+            if place := place_in(error):
+                note = hint(error)
+                text = f"{Path(place).name}: {type(error).__name__}: {error}{note and '; '}{note}"
+                self._graphflow_as_node.get_logger().error(f"parameters were not set: {text}")
             return SetParametersResult(successful=False, reason=str(error))

@@ -18,7 +18,7 @@ from graphflow.machines.lifecycle import (
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
-from rclpy.impl.arguments import must_return
+from rclpy.impl.arguments import described, must_return
 from rclpy.impl.passing import passed_on
 from rclpy.lifecycle.managed_entity import ManagedEntity
 from rclpy.lifecycle.publisher import LifecyclePublisher
@@ -154,6 +154,10 @@ class LifecycleNodeMixin(ManagedEntity):
                 answer = getattr(entity, hook)(state)
             except Exception as error:  # it counts as an error of the node's, as in ROS 2, and is told
                 node: Any = self
+                if isinstance(error, TypeError) and error.__traceback__ is not None and not error.__traceback__.tb_next:
+                    way = f"write def {hook}(self, state):"
+                    node.get_logger().error(f"{described(getattr(entity, hook))}: {error}; {way}")
+                    return Outcome.ERROR
                 node.get_logger().error(f"{hook} raised {type(error).__name__}: {error}")
                 traceback.print_exc()
                 return Outcome.ERROR

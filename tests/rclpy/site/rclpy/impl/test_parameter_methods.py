@@ -115,3 +115,29 @@ def test_values_that_are_refused_without_a_reason(node: Node, caplog: pytest.Log
     node.set_parameters([Parameter("n", value=6)])
     (text,) = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
     assert text.endswith("is not looked at: (the callback gave no reason)")
+
+
+def test_callbacks_that_raise_for_others(node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture) -> None:
+    """Are told in the node's own log, too, with the line; what the caller has done wrong is not."""
+    node.declare_parameter("n", 5)
+
+    def check(parameters: Any) -> Any:
+        return parameters.name
+
+    def ask(*parameters: Parameter[Any]) -> str:
+        request = SetParametersAtomically.Request(parameters=[p.to_parameter_msg() for p in parameters])
+        client = node.create_client(SetParametersAtomically, "node/set_parameters_atomically")
+        answer: Any = client.call_async(request)
+        spin(answer.done)
+        return str(answer.result().result.reason)
+
+    assert "unknown" in ask(Parameter("unknown", value=6))
+    assert caplog.records == []
+    node.add_on_set_parameters_callback(check)
+    reason = "'list' object has no attribute 'name'"
+    assert ask(Parameter("n", value=6)) == reason
+    line = check.__code__.co_firstlineno + 1
+    assert [record.getMessage() for record in caplog.records] == [
+        f"parameters were not set: test_parameter_methods.py:{line}: AttributeError: {reason}; that is a list of "
+        "parameters: for parameter in parameters, and parameter.name"
+    ]

@@ -63,6 +63,25 @@ def test_a_callback_that_raises_is_an_error_that_is_told(caplog: pytest.LogCaptu
     assert "on_configure raised ValueError: no camera" in caplog.text
 
 
+def test_a_callback_without_the_state(caplog: pytest.LogCaptureFixture) -> None:
+    """Is told with how it is written, as `on_configure(self)` is; errors of its own code keep their place."""
+
+    class Broken(LifecycleNode):
+        def on_configure(self) -> Any:  # type: ignore[override]
+            raise AssertionError
+
+        def on_error(self, state: Any) -> Any:
+            raise TypeError("its own")
+
+    rclpy.init()
+    node = Broken("node", enable_communication_interface=False)
+    assert node.trigger_configure() is ERROR
+    line = Broken.on_configure.__code__.co_firstlineno
+    assert f"on_configure (test_node.py:{line}): " in caplog.text
+    assert "; write def on_configure(self, state):" in caplog.text
+    assert "on_error raised TypeError" in caplog.text
+
+
 def test_others_ask_and_change_the_state(node: Node, spin: Spinner) -> None:
     """And hear of it."""
     events: list[Any] = []

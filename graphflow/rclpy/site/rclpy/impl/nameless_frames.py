@@ -1,0 +1,37 @@
+"""Transforms that are sent without the names of their frames: every listener leaves them out.
+
+In ROS 2 the listeners say so, and the sender, whose mistake it is, nothing.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+from typing import Any
+
+from graphflow.deadlock.user_code import short_place, users_frame
+from graphflow.errors import Place
+
+_told: set[Place] = set()
+"""The lines of which it has been told."""
+logger = logging.getLogger("graphflow")
+
+
+def check(transform: Any) -> None:
+    """Tell of a transform that names no frames, or one frame twice, at the line that sends it."""
+    frame, parent = transform.child_frame_id, transform.header.frame_id
+    if frame and parent and frame != parent:
+        return
+    caller = users_frame(sys._getframe(1))
+    if caller is None:
+        return
+    place = short_place(caller.f_code.co_filename, caller.f_lineno)
+    if place in _told:
+        return
+    _told.add(place)
+    if frame and parent:
+        wrong, way = f"says where {frame!r} is in itself", "child_frame_id is the frame that is placed in frame_id"
+    else:
+        lacking = "child_frame_id" if parent else "header.frame_id"
+        wrong, way = f"has no {lacking}", f"write transform.{lacking} = 'base_link' before"
+    logger.warning("%s: this transform %s, and every listener leaves it out; %s", place, wrong, way)

@@ -1,0 +1,69 @@
+"""A buffer of transforms that is asked, and that nothing fills: its program has made no listener.
+
+In ROS 2 each answer is that the frame does not exist.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+from collections.abc import Iterator
+from types import FrameType
+from typing import Any
+
+from graphflow.deadlock.syntax import syntax_of
+from graphflow.deadlock.user_code import is_installed, is_users, short_place, users_frame
+
+TELL_AFTER = 1.0
+"""Seconds from the first question in vain: a listener may be made after it."""
+_FILLERS = ("set_transform", "set_transform_static")
+logger = logging.getLogger("graphflow")
+
+
+class Unfilled:
+    """What is known of who fills one buffer."""
+
+    def __init__(self) -> None:
+        self.is_filled = False
+        """Whether there was a listener, or a transform."""
+        self.remark = ""
+        """What to do, once it has been told."""
+        self._since: float | None = None
+
+    def asked_in_vain(self, buffer: Any) -> None:
+        """A question had no answer."""
+        now = time.monotonic()
+        if self._since is None:
+            self._since = now
+        if self.is_filled or self.remark or now - self._since < TELL_AFTER:
+            return
+        if any(_names_a_filler(file) for file in _users_files()):
+            self.is_filled = True  # it may be yet
+            return
+        frame = users_frame(sys._getframe(1))
+        name = _name(buffer, frame)
+        self.remark = f"nothing fills this Buffer; write self.listener = TransformListener({name}, self)"
+        place = "" if frame is None else f"{short_place(frame.f_code.co_filename, frame.f_lineno)}: "
+        logger.warning("%s%s", place, self.remark)
+
+
+def _users_files() -> Iterator[str]:
+    for module in list(sys.modules.values()):
+        file: str | None = getattr(module, "__file__", None)
+        if file is not None and file.endswith(".py") and is_users(file) and not is_installed(file):
+            yield file
+
+
+def _names_a_filler(file: str) -> bool:
+    try:
+        return any(getattr(node, "attr", "") in _FILLERS for node, _ in syntax_of(file).parts)
+    except (OSError, SyntaxError, ValueError):  # no source to be read: who knows
+        return True
+
+
+def _name(buffer: object, frame: FrameType | None) -> str:
+    """How the code that asks a buffer calls it."""
+    own = frame.f_locals.get("self") if frame is not None else None
+    names = [name for name, value in getattr(own, "__dict__", {}).items() if value is buffer]
+    return f"self.{names[0]}" if names else "buffer"
