@@ -29,6 +29,7 @@ import time
 from contextlib import suppress
 from typing import Any, NamedTuple, NoReturn
 
+from graphflow.machines.process import Exit
 from graphflow.supervisor import family
 from graphflow.supervisor.guardian import GRACE
 from graphflow.supervisor.orphaned import LOG_VARIABLE, Orphan
@@ -220,10 +221,10 @@ class _Preload:
         os.close(read)
         if not done:
             os.kill(pid, signal.SIGKILL)
-        os.waitpid(pid, 0)
+        code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
         sweep(pid)  # what the import has started
         self._end_orphans()
-        result = probe_result(data, done, request["classes"])
+        result = probe_result(data, done, request["classes"], code)
         if any(found.get("needs_numpy") for found in result.values()):
             import numpy  # noqa: F401 - once, for all workers
         return result
@@ -373,13 +374,18 @@ def answer_probe(request: dict[str, Any], write: int) -> None:
         data = data[os.write(write, data) :]
 
 
-def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
-    """What a probing child wrote, or why it wrote nothing."""
+def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> dict[str, Any]:
+    """What a probing child wrote, or why it did not write all.
+
+    Args:
+        code: Its exit code, negative for a signal.
+    """
     if not done:
         why = f"importing it takes longer than {PROBE_LIMIT:.0f} s; do the work in the node, not at import"
         return {path: {"problem": why} for path in classes}
-    if not data:
-        return {path: {"problem": "the process that imported it died"} for path in classes}
+    if code or not data:
+        how = f"the process that imported it was ended by {Exit.of_status(code)}"
+        return {path: {"problem": how} for path in classes}
     result: dict[str, Any] = json.loads(data)
     return result
 

@@ -34,12 +34,12 @@ def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str
         try:
             out, _ = probing.communicate(timeout=PROBE_LIMIT)
         except subprocess.TimeoutExpired:
-            return probe_result(b"", False, sorted(set(classes)))
+            return probe_result(b"", False, sorted(set(classes)), 0)
         finally:
             probing.kill()
             if hasattr(os, "killpg"):
                 sweep(probing.pid)
-    return probe_result(out, True, sorted(set(classes)))
+    return probe_result(out, True, sorted(set(classes)), probing.returncode)
 
 
 if __name__ == "__main__":

@@ -152,7 +152,10 @@ def test_names_made_at_run_time_are_taken_on_trust() -> None:
             "module a.b has no class 'Chasr'; did you mean 'Chaser'?",
             "module a.b has no class 'Chasr'; did you mean 'Chaser'?",
         ),
-        ("the process that imported it died", "a.b:Chasr: the process that imported it died"),
+        (
+            "the process that imported it was ended by exit code 3",
+            "a.b:Chasr: the process that imported it was ended by exit code 3",
+        ),
         ("cannot import a.b: b.py:3: ValueError: two\n  lines", "cannot import a.b: b.py:3: ValueError: two lines"),
     ],
 )

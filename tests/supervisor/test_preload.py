@@ -72,11 +72,13 @@ def test_what_a_node_has_started_goes_with_it(machine: Machine, project: Path, h
 
 
 def test_what_a_probing_child_wrote() -> None:
-    """Its answer, or one problem for each class: that it took too long, or died."""
-    assert probe_result(b'{"a:A": {"doc": ""}}', True, ["a:A"]) == {"a:A": {"doc": ""}}
-    died = {"problem": "the process that imported it died"}
-    assert probe_result(b"", True, ["a:A", "b:B"]) == {"a:A": died, "b:B": died}
-    late = probe_result(b'{"a', False, ["a:A"])["a:A"]["problem"]
+    """Its answer, or one problem for each class: that it took too long, or what ended it, even within its answer."""
+    assert probe_result(b'{"a:A": {"doc": ""}}', True, ["a:A"], 0) == {"a:A": {"doc": ""}}
+    ended = {"problem": "the process that imported it was ended by exit code 0"}
+    assert probe_result(b"", True, ["a:A", "b:B"], 0) == {"a:A": ended, "b:B": ended}
+    killed = probe_result(b'{"a', True, ["a:A"], -signal.SIGKILL)["a:A"]["problem"]
+    assert killed.startswith("the process that imported it was ended by signal SIGKILL")
+    late = probe_result(b'{"a', False, ["a:A"], -signal.SIGKILL)["a:A"]["problem"]
     assert late.startswith(f"importing it takes longer than {PROBE_LIMIT:.0f} s; ")
 
 

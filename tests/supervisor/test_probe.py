@@ -58,11 +58,11 @@ def test_what_a_class_declares(project: Path) -> None:
     ("class_path", "problem"),
     [
         ("machines.robot:Robto", "module machines.robot has no class 'Robto'; did you mean 'Robot'?"),
-        ("machines.dies:Robot", "the process that imported it died"),
+        ("machines.dies:Robot", "the process that imported it was ended by exit code 3"),
     ],
 )
 def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path) -> None:
-    """What `classes` tells comes back, and that the process told nothing is told, too."""
+    """What `classes` tells comes back; of a process that told nothing, how it ended."""
     fault = found(project, class_path)[class_path]
     assert isinstance(fault, Problem)
     assert fault.message == problem
