@@ -286,7 +286,7 @@ def logs(
 ) -> int:
     """Show what the nodes of a graph have written, even after it has ended."""
     from graphflow.cli.loglines import Chosen
-    from graphflow.cli.streaming import LogReader
+    from graphflow.cli.streaming import LogReader, how_ended
     from graphflow.names import did_you_mean
     from graphflow.supervisor import rundir
     from graphflow.supervisor.choosing import choose
@@ -302,6 +302,8 @@ def logs(
             raise
         folder, alive = found, False
         output.talk(f"{error}\nthe latest run of {folder.parent.name}, {folder.name}:")
+        if how := how_ended(folder):
+            output.talk(f"how it ended: {how}")
     files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != rundir.SUPERVISOR_LOG}
     wanted = [n.strip("/").replace("/", ".") for n in (*nodes, *more)] or list(files)
     for node in wanted:

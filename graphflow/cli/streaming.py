@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import select
 import signal
@@ -18,7 +19,7 @@ from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control_client import ControlClient
 from graphflow.supervisor.family import state_of
-from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun
+from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, left_over
 from graphflow.system import is_portable, terminal_name
 
 _POLL = 0.1
@@ -296,16 +297,34 @@ def tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
 
 def last_words(run: GraphRun) -> str:
     """The report that the guardian has written of a supervisor's death; empty if it could not."""
-    log = Path(run.logs) / SUPERVISOR_LOG
-    try:
-        lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        lines = []
     begin = f"the supervisor, process {run.pid}, was ended"
-    for line in reversed(lines):
+    for line in reversed(_supervisor_log(Path(run.logs))):
         if line.startswith(begin):
             return line
     return ""
+
+
+def how_ended(logs: Path) -> str:
+    """What ended the graph with a folder of logs; empty if it ended by itself, or nobody could write it down."""
+    for _, run in left_over():
+        if run.logs == str(logs):
+            return f"the supervisor, process {run.pid}, was killed{', and its guardian' if run.guardian else ''}"
+    for line in reversed(_supervisor_log(logs)):
+        if line.startswith("the supervisor, process "):
+            return line
+        told = line.partition(" INFO ")[2]
+        if told.startswith(('{"event": "error"', '{"event": "stopping"')):
+            with suppress(ValueError):  # a full disk has cut it off
+                event: dict[str, Any] = json.loads(told)
+                return str(event["message"] if event["event"] == "error" else f"it was stopped ({event['reason']})")
+    return ""
+
+
+def _supervisor_log(logs: Path) -> list[str]:
+    try:
+        return (logs / SUPERVISOR_LOG).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
 
 
 def _shown(place: str) -> str:
