@@ -408,6 +408,10 @@ def _is_own(node: ast.AST) -> bool:
 @cache
 def _module(file: str) -> ast.Module:
     try:
-        return ast.parse(found_text(Path(file)))
+        text = found_text(Path(file))
+        try:
+            return ast.parse(text)
+        except SystemError:  # CPython until 3.11.7: another thread has parsed something meanwhile (gh-106905)
+            return ast.parse(text)
     except (OSError, SyntaxError, UnicodeDecodeError):
         return ast.Module([], [])

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from graphflow.graph.resolve import load
-from graphflow.graph.static import findings
+from graphflow.graph.static import _module, findings
 from graphflow.supervisor.classes import add_root, import_class
 from tests.conftest import PROJECT
 
@@ -204,3 +206,18 @@ def test_what_gets_out_of_sight_is_said(tmp_path: Path) -> None:
         "timer tick of /asker hands self.other on, and its calls there are not followed",
         "timer tick of /asker uses self.other in a task, whose end is not followed",
     ]
+
+
+def test_a_source_that_is_parsed_while_another_thread_parses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """CPython until 3.11.7 may then raise SystemError: it is parsed again."""
+    file, parse = tmp_path / "talker.py", ast.parse
+    file.write_text("count = 0\n")
+    errors = [SystemError("AST constructor recursion depth mismatch (before=42, after=99)")]
+
+    def disturbed(text: str) -> Any:
+        if errors:
+            raise errors.pop()
+        return parse(text)
+
+    monkeypatch.setattr(ast, "parse", disturbed)
+    assert len(_module(str(file)).body) == 1
