@@ -62,7 +62,8 @@ def test_a_class_by_its_path(project: Path) -> None:
         ("machines.robot:Wheel", "machines.robot:Wheel is not a node class: it does not derive from graphflow.Node"),
         (
             "machines.nowhere:Robot",
-            "cannot import machines.nowhere: there is no module 'machines.nowhere'; modules are looked for in {project}",
+            "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
+            "modules are looked for in {project}",
         ),
         (
             "nowhere.robot:Robot",
