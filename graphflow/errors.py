@@ -17,6 +17,7 @@ GraphflowError
 |-- SupervisorError           a graph could not be started, or is not running
 |-- NoModule                  a node class is looked for in a module that is not there
 |-- UsageFault                the words on the command line are wrong
+|   `-- RunsWhenImported      a module that is imported for its classes runs nodes
 |-- Abort                     what an action's handler raises to end its goal as aborted
 |-- GoalError                 a goal ended without success
 |   |-- GoalRejected          the server did not accept it
@@ -122,6 +123,10 @@ class NoModule(GraphflowError):
 
 class UsageFault(GraphflowError):
     """The words on the command line are wrong."""
+
+
+class RunsWhenImported(UsageFault):
+    """A module that is imported for its classes runs nodes: it is a program of its own."""
 
 
 class Place(NamedTuple):

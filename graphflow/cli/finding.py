@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graphflow.cli import output
-from graphflow.errors import GraphflowError, NoModule, UsageFault
+from graphflow.errors import GraphflowError, NoModule, RunsWhenImported, UsageFault
 from graphflow.graph.executables import SLIP, find, project_nodes, with_graphflow
 from graphflow.graph.installed import installed, package_of, packages_with
 from graphflow.graph.model import class_meant
@@ -20,7 +20,6 @@ from graphflow.graph.project import demos_root, project_root
 from graphflow.graph.unfound import owners, why_no_package
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean, nearest
-from graphflow.runtime.importing import RunsWhenImported
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, nearest_module, node_classes
 
 FOLDERS = 1000

@@ -14,7 +14,7 @@ import click
 
 from graphflow.cli import output
 from graphflow.cli.placing import before_the_verb, behind
-from graphflow.errors import GraphflowError, UsageFault
+from graphflow.errors import GraphflowError, RunsWhenImported, UsageFault
 from graphflow.reading import found_text
 
 _VERBS = {("rmw_zenoh_cpp", "rmw_zenohd"): "router", ("rqt_graph", "rqt_graph"): "graph"}
@@ -45,7 +45,6 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     from graphflow.names import Resolver
     from graphflow.rclpy.programs import find_program
     from graphflow.runtime.args import cut_off, parse_ros_args
-    from graphflow.runtime.importing import RunsWhenImported
     from graphflow.runtime.run import run as run_node
     from graphflow.runtime.unread import unread
 

@@ -7,12 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from graphflow.deadlock.user_code import users_frame
-from graphflow.errors import Place, UsageFault
-
-
-class RunsWhenImported(UsageFault):
-    """A module runs nodes when it is imported: it is a program of its own."""
-
+from graphflow.errors import Place, RunsWhenImported
 
 _names: list[str] = []
 """The modules that are being imported, the innermost last."""
