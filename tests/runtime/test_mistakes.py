@@ -23,6 +23,7 @@ from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.supervisor.classes import import_class
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.conftest import PROJECT
 
 PAGE = PROJECT / "docs" / "mistakes.md"
@@ -287,6 +288,7 @@ def cleaned(text: str, file: Path) -> str:
     return re.sub(r"(there is )/\w+/\w+.*", r"\1...", text).replace("|", "\\|").replace("*", "\\*")
 
 
+@slow
 @pytest.mark.usefixtures("graphflow_runner")
 async def test_the_table(folder: Path, graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """Every mistake is answered as the page shows."""

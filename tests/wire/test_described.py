@@ -13,7 +13,7 @@ from graphflow.wire.cdr import Codec
 from graphflow.wire.described import FieldSaid, definition_of, verified
 from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import base_of, referenced, type_id
-from tests.cases import sample
+from tests.cases import sample, slow
 
 from .messages import types_of
 
@@ -99,7 +99,7 @@ def test_types_that_multiply(sources: dict[str, str], message: str) -> None:
 
 
 @pytest.mark.timeout(60)
-@pytest.mark.parametrize("text", ["{0} x\n{0} y", "{0}[] x\n{0}[] y"])
+@pytest.mark.parametrize("text", [pytest.param("{0} x\n{0} y", marks=slow), "{0}[] x\n{0}[] y"])
 def test_the_largest_that_are_not_refused(text: str) -> None:
     """Can be read and written within bounds, too: no decoder is written twice."""
     found = verified("p/msg/A", "", nested(13, text))
