@@ -89,7 +89,7 @@ def _refuse_source(file: Path) -> None:
     Raises:
         UsageFault: It has nodes.
     """
-    from graphflow.graph.executables import node_classes_in
+    from graphflow.graph.node_classes import node_classes_in
     from graphflow.graph.workspace import uses_ros
 
     classes = [] if uses_ros(file) else list(node_classes_in(file))

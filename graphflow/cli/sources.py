@@ -11,7 +11,7 @@ from graphflow.cli import exits, output
 from graphflow.errors import Place, Problem, UsageFault
 from graphflow.graph import static
 from graphflow.graph.check import check
-from graphflow.graph.executables import node_classes_in
+from graphflow.graph.node_classes import node_classes_in
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.graph.project import add_interfaces, module_of, shown
 from graphflow.graph.rclpy_source import files_in, findings_in, unfollowed_in

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from graphflow.graph.installed import GROUP, Installed, installed, package_of
+from graphflow.graph.node_classes import sole_class_in
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
 from graphflow.graph.unfound import why_no_package
@@ -74,9 +75,9 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     if module is None and package in (root.name, _project_name(root)):
         module = f"nodes.{executable}"
     file = root / f"{module.replace('.', '/')}.py" if module is not None else None
-    classes = list(node_classes_in(file)) if file is not None and file.is_file() and not uses_ros(file) else []
-    if len(classes) == 1:
-        return Executable(f"{module}:{classes[0]}", executable)
+    sole = sole_class_in(file) if file is not None and file.is_file() and not uses_ros(file) else None
+    if sole is not None:
+        return Executable(f"{module}:{sole}", executable)
     outside = package_of(package)
     nodes = dict(outside.nodes) if outside is not None else {}
     if package in (root.name, _project_name(root)):
@@ -343,12 +344,6 @@ def _project(root: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}
-
-
-def node_classes_in(file: Path) -> dict[str, int]:
-    """Classes of a file that are nodes by what they derive from, and the line of each."""
-    definitions = [node for node in _parsed(file).body if isinstance(node, ast.ClassDef)]
-    return {node.name: node.lineno for node in definitions if any(ast.unparse(b).endswith("Node") for b in node.bases)}
 
 
 def _parsed(file: Path) -> ast.Module:
