@@ -28,6 +28,7 @@ from graphflow.names import nearest
 from graphflow.runtime import declared
 from graphflow.runtime.declare import Param
 from graphflow.runtime.misgiven import misgiven
+from graphflow.runtime.overridden import overridden
 from graphflow.runtime.swallowed import caught_in_vain
 from graphflow.runtime.twice import definition_of
 from graphflow.runtime.uncalled import uncalled_methods
@@ -62,6 +63,7 @@ def _slips(cls: type) -> Iterator[str]:
                 if isinstance(method, FunctionNode):
                     yield from _wrong_fields(method, file, space)
             told = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
+            told = (*told, *overridden(parent, definition))
             yield from (f"{Place(file, line)}: {text}" for line, text in told)
 
 
