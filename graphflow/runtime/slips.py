@@ -27,6 +27,7 @@ from graphflow.msgs.base import Message, no_field
 from graphflow.names import nearest
 from graphflow.runtime import declared
 from graphflow.runtime.declare import Param
+from graphflow.runtime.ineffective import ineffective
 from graphflow.runtime.misgiven import misgiven
 from graphflow.runtime.overridden import overridden
 from graphflow.runtime.swallowed import caught_in_vain
@@ -63,7 +64,7 @@ def _slips(cls: type) -> Iterator[str]:
                 if isinstance(method, FunctionNode):
                     yield from _wrong_fields(method, file, space)
             told = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
-            told = (*told, *overridden(parent, definition))
+            told = (*told, *ineffective(definition), *overridden(parent, definition))
             yield from (f"{Place(file, line)}: {text}" for line, text in told)
 
 

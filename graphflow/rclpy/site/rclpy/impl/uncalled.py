@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.deadlock.syntax import syntax_of
 from graphflow.deadlock.user_code import is_users, short_place
+from graphflow.runtime.ineffective import ineffective
 from graphflow.runtime.misgiven import misgiven
 from graphflow.runtime.uncalled import uncalled_methods
 from rclpy.impl.entities import entities_of
@@ -48,7 +49,8 @@ class Uncalled:
             self._files.add(file)
             with suppress(OSError, SyntaxError, ValueError):  # no source to be read
                 module = syntax_of(file).module
-                for line, text in (*uncalled_methods(module), *misgiven(module, "executor.create_task({})")):
+                told = (*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module))
+                for line, text in told:
                     logger.warning("%s: %s", short_place(file, line), text)
 
 

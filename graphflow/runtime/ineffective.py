@@ -1,0 +1,44 @@
+"""Lines of a method that compare or compute and do nothing with it: `self.state == "MOVE"`, where `=` was meant."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+_SIGNS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+_PLACES = (ast.Name, ast.Attribute, ast.Subscript)
+"""What can be set."""
+
+
+def ineffective(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """The lines of functions that are only such an expression, each with what to write.
+
+    The functions of tests are left out, and what stands in a `try` or a `with`: it may be run for its error.
+    """
+    todo: list[tuple[ast.AST, bool]] = [(code, False)]
+    while todo:
+        node, is_inside = todo.pop()
+        match node:
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) if name.startswith("test"):
+                continue
+            case ast.FunctionDef() | ast.AsyncFunctionDef():
+                is_inside = True
+            case ast.ClassDef():
+                is_inside = False
+            case ast.Expr(value=value) if is_inside and (text := _instead(value)):
+                yield node.lineno, text
+        children = list(ast.iter_child_nodes(node))
+        if isinstance(node, (ast.Try, ast.TryStar, ast.With, ast.AsyncWith)) and len(node.body) == 1:
+            children = [child for child in children if child not in node.body]
+        todo += [(child, is_inside) for child in reversed(children)]
+
+
+def _instead(value: ast.expr) -> str:
+    match value:
+        case ast.Compare(left=left, ops=[ast.Eq()]) if isinstance(left, _PLACES):
+            return f"{ast.unparse(value)} compares and does nothing; write = to set it"
+        case ast.BinOp(left=left, op=op, right=ast.Constant(value=int() | float())) if isinstance(left, _PLACES):
+            sign = _SIGNS.get(type(op))
+            set_ = f"{ast.unparse(left)} {sign}= {ast.unparse(value.right)}"
+            return f"{ast.unparse(value)} computes and does nothing; write {set_}" if sign else ""
+    return ""
