@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import linecache
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
-from graphflow.graph import rewritten, yaml_slips
+from graphflow.graph import rewritten, source, yaml_slips
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
 from graphflow.interface import (
     COMMON_PARAMETERS,
@@ -16,6 +17,7 @@ from graphflow.interface import (
     EndpointKind,
     GroupInfo,
     Interface,
+    Parameter,
     may_make,
 )
 from graphflow.msgs.base import Message
@@ -142,9 +144,25 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
         try:
             declared.fit(setting.value)
         except ParameterError as error:
-            is_of_list = isinstance(setting.value, str) and declared.type.startswith("list[")
-            way = yaml_slips.as_list(setting.value) if is_of_list else ""
+            way = _meant(declared, setting)
             yield Problem(setting.place, f"{error}; {way}" if way else str(error))
+
+
+def _meant(declared: Parameter, setting: Setting) -> str:
+    """What to write for a text that a parameter does not take: a list in brackets, or the value without quotes."""
+    value, place = setting.value, setting.place
+    if not isinstance(value, str):
+        return ""
+    if declared.type.startswith("list[") and (way := yaml_slips.as_list(value)):
+        return way
+    linecache.checkcache(place.file)
+    if not linecache.getline(place.file, place.line)[place.column - 1 :].startswith((f"'{value}'", f'"{value}"')):
+        return ""  # it comes from a substitution, or from elsewhere
+    try:
+        declared.fit(source.parse_value(value))
+    except GraphflowError:
+        return ""
+    return f"leave out the quotes: {declared.name}: {value.strip()}"
 
 
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:

@@ -194,6 +194,7 @@ def _build(text: str, file: str, *, is_params: bool, complain: Callable[[Place, 
     stack: list[_Frame] = []
     pending: list[str | None] = []
     root: list[Any] = []
+    told: set[tuple[int, str]] = set()
     refused: list[tuple[dict[str, Any], str]] = []
     documents = count = 0
 
@@ -213,7 +214,7 @@ def _build(text: str, file: str, *, is_params: bool, complain: Callable[[Place, 
             key = pending[-1]
             assert key is not None
             path = (*above, key)
-            if key in container:
+            if key in container and not any(one is container and name == key for one, name in refused):
                 raise twice(key, keys[path], place)
             container[key] = value
             pending[-1] = None
@@ -245,9 +246,11 @@ def _build(text: str, file: str, *, is_params: bool, complain: Callable[[Place, 
                 key = _key(event, place)
                 container, above = stack[-1]
                 if not is_params and (fault := _key_fault(event, place, text)):
-                    complain(place, fault)
+                    if (place.line, fault) not in told:  # a list without brackets has several such keys
+                        complain(place, fault)
+                    told.add((place.line, fault))
                     refused.append((container, key))
-                if key in container and not (is_params and isinstance(container[key], dict)):
+                elif key in container and not (is_params and isinstance(container[key], dict)):
                     raise twice(key, keys[(*above, key)], place)
                 keys.setdefault((*above, key), place)
                 pending[-1] = key
@@ -290,9 +293,12 @@ def _key_fault(event: Any, place: Place, text: str) -> str:
         return ""
     if found := _KEYS_ONLY.search(text.split("\n")[event.start_mark.line]):
         return f"values have names: {{name: {found[1]}, ...}}"
-    before = _COMMA.search(text.split("\n")[event.start_mark.line][: event.start_mark.column])
+    line, column = text.split("\n")[event.start_mark.line], event.start_mark.column
+    before = _COMMA.search(line[:column])
     if before and event.value.isdecimal():
         return f"a number is written with a point: {before[1]}.{event.value}, not {before[1]},{event.value}"
+    if slip := yaml_slips.of_number(line, column):
+        return slip
     return f"the key {event.value} is not text; write it in quotes: '{event.value}'"
 
 

@@ -14,6 +14,10 @@ _SEVERAL = re.compile(r"\s*(- +)?(\w+): +([^\s:{}\[\]]+),? +(\w+): +([^\s:{}\[\]
 _TUPLE = re.compile(r"\(([^(){}\[\]]*,[^(){}\[\]]*)\)")
 """A list in parentheses: `(1.0, 2.0)`."""
 
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_BARE = re.compile(rf"([\w./-]+)\s*:\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(?=[,}}])")
+"""A list within braces, without brackets: `{via: 2.0, 5.0, 8.0}`."""
+
 
 def of_line(line: str) -> str:
     """What to write for a line that YAML refuses; empty if that is not known."""
@@ -33,6 +37,15 @@ def of_key(key: str, line: str) -> str:
     if found is None or not key.endswith(")") or "(" in key or not found[0].endswith(key):
         return ""
     return as_list(found[0])
+
+
+def of_number(line: str, column: int) -> str:
+    """What to write where a number that was read as a key goes on a list without brackets; empty for others."""
+    for found in _BARE.finditer(line):
+        if found.start(2) < column < found.end(2):
+            items = ", ".join(item.strip() for item in found[2].split(","))
+            return f"a list is written with brackets: {found[1]}: [{items}]"
+    return ""
 
 
 def as_list(text: str) -> str:

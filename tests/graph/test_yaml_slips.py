@@ -6,7 +6,7 @@ import pytest
 
 from graphflow.errors import GraphFileError
 from graphflow.graph import source
-from graphflow.graph.yaml_slips import as_list, of_key
+from graphflow.graph.yaml_slips import as_list, of_key, of_number
 
 
 @pytest.mark.parametrize(
@@ -34,6 +34,27 @@ def test_lists_in_parentheses(text: str) -> None:
     """Within braces they would be a text and a key."""
     with pytest.raises(GraphFileError, match=r"f\.yaml:1:\d+: a list is written with brackets: \[1(\.0)?, 2(\.0)?\]$"):
         source.read(text, "f.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("a: {x: 2.0, 5.0, 8.0}", ["f.yaml:1:13: x: [2.0, 5.0, 8.0]"]),
+        ("a: {x: 2, 5, 5, y: -1e3, 9.}", ["f.yaml:1:11: x: [2, 5, 5]", "f.yaml:1:26: y: [-1e3, 9.]"]),
+    ],
+)
+def test_lists_without_brackets(text: str, told: list[str]) -> None:
+    """Within braces each number would be a key; each list is told once."""
+    found: list[str] = []
+    source.read(text, "f.yaml", complain=lambda place, fault: found.append(f"{place}: {fault}"))
+    assert [line.replace("a list is written with brackets: ", "") for line in found] == told
+
+
+def test_numbers_that_are_keys() -> None:
+    """They are in no list: they need quotes."""
+    with pytest.raises(GraphFileError, match=r"write it in quotes: '5\.0'"):
+        source.read("a: {x: 2.0, 5.0: 8.0}", "f.yaml")
+    assert of_number("a: {x: 1.0, y: 2.0}", 12) == ""
 
 
 @pytest.mark.parametrize("text", ["a: {x: (1), y: 2}", "a: {f(x): 1}", "a: {'2)': 1, x: '(1, 2)'}", "a: (1, 2)"])
