@@ -29,9 +29,9 @@ class _InterfaceFinder:
         if not registry.package_folders(package) and not (
             _add_those_of_the_script() and registry.package_folders(package)
         ):
-            hint = registry.no_kinds(package) or did_you_mean(package, registry.packages())
-            own = f"one of your own goes in interfaces/{package}/msg/*.msg"
-            raise ModuleNotFoundError(f"there is no interface package {package!r}{hint} ({own})", name=fullname)
+            own = f" (one of your own goes in interfaces/{package}/msg/*.msg)"
+            hint = registry.no_kinds(package) or did_you_mean(package, registry.packages()) + own
+            raise ModuleNotFoundError(f"there is no interface package {package!r}{hint}", name=fullname)
         if len(rest) == 2 and rest[0] in registry.KINDS and not rest[1].startswith("_"):
             # `from package.msg import Nam` looks for a submodule when there is no such attribute: say which exist.
             known = registry.names_in(package, rest[0])

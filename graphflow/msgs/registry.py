@@ -227,6 +227,10 @@ def no_kinds(package: str) -> str:
     found = [root / package for root in roots() if package.isidentifier() and (root / package).is_dir()]
     if found:
         return f"; {found[0]} has no folder msg, srv or action"
+    for root in roots():
+        for kind in KINDS:
+            for file in (*sorted((root / kind).glob(f"*.{kind}")), *sorted(root.glob(f"*.{kind}"))):
+                return f"; {file} lies in no package: move it to {root / package / kind / file.name}"
     alike = (folder for root in roots() for folder in root.iterdir() if folder.name.replace("-", "_") == package)
     return next((f"; rename {folder} to {package}" for folder in alike if folder.is_dir()), "")
 

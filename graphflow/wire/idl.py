@@ -54,6 +54,8 @@ _SLIPS = (
 )
 """Types as other languages and hasty fingers write them, and as they are written."""
 _SEPARATOR = "---"
+_COMMENTS = ("//", "/*")
+"""Beginnings of comments in other languages."""
 
 
 def is_type_name(text: str) -> bool:
@@ -160,15 +162,28 @@ def _message(name: str, package: str, lines: list[_Line]) -> Message:
 
 
 def _member(package: str, line: str) -> Field | Constant:
+    if line.startswith(_COMMENTS):
+        raise InterfaceError(f"{line!r}: a comment begins with #")
     type_text, *more = line.split(None, 1)
     if not more:
         raise InterfaceError(f"{line!r}: write TYPE NAME, perhaps with a default")
     rest = more[0]
-    type_ = parse_type(type_text, package)
+    try:
+        type_ = parse_type(type_text, package)
+    except InterfaceError as error:
+        if "did you mean" in str(error) or not (turned := _turned(type_text, rest, package)):
+            raise
+        raise InterfaceError(f"{type_text!r} is not a type; the type comes first: {turned}") from None
     constant = re.match(r"(\w+)\s*=(?!=)\s*(.*)\Z", rest)
     if constant:
         return _constant(type_, constant.group(1), constant.group(2))
     name, *more = rest.split(None, 1)
+    if more and more[0].startswith(_COMMENTS) and type_.base not in STRINGS:
+        raise InterfaceError(f"{more[0]!r}: a comment begins with #")
+    if name.endswith(";") and _FIELD_NAME.match(name[:-1]):
+        raise InterfaceError(f"{line!r}: leave out the semicolon")
+    if "/" in name and (turned := _turned(type_text.lower(), rest, package)):
+        raise InterfaceError(f"field name {name!r}: the type comes first: {turned}")
     if not _FIELD_NAME.match(name):
         rule = "lower-case letters, digits and single _, beginning with a letter, not ending with _"
         near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z\d])(?=[A-Z])|-", "_", name).lower()).strip("_")
@@ -177,6 +192,16 @@ def _member(package: str, line: str) -> Field | Constant:
     if iskeyword(name):
         raise InterfaceError(f"field name {name!r}: it is a Python keyword, so no attribute can have that name")
     return Field(name, type_, _literal(type_, more[0]) if more else None)
+
+
+def _turned(name: str, rest: str, package: str) -> str:
+    """A field whose name stands before its type, the right way round; empty for another."""
+    name, type_text = name.rstrip(":"), rest.split()[0].rstrip(",;")
+    try:
+        parse_type(type_text, package)
+    except InterfaceError:
+        return ""
+    return f"{type_text} {name}" if _FIELD_NAME.match(name) else ""
 
 
 def parse_type(text: str, package: str) -> FieldType:

@@ -314,3 +314,14 @@ def test_definitions_in_a_folder_of_another_name(tmp_path: Path, monkeypatch: py
 def test_lists_of_numbers(name: str, has_them: bool) -> None:
     """In the message or in one that it has; neither of fixed size, nor in the elements of a list."""
     assert registry.has_number_lists(name) is has_them
+
+
+@pytest.mark.parametrize("where", ["srv/SetGoal.srv", "SetGoal.srv"])
+def test_a_definition_in_no_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str) -> None:
+    """The folder of its package is missing; where it has to go is told."""
+    monkeypatch.setattr(registry, "_roots", [tmp_path])
+    file = tmp_path / where
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("---\n")
+    right = tmp_path / "turtle_msgs" / "srv" / "SetGoal.srv"
+    assert registry.no_kinds("turtle_msgs") == f"; {file} lies in no package: move it to {right}"

@@ -159,6 +159,13 @@ def test_constants_are_read(line: str, expected: Constant) -> None:
 
 
 BROKEN = [
+    ("geometry_msgs/Point position // where", r"'// where': a comment begins with #$"),
+    ("float64 x /* metres */", r"a comment begins with #$"),
+    ("// where to go", r"'// where to go': a comment begins with #$"),
+    ("float64 x;", r"'float64 x;': leave out the semicolon$"),
+    ("position geometry_msgs/Point", r"'position' is not a type; the type comes first: geometry_msgs/Point position$"),
+    ("x: float64[]", r"the type comes first: float64\[\] x$"),
+    ("Goal geometry_msgs/Point", r"the type comes first: geometry_msgs/Point goal$"),
     ("float64", "TYPE NAME"),
     ("flaot64 x", r"not a type; did you mean 'float64'"),
     ("double x", r"'double' is not a type; did you mean 'float64'\?$"),
