@@ -32,13 +32,13 @@ def explain(error: BaseException) -> None:
         if isinstance(found, BaseExceptionGroup):
             left += found.exceptions
         # Not a subclass: its text may be made by code of the user's, which must not run here.
-        if found.__class__ is AttributeError and (text := _better_text(found)):
+        if found.__class__ is AttributeError and (text := better_text(found)):
             found.args, found.name = (text,), None  # Python would add a suggestion of its own for the name
         elif found.__class__ is TypeError and (text := constructor_errors.better_text(found)):
             found.args = (text,)
 
 
-def _better_text(error: AttributeError) -> str:
+def better_text(error: AttributeError) -> str:
     """A better text for an error; empty where Python's is as good."""
     thing, name = (error.obj, error.name) if error.name is not None else _written_to(error)
     found = _NO_ATTRIBUTE.fullmatch(str(error))

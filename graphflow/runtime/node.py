@@ -40,6 +40,7 @@ from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.made import with_made
 from graphflow.runtime.misplaced import check_hooks, check_misplaced, check_module
+from graphflow.runtime.node_arguments import rules_of
 from graphflow.runtime.other_threads import call_soon
 from graphflow.runtime.place import here
 from graphflow.runtime.publishers import TopicPublisher
@@ -103,7 +104,7 @@ class Node(SpeaksRos):
     ) -> None:
         unrun.made()
         given = surroundings.take(self)
-        rules = [*given.remaps, *(r if isinstance(r, Remap) else Remap.parse(r) for r in remap)]
+        rules = [*given.remaps, *rules_of(remap)]
         own_name = given.name or name or declared.default_name(type(self))
         names = Resolver(own_name, namespace if given.namespace is None else given.namespace, rules)
         values = {**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}, **given.overrides}
@@ -142,6 +143,8 @@ class Node(SpeaksRos):
 
     def _hint(self, name: str) -> str:
         core = vars(self).get("_core")
+        if name in ("run", "spin", "main"):
+            return f"nodes are run by graphflow.run({type(self).__name__})"
         if core is None or name not in core.parameters:
             return OF_PARTS.get(name, "")
         return f'a parameter is read by self.parameters.get("{name}"), or declared in the class: {name} = Param(...)'

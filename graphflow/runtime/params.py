@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, NoReturn
 from graphflow.errors import ParameterError
 from graphflow.interface import Parameter
 from graphflow.names import did_you_mean
+from graphflow.runtime.node_arguments import instead_of
 
 
 class ParameterChange(NamedTuple):
@@ -79,14 +80,16 @@ class Parameters:
             owner: The class of the node, whose plain attributes may be meant as parameters.
         """
 
-        def hint(name: str) -> str:
+        def hint(name: str, given: Any, source: str) -> str:
+            if source == "argument" and (way := instead_of(name, given)):
+                return f"; {way}"
             value = getattr(owner, name, None)
             is_plain = isinstance(value, (bool, int, float, str))
             return f"; write {name} = Param({value!r})" if is_plain else did_you_mean(name, self._declared)
 
         return [
-            f"there is no parameter {name!r} (from {source}){hint(name)}"
-            for name, (_, source) in self._overrides.items()
+            f"there is no parameter {name!r} (from {source}){hint(name, given, source)}"
+            for name, (given, source) in self._overrides.items()
             if name not in self._declared
         ]
 

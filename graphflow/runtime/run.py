@@ -8,6 +8,7 @@ import sys
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
 from types import TracebackType
+from typing import Never
 
 from graphflow.deadlock.user_code import place_in, users_frame
 from graphflow.errors import GraphflowError, TooManyErrors, UsageFault
@@ -22,6 +23,7 @@ from graphflow.runtime.importing import refuse_to_run
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.lost_errors import tell_lost_errors
 from graphflow.runtime.node import Node
+from graphflow.runtime.node_arguments import refuse_keywords
 from graphflow.runtime.one_by_one import one_by_one
 from graphflow.runtime.other_threads import tell_strangers
 from graphflow.runtime.place import here
@@ -104,13 +106,14 @@ async def serve(nodes: Sequence[Node], context: Context, stop: StopRequest) -> N
     await Company(context, stop).run(nodes)
 
 
-def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
+def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange: Never) -> None:
     """Run nodes until Ctrl-C or SIGTERM, then stop them in order.
 
     Args:
         nodes: Nodes, or node classes, which are then made with what the command line says.
         args: Instead of the command line's words; `--ros-args -r from:=to -p name:=value` are understood. They are for
             classes: a node that has been made has its names and values.
+        **strange: None: the names of a node and its parameters are arguments of its class.
 
     Raises:
         RuntimeError: An event loop is running here, as in a notebook.
@@ -122,6 +125,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     if not nodes:
         logger.warning("%s: graphflow.run was given no node, so it runs none; write graphflow.run(Talker)", here())
     try:
+        refuse_keywords(strange, nodes)
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
         _refuse_unused(ros, nodes)
         if args is None:

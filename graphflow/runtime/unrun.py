@@ -7,7 +7,8 @@ import re
 import sys
 from pathlib import Path
 
-from graphflow.deadlock.user_code import is_installed, is_ours
+from graphflow.deadlock.user_code import is_installed, is_ours, place_in
+from graphflow.runtime.attribute_errors import better_text
 from graphflow.runtime.uncalled import uncalled
 
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
@@ -42,6 +43,9 @@ def made() -> None:
 
 
 def _tell() -> None:
+    error = getattr(sys, "last_value", None)
+    if isinstance(error, AttributeError) and error.name is not None and (better := better_text(error)):
+        sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has written the error itself
     if _file is not None and not hasattr(sys, "last_value"):  # it has ended by itself, and not by an error
         tell(Path(_file))
 

@@ -1,0 +1,84 @@
+"""Arguments that nodes and `graphflow.run` are given in the words or shapes of others: what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from graphflow.errors import InvalidName, UsageFault
+from graphflow.names import Remap
+from graphflow.runtime.place import here
+
+_WORDS = {
+    **dict.fromkeys(("ns", "node_namespace"), "namespace"),
+    **dict.fromkeys(("remaps", "remappings", "remapping"), "remap"),
+    **dict.fromkeys(("params", "parameters", "parameter_overrides"), ""),
+    **dict.fromkeys(("node_name",), "name"),
+}
+"""Other words for the arguments of a node; the empty text for those that go by their own names."""
+
+
+def rules_of(remap: object) -> list[Remap]:
+    """The rules of a node's argument `remap`.
+
+    Raises:
+        InvalidName: A rule is not legal, or this is no list of them; the text says what to write.
+    """
+    if isinstance(remap, str):
+        raise InvalidName(f"{here()}: remap= is a list: remap=[{_quoted(remap)}]")
+    if isinstance(remap, Mapping):
+        raise InvalidName(f"{here()}: remap= is a list: {_as_rules(remap)}")
+    found = []
+    for rule in remap if isinstance(remap, Iterable) else ():
+        if isinstance(rule, tuple) and len(rule) == 2:
+            raise InvalidName(f"{here()}: a rule is a text: {_as_rules(dict([rule]))}")
+        found.append(rule if isinstance(rule, Remap) else Remap.parse(rule))
+    return found
+
+
+def instead_of(word: str, value: object) -> str:
+    """What to write for a keyword that a node does not have, in place of the argument that it has; empty for others."""
+    meant = _WORDS.get(word)
+    if meant is None:
+        return ""
+    return f"write {_argument(word, value)}" if meant else f"parameters go by their names: {_argument(word, value)}"
+
+
+def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> None:
+    """See that `graphflow.run` is given no keywords that are for a node.
+
+    Raises:
+        UsageFault: It is.
+    """
+    if given:
+        first = next(iter(nodes), None)
+        name = "Talker" if first is None else first.__name__ if isinstance(first, type) else type(first).__name__
+        arguments = ", ".join(_argument(word, value) for word, value in given.items())
+        way = f"{next(iter(given))}= is for the node: graphflow.run({name}({arguments}))"
+        raise UsageFault(f"{here()}: {way}, or on the command line --ros-args -r __ns:=/NS -r FROM:=TO -p NAME:=VALUE")
+
+
+def _argument(word: str, value: object) -> str:
+    """An argument of a node as it is written."""
+    meant = _WORDS.get(word, word)
+    if meant == "remap":
+        return _as_rules(value)
+    if meant:
+        return f"{meant}={_quoted(value)}"
+    values = value if isinstance(value, Mapping) and value else {"gain": 5.0}
+    return ", ".join(f"{name}={_quoted(each)}" for name, each in values.items())
+
+
+def _as_rules(value: object) -> str:
+    pairs: Any = value.items() if isinstance(value, Mapping) else value
+    if isinstance(pairs, str):
+        return f"remap=[{_quoted(pairs)}]"
+    try:
+        rules = [pair if isinstance(pair, (str, Remap)) else "{}:={}".format(*pair) for pair in pairs]
+    except (TypeError, IndexError):
+        return 'remap=["from:=to"]'
+    return f"remap=[{', '.join(_quoted(str(rule)) for rule in rules)}]"
+
+
+def _quoted(value: object) -> str:
+    return f'"{value}"' if isinstance(value, str) and '"' not in value else repr(value)
