@@ -8,6 +8,7 @@ from math import floor, isfinite
 from typing import Any
 
 from graphflow.msgs import base
+from graphflow.times import Duration, Time
 from graphflow.typographic import plain
 from graphflow.wire import schema
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
@@ -71,6 +72,8 @@ def _scalar(type_: FieldType, value: Any) -> str | None:
     if type_.base == "bool":
         word = str(value).lower() if type(value) in (int, str) else ""
         return "true (in Python True)" if word in _TRUE else "false (in Python False)" if word in _FALSE else None
+    if isinstance(value, (Time, Duration)):
+        return ".nanoseconds behind it" if type_.base in INTEGER_RANGES else ".seconds behind it"
     if type(value) not in (int, float, bool, str):
         return None
     try:

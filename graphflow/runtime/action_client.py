@@ -82,6 +82,13 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
     def __repr__(self) -> str:
         return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
 
+    def _hint(self, name: str) -> str:
+        action: Any = self._client.type
+        if name in action.Result.__struct_fields__:
+            return f"that is the goal; its result is (await goal.result()).{name}"
+        is_told = name in action.Feedback.__struct_fields__
+        return "that is the goal; its feedback is read: async for feedback in goal.feedback():" if is_told else ""
+
     @property
     def done(self) -> bool:
         """Whether the goal has ended."""

@@ -9,6 +9,8 @@ from typing import NamedTuple
 from graphflow.deadlock.user_code import place_in
 from graphflow.runtime.dictionary import EXAMPLES
 from graphflow.runtime.hiding import hidden
+from graphflow.runtime.name_errors import owner_of
+from graphflow.runtime.text_numbers import text_for_number
 
 
 class Remark(NamedTuple):
@@ -203,6 +205,10 @@ def remark_on(error: BaseException) -> str:
     text = str(error)
     file, _, number = place_in(error).rpartition(":")
     line = linecache.getline(file, int(number)) if number else ""
+    if isinstance(error, NameError) and (way := owner_of(error)):
+        return way
+    if isinstance(error, TypeError) and (way := text_for_number(error, line)):
+        return way
     for row in OF_VALUES if isinstance(error, ValueError) else REMARKS:
         found, written = re.search(row.text, text), re.search(row.line, line)
         if found and written:

@@ -10,6 +10,7 @@ from graphflow.errors import EncodeError
 from graphflow.msgs import registry
 from graphflow.msgs.instead import named
 from graphflow.msgs.values import from_plain
+from graphflow.times import Duration, Time
 
 
 @pytest.mark.parametrize(
@@ -118,3 +119,12 @@ def test_a_minus_of_slides() -> None:
     """A number with it is told with the one of the keyboard."""
     with pytest.raises(EncodeError, match=r"got '\u20131.5'; write -1.5$"):
         from_plain(registry.interface_class("std_msgs/msg/Float64"), {"data": "\u20131.5"})
+
+
+@pytest.mark.parametrize("span", [Duration(5), Time(5)])
+def test_times_as_numbers(span: Any) -> None:
+    """They are a number of seconds, or of nanoseconds in a field for whole numbers."""
+    with pytest.raises(EncodeError, match=r"expected float64, got \w+\(.*\); write \.seconds behind it$"):
+        registry.interface_class("std_msgs/msg/Float64")(data=span).to_bytes()
+    with pytest.raises(EncodeError, match=r"expected int64, got \w+\(.*\); write \.nanoseconds behind it$"):
+        registry.interface_class("std_msgs/msg/Int64")(data=span).to_bytes()

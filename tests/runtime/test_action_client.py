@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -24,6 +25,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.runtime import action_client
 from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.runtime.actions import ActionServer
+from graphflow.runtime.attribute_errors import explain
 from graphflow.runtime.core import core_of
 from graphflow.runtime.reasons import Reasons
 from graphflow.runtime.serialized import UNKNOWN
@@ -283,6 +285,20 @@ async def test_a_result_may_be_awaited_for_a_while(graph: Graph) -> None:
     await graph.clock.advance(0.5)
 
     assert list((await goal.result(timeout=1.0)).sequence) == [0, 1, 1, 2]
+
+
+async def test_a_field_of_its_result_or_feedback(graph: Graph) -> None:
+    """A goal has neither: it is told where they are."""
+    _, asker = await pair(graph)
+    goal: Any = await asker.order(4)
+    with pytest.raises(AttributeError) as caught:
+        _ = goal.sequence
+    explain(caught.value)
+    assert str(caught.value).endswith("; that is the goal; its result is (await goal.result()).sequence")
+    fields = [type("Of", (), {"__struct_fields__": names}) for names in (("distance",), ("elapsed",))]
+    goal._client = SimpleNamespace(type=SimpleNamespace(Result=fields[0], Feedback=fields[1]))
+    assert goal._hint("elapsed").endswith("async for feedback in goal.feedback():")
+    assert goal._hint("other") == ""
 
 
 async def test_a_closed_client_loses_its_goals(graph: Graph) -> None:

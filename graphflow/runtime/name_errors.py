@@ -1,0 +1,58 @@
+"""Names that are not defined where they are used, and are attributes of the class: of a parent, or of the node."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from types import FrameType, ModuleType
+from typing import Any
+
+from graphflow.deadlock.syntax import syntax_of
+from graphflow.deadlock.user_code import is_users, parts_of
+
+
+def owner_of(error: NameError) -> str:
+    """What to write for a name that Python does not find; empty if no class has it as an attribute.
+
+    The body of a class does not see the names of its parents, and a method does not see those of its class.
+    """
+    frames = [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
+    name = error.name
+    if not frames or not name or isinstance(error, UnboundLocalError):
+        return ""
+    frame = frames[-1]
+    if "__qualname__" in frame.f_locals and not frame.f_code.co_flags & inspect.CO_OPTIMIZED:
+        for base in _bases(frame):
+            parent = _value(base, frame)
+            if isinstance(parent, type) and inspect.getattr_static(parent, name, None) is not None:
+                return f"the body of a class does not see its parent's names: write {ast.unparse(base)}.{name}"
+        return ""
+    node = frame.f_locals.get("self")
+    if node is not None and not name.startswith("__") and inspect.getattr_static(node, name, None) is not None:
+        return f"a method does not see the names of its class: write self.{name}"
+    return ""
+
+
+def _bases(frame: FrameType) -> list[ast.expr]:
+    """The bases of the class whose body runs in a frame, as they are written."""
+    try:
+        classes = syntax_of(frame.f_code.co_filename).classes
+    except (OSError, SyntaxError, ValueError):  # no source to be read
+        return []
+    first = frame.f_code.co_firstlineno
+    for item in classes:
+        lines = {item.lineno, *(decorator.lineno for decorator in item.decorator_list)}
+        if item.name == frame.f_code.co_name and first in lines:
+            return item.bases
+    return []
+
+
+def _value(expression: ast.expr, frame: FrameType) -> Any:
+    """The value of a name, or of a name with dots, as far as no code of the user's has to run for it."""
+    match expression:
+        case ast.Name(id=name):
+            return {**frame.f_globals, **(frame.f_back.f_locals if frame.f_back else {})}.get(name)
+        case ast.Attribute(value=value, attr=name):
+            owner = _value(value, frame)
+            return vars(owner).get(name) if isinstance(owner, (ModuleType, type)) else None
+    return None

@@ -1,0 +1,61 @@
+"""Names that belong to a class and are used without it."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from graphflow.runtime.python_errors import remark_on
+
+HEAD = """\
+import graphflow
+from graphflow import Group, Node, Param, timer
+
+class Base(Node):
+    motion = Group(1)
+    gain = Param(5.0)
+
+class Bases:
+    Base = Base
+"""
+PARENT = "the body of a class does not see its parent's names: write {}.motion"
+
+
+def remark(tmp_path: Path, more: str) -> str:
+    """What is told of the NameError of a module with these lines."""
+    file = tmp_path / "names_module.py"
+    file.write_text(HEAD + more)
+    spec = importlib.util.spec_from_file_location("names_module", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module: Any = importlib.util.module_from_spec(spec)
+    with pytest.raises(NameError) as caught:
+        spec.loader.exec_module(module)
+    return remark_on(caught.value)
+
+
+TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        (f"class N(Base):\n{TICK}", PARENT.format("Base")),
+        (f"class N(Bases.Base):\n{TICK}", PARENT.format("Bases.Base")),
+        (
+            f"def make():\n    class N(Base):\n    {TICK.replace('    async', '        async')}\nmake()",
+            PARENT.format("Base"),
+        ),
+        (f"class N(Node):\n{TICK}", ""),
+        ("class N(Base):\n    def work(self):\n        return 2 * gain\nN().work()", "write self.gain"),
+        ("class N(Base):\n    def work(self):\n        return 2 * gian\nN().work()", ""),
+        ("motion", ""),
+    ],
+)
+def test_names_of_classes(tmp_path: Path, more: str, told: str) -> None:
+    """Are told with their class, or with self; others are not."""
+    found = remark(tmp_path, more)
+    assert found.endswith(told) if told else found == ""
