@@ -206,7 +206,10 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         """
         if request.__class__ is not self._request:
             wanted = self._request.__qualname__
-            raise EncodeError(f"{self.name} takes {wanted}, not {request!r}; write {wanted.replace('_', '.')}(...)")
+            given = getattr(request, "SCHEMA", None)
+            fields = [f.name for f in self._request.SCHEMA.fields if given is not None and str(f.type) == given.name]
+            way = f"{wanted.replace('_', '.')}({f'{fields[0]}=' if len(fields) == 1 else ''}...)"
+            raise EncodeError(f"{self.name} takes {wanted}, not {request!r}; write {way}")
         self.host.context.refuse_other_threads(
             f"call of {self.name}", "in a thread, call_sync(request) waits for the response"
         )

@@ -147,8 +147,8 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                         graph.raise_failed()
                         await asyncio.sleep(0)  # what has become a task begins
                         _raise_forgotten()
-                except (Exception, pytest.fail.Exception):
-                    if graph is not None and graph.loop is loop:
+                except (Exception, pytest.fail.Exception) as error:
+                    if graph is not None and graph.loop is loop and not _is_of_a_line(error):
                         await _tell_unmet(item, graph)
                     raise
                 finally:
@@ -173,6 +173,13 @@ def _raise_forgotten(way: str = "") -> None:
 
     if found := forgotten():
         raise RuntimeError(f"{found[0]}{way}")
+
+
+def _is_of_a_line(error: BaseException) -> bool:
+    """Whether an error is about what a line says, whatever else the test may have waited for."""
+    from graphflow.errors import DeclarationError, EncodeError, InvalidName, ParameterError
+
+    return isinstance(error, (DeclarationError, EncodeError, InvalidName, ParameterError, NameError, ImportError))
 
 
 async def _tell_unmet(item: pytest.Function, graph: Graph) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from graphflow.deadlock.frames import awaited, code_of
 from graphflow.deadlock.openings import place_of
 from graphflow.executor import clock as executor_clock
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, is_hidden
 from graphflow.runtime.core import NodeCore, core_of
 from graphflow.runtime.timer import Timer
 from graphflow.wire.liveliness import Kind
@@ -36,7 +36,18 @@ async def unmet(graph: Graph) -> list[str]:
     found += _strangers(graph, cores)
     if has_stood_still:
         found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
+    if not found and any(not tap for _, tap in graph.taps):
+        found += _unfed(graph, cores)
     return found
+
+
+def _unfed(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
+    """Topics that nodes listen to and nobody publishes, without which they may have nothing to publish."""
+    published = {e.name for node in graph.nodes for e in core_of(node).endpoints if e.kind is Kind.PUBLISHER}
+    for core in cores:
+        for name in sorted({e.name for e in core.endpoints if e.kind is Kind.SUBSCRIPTION} - published):
+            if not is_hidden(name):
+                yield f"{core.full_name} listens to {name}, on which neither the test nor a node of it publishes"
 
 
 def _tasks(core: NodeCore) -> Iterator[Any]:

@@ -11,6 +11,8 @@ import pytest
 from graphflow import CallTimeout, DecodeError, EncodeError, Node, RemoteError, ServerLost, ServiceUnavailable, service
 from graphflow.errors import ClosedError, LoopBlockedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.nav_msgs.msg import OccupancyGrid
+from graphflow.msgs.nav_msgs.srv import SetMap
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.testing import Graph
@@ -231,6 +233,9 @@ async def test_a_call_with_a_wrong_request(graph: Graph) -> None:
 
     with pytest.raises(EncodeError, match=r"/add takes AddTwoInts.*Request, not example_interfaces.*Response"):
         await client.call(AddTwoInts.Response())  # type: ignore[arg-type]
+    maps: Any = server.create_client(SetMap, "/set_map")
+    with pytest.raises(EncodeError, match=r"; write SetMap\.Request\(map=\.\.\.\)$"):
+        await maps.call(OccupancyGrid())
     wrong = AddTwoInts.Request()
     wrong.a = "one"  # type: ignore[assignment]
     with pytest.raises(EncodeError, match="a"):

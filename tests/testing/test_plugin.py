@@ -231,6 +231,24 @@ def test_a_failing_test_is_told_what_has_not_happened(pytester: pytest.Pytester)
     )
 
 
+def test_an_error_about_a_line_of_the_test(pytester: pytest.Pytester) -> None:
+    """What it says is all that is told."""
+    result = run(
+        pytester,
+        """
+        from counter import Counter
+        from graphflow.msgs.std_srvs.srv import Empty, Trigger
+
+        async def test_it(graph):
+            await graph.start(Counter())
+            await graph.call(Empty, "/empty", Trigger.Request())
+        """,
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*EncodeError: /empty takes Empty_Request*"])
+    result.stdout.no_fnmatch_line("*Captured graphflow call*")
+
+
 def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> None:
     """A test that uses nothing of graphflow's is for whichever plugin it was written for."""
     pytester.makeconftest(

@@ -130,3 +130,22 @@ async def test_what_came_in_time(graph: Graph) -> None:
     await graph.start(Echo("second"))
     await graph.clock.advance(1.0)
     assert await unmet(graph) == []
+
+
+async def test_topics_that_a_silent_node_listens_to(graph: Graph) -> None:
+    """Are told where a tap has got nothing, and nothing else explains it."""
+    await graph.start(Echo())
+    graph.tap(String, "/out")
+    told = "/echo listens to /words, on which neither the test nor a node of it publishes"
+    assert await unmet(graph) == [told]
+    graph.publisher(String, "/words")
+    assert await unmet(graph) == []
+
+
+async def test_topics_where_the_taps_are_full(graph: Graph) -> None:
+    """They are no cause."""
+    await graph.start(Echo(), Talker(remap=["words:=out"]))
+    heard = graph.tap(String, "/out")
+    await graph.clock.advance(1.0)
+    assert len(heard) == 1
+    assert await unmet(graph) == []
