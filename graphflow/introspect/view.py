@@ -228,7 +228,10 @@ class View:
         if servers and not same:
             return f"{name} is of type {' and '.join(self.service_types(name))}, not {type_name}"
         if same and all(server.hash != hash_ for server in same):
-            return f"{name}: the server's {type_name} has a different definition from the one here"
+            from graphflow.msgs import registry
+
+            why = registry.why_different(type_name)
+            return f"{name}: the server's {type_name} has a different definition from the one here{why}"
         if kept_back := self.kept_back(name, Kind.SERVICE):
             return kept_back
         other = ", or the net profile of the other machine keeps the call back" if self.profiles() else ""

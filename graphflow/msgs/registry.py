@@ -252,6 +252,17 @@ def misplaced(package: str, name: str) -> str:
     return ""
 
 
+def why_different(name: str) -> str:
+    """What may have happened where a node has another definition than the one here; for the end of a sentence."""
+    try:
+        file = definition_file(name)
+    except UnknownInterface:
+        return ""
+    if file.is_relative_to(BUNDLED):
+        return ""
+    return f"; if {file} was changed after the node had started, start the node again"
+
+
 def definition_file(name: str) -> Path:
     """The file that defines `package/kind/Name`.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Sequence
 
+from graphflow.msgs import registry
 from graphflow.runtime.host import Host
 from graphflow.wire import net
 from graphflow.wire.liveliness import Entity
@@ -24,7 +25,8 @@ async def why_unreachable(host: Host, name: str, servers: Sequence[Entity], hash
     """
     type_name = servers[0].type
     if all(server.hash != hash_ for server in servers):
-        return f"{name}: the server's {type_name} has a different definition from the one here"
+        why = registry.why_different(type_name)
+        return f"{name}: the server's {type_name} has a different definition from the one here{why}"
     profiles = await _profiles(host)
     if refusal := net.refusal(name, profiles):
         return refusal

@@ -325,3 +325,12 @@ def test_a_definition_in_no_package(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     file.write_text("---\n")
     right = tmp_path / "turtle_msgs" / "srv" / "SetGoal.srv"
     assert registry.no_kinds("turtle_msgs") == f"; {file} lies in no package: move it to {right}"
+
+
+def test_a_definition_that_differs_elsewhere(save: Save) -> None:
+    """A file of the user's may have been changed since; those of the package are not."""
+    file = save("changed_msgs/msg/Thing", "int32 x")
+    told = f"; if {file} was changed after the node had started, start the node again"
+    assert registry.why_different("changed_msgs/msg/Thing") == told
+    assert registry.why_different("std_msgs/msg/String") == ""
+    assert registry.why_different("gone_msgs/msg/Thing") == ""
