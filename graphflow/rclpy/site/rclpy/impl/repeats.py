@@ -10,6 +10,7 @@ from typing import Any
 
 from graphflow.errors import Place
 from rclpy.impl.callers import caller
+from rclpy.impl.hidden_callbacks import tell_hidden
 from rclpy.impl.stacks import is_in_run
 from rclpy.timer import Timer
 
@@ -42,12 +43,19 @@ def count(node: Any, call: str, made: Any) -> None:
     elif call == "create_subscription":
         _tell_same(node, made, place)
     made.made_at = key = (place, asked.frame.f_code, _name(made, is_again=is_in_run(asked.frame)))
+    if hasattr(made, "callback"):
+        tell_hidden(node, made, asked.frame.f_code, _with_callbacks(node))
     alike = sum(getattr(other, "made_at", None) == key and _is_alive(other) for other in getattr(node._graphflow, kind))
     if alike >= MANY and place not in _told:
         _told.add(place)
         what = f"{kind}{_of(made)}"
         text = "%s has %d %s by now that were made in %s: make one in __init__, and keep it in an attribute"
         logger.warning(text, node.get_fully_qualified_name(), alike, what, place)
+
+
+def _with_callbacks(node: Any) -> list[Any]:
+    own = node._graphflow
+    return [*own.subscriptions, *own.timers, *own.services]
 
 
 def _tell_twin(node: Any, made: Any, place: Place) -> None:

@@ -1,0 +1,132 @@
+"""Callbacks of a class that a subclass hides by one of the same name, which it also gives to an entity of its own.
+
+Python calls the subclass's for both, and the class's own is never called: what it kept is not kept any more.
+"""
+
+from __future__ import annotations
+
+import dis
+import logging
+from collections.abc import Iterator
+from types import CodeType, FunctionType, MethodType
+from typing import Any
+
+from graphflow.deadlock.user_code import is_users, short_place
+from rclpy.constants import S_TO_NS
+from rclpy.timer import Timer
+
+_told: set[CodeType] = set()
+"""The callbacks of which it has been told."""
+_STUBS = {"NotImplementedError", "NotImplemented", "ABC"}
+"""All that a callback names which is there to be overridden."""
+logger = logging.getLogger("graphflow")
+
+
+def tell_hidden(node: Any, made: Any, asker: CodeType, others: list[Any]) -> None:
+    """Tell if a method that a class gave to an entity, and its subclass to another, is not the one the class meant.
+
+    Args:
+        made: The entity that was made, whose callback it is.
+        asker: The function that made it.
+        others: The node's entities, whose `made_at` has the function that made each.
+    """
+    callback = made.callback
+    if not isinstance(callback, MethodType) or callback.__self__ is not node:
+        return
+    method = callback.__func__
+    if not isinstance(method, FunctionType) or method.__code__ in _told:
+        return
+    for other in others:
+        is_gone = isinstance(other, Timer) and (other.handle.is_destroyed or other.is_canceled())
+        if other is made or is_gone or other.callback != callback or not hasattr(other, "made_at"):
+            continue
+        for first, first_by, by in ((other, other.made_at[1], asker), (made, asker, other.made_at[1])):
+            found = _hidden(type(node), method, first_by, by)
+            if found is not None and _is_missed(type(node), method, found[1], first, made, other):
+                _told.add(method.__code__)
+                logger.warning("%s", _text(method, *found, first, _kinds(made, other)))
+                return
+
+
+def _hidden(
+    cls: type, method: FunctionType, outer: CodeType, inner: CodeType
+) -> tuple[type, FunctionType, type] | None:
+    """The class that has a method, the one of its parent's that it hides, and the parent; None if it hides none.
+
+    Args:
+        outer: The function that must be of the parent.
+        inner: The function that must be of the class itself, or of one below.
+    """
+    name = method.__name__
+    mro = list(cls.__mro__)
+    owner = next((c for c in mro if vars(c).get(name) is method), None)
+    parent, child = _owner(cls, outer), _owner(cls, inner)
+    if owner is None or parent is None or child is None:
+        return None
+    at = mro.index(owner)
+    if mro.index(child) > at or mro.index(parent) <= at:
+        return None
+    for base in mro[at + 1 :]:
+        former = vars(base).get(name)
+        if isinstance(former, FunctionType) and is_users(former.__code__.co_filename):
+            return owner, former, base
+    return None
+
+
+def _owner(cls: type, code: CodeType) -> type | None:
+    """The class that has a function."""
+    return next((c for c in cls.__mro__ if any(getattr(v, "__code__", None) is code for v in vars(c).values())), None)
+
+
+def _is_missed(cls: type, method: FunctionType, former: FunctionType, first: Any, made: Any, other: Any) -> bool:
+    """Whether the parent's method was meant to be called, too.
+
+    A method that is a stub, or that the new one calls, is there to be overridden. Where both entities have messages of
+    one type, one method for both may be meant, unless it leaves alone what the parent's sets for other methods.
+    """
+    if method.__name__ in method.__code__.co_names or set(former.__code__.co_names) <= _STUBS:
+        return False
+    types = [getattr(one, "msg_type", None) or getattr(one, "srv_type", None) for one in (made, other)]
+    if isinstance(first, Timer) or types[0] is not types[1]:
+        return True
+    lost = _named(former.__code__, "STORE_ATTR") - _named(method.__code__, "STORE_ATTR")
+    codes = (c for c in _codes(cls) if c not in (former.__code__, method.__code__))
+    return any(lost & _named(code, "LOAD_ATTR") for code in codes)
+
+
+def _codes(cls: type) -> Iterator[CodeType]:
+    for owner in cls.__mro__:
+        for value in vars(owner).values():
+            code = getattr(value, "__code__", None)
+            if code is not None and is_users(code.co_filename):
+                yield code
+
+
+def _named(code: CodeType, operation: str) -> set[str]:
+    """The attributes that some code stores or loads."""
+    return {str(step.argval) for step in dis.get_instructions(code) if step.opname == operation}
+
+
+def _text(method: FunctionType, owner: type, former: FunctionType, parent: type, first: Any, kinds: str) -> str:
+    name = method.__name__
+    own, its = (short_place(f.__code__.co_filename, f.__code__.co_firstlineno) for f in (method, former))
+    return (
+        f"{owner.__name__}.{name} ({own}) hides {parent.__name__}'s ({its}), which {_use(first)}; "
+        f"{kinds} call {owner.__name__}'s: give it another name"
+    )
+
+
+def _use(entity: Any) -> str:
+    """What an entity does with its callback, to stand after `which`."""
+    if isinstance(entity, Timer):
+        return f"is called every {entity.timer_period_ns / S_TO_NS:g} s"
+    if hasattr(entity, "topic_name"):
+        return f"is subscribed to {entity.topic_name}"
+    return f"answers {entity.service_name}"
+
+
+def _kinds(*entities: Any) -> str:
+    words = {
+        "timers" if isinstance(e, Timer) else "topics" if hasattr(e, "topic_name") else "services" for e in entities
+    }
+    return f"both {words.pop()}" if len(words) == 1 else "both"
