@@ -222,6 +222,16 @@ def function_fault(entry: EntryPoint, file: Path, source: str) -> str | None:
     return None
 
 
+def starts_nodes(source: str, name: str) -> bool:
+    """Whether a module has a function of that name at the top, which does something."""
+    try:
+        body = ast.parse(source).body
+    except (SyntaxError, ValueError):
+        return False
+    functions = [node for node in body if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+    return any(one.name == name and any(isinstance(part, ast.Call) for part in ast.walk(one)) for one in functions)
+
+
 def _may_make(node: ast.AST, name: str) -> bool:
     """Whether a module may get a name by a part of its source that does not show it at the top."""
     match node:

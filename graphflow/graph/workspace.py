@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.folders import home
-from graphflow.graph.setup_file import EntryPoint, SetupFile, entry_point, function_fault
+from graphflow.graph.setup_file import EntryPoint, SetupFile, entry_point, function_fault, starts_nodes
 from graphflow.names import nearest
 from graphflow.reading import found_text
 from graphflow.system import SITE
@@ -122,6 +122,7 @@ class Package:
         """What is wrong with its executables."""
         found = self._no_setup + self.build_faults
         found += [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
+        found += [fault for name in self.entry_points if (fault := self.copy_fault(name)) is not None]
         found += [f"{file} must be {right}" for file, right in self.misplaced_interfaces.items()]
         if self.setup.computes_scripts:
             file = self.setup.file
@@ -185,6 +186,32 @@ class Package:
         near = self._nearest_module(entry.module)
         meant = "write that module, or name another one there"
         return f"{says} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")
+
+    def copy_fault(self, executable: str) -> str | None:
+        """What is wrong with one whose line is another's with the name alone changed, while a module has that name."""
+        entry, line = self.setup.entry_points.get(executable), self.setup.lines.get(executable)
+        first = next((name for name, other in self.entry_points.items() if other == entry), executable)
+        if entry is None or first == executable:
+            return None
+        package = entry.module.rpartition(".")[0]
+        meant = EntryPoint(f"{package}.{executable}".lstrip("."), entry.function)
+        file = self.file_of(meant)
+        is_started = any(other.module == meant.module for other in self.entry_points.values())
+        if is_started or not file.is_file() or not starts_nodes(_text(file), entry.function) or self._imports(file):
+            return None
+        return (
+            f"{self.setup.file}:{line}: {executable} starts {entry.module}:{entry.function}, as {first} does, and "
+            f"{file.relative_to(self.folder)} has a {entry.function}() that nothing starts; "
+            f"write {executable} = {meant.module}:{meant.function}"
+        )
+
+    def _imports(self, module: Path) -> bool:
+        """Whether another file of the package names a module: to import it, or to run its file."""
+        word = re.compile(
+            rf"\b{re.escape(module.stem)}(\.py\b|\b.*\bimport\b)|\bimport\b.*\b{re.escape(module.stem)}\b"
+        )
+        files = (file for file in self.folder.rglob("*.py") if file not in (module, self.setup.file))
+        return any(word.search(_text(file)) for file in files)
 
     def _nearest_module(self, name: str) -> str | None:
         """The module of the package that is most like a name, or has it as the last part of its own."""

@@ -249,12 +249,13 @@ _ON_PYPI = {
 """What to install for modules that robots' programs often import."""
 
 
-def _tell_build_faults(program: Program) -> None:
-    """Say why ROS 2 would not run it, though it runs here."""
+def _tell_build_faults(program: Program, name: str) -> None:
+    """Say why ROS 2 would not run it, though it runs here; and what runs in its place, where its line is a copy."""
     if program.entry is not None:
         for package in program.workspace.packages.values():
             if program.file.is_relative_to(package.folder):
-                for fault in package.build_faults:
+                copied = package.copy_fault(package.known_as(name) or "")
+                for fault in [*package.build_faults, *([] if copied is None else [copied])]:
                     sys.stderr.write(f"note: {fault}\n")
 
 
@@ -276,7 +277,7 @@ def main(words: Sequence[str]) -> None:
         program = find_program(words[0], words[1:], Path.cwd())
         if program is None:
             raise UsageFault(f"{' '.join(words[:2])} is no program that uses rclpy")
-        _tell_build_faults(program)
+        _tell_build_faults(program, words[1] if words[1:] else "")
         run(program)
     except UsageFault as error:
         sys.stderr.write(f"error: {error}\n")

@@ -373,3 +373,43 @@ def test_entry_points_that_start_nothing(tmp_path: Path, entry: str, told: str) 
     (folder / "lamp" / "sub" / "__init__.py").write_text(module)
     fault = find_workspace(tmp_path / "ws").packages["lamp"].fault_of("go")
     assert fault == (f"{folder}/setup.py:1: go is {entry}, and {told.format(folder)}" if told else None)
+
+
+COPIED = "setup(entry_points={{'console_scripts': [\n{}\n]}})"
+
+
+def copied(folder: Path, lines: list[str], **files: str) -> list[str]:
+    """The faults of executables of a package `arm` whose lines may be copies."""
+    for name in ("one", "two"):
+        files.setdefault(f"arm__{name}_dot_py", "def main():\n    rclpy.init()\n")
+    setup = COPIED.format("\n".join(f"'{line}'," for line in lines))
+    package(folder, "arm", setup_dot_py=setup, arm____init___dot_py="", **files)
+    return find_workspace(folder).packages["arm"].faults
+
+
+def test_a_line_that_was_copied_and_has_the_function_of_another(tmp_path: Path) -> None:
+    """Told with its line where a module has the name of the executable, and nothing starts it."""
+    assert copied(tmp_path / "arm", ["one = arm.one:main", "two = arm.one:main"]) == [
+        f"{tmp_path}/arm/setup.py:3: two starts arm.one:main, as one does, and arm/two.py has a main() that nothing "
+        "starts; write two = arm.two:main"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("lines", "files"),
+    [
+        (["one = arm.one:main", "other = arm.one:main"], {}),
+        (["one = arm.one:main", "two = arm.one:main", "three = arm.two:main"], {}),
+        (["two = arm.one:main"], {}),
+        (["one = arm.one:main", "two = arm.one:main"], {"arm__two_dot_py": "def other():\n    print()\n"}),
+        (["one = arm.one:main", "two = arm.one:main"], {"arm__two_dot_py": "def main():\n    pass\n"}),
+        (["one = arm.one:main", "two = arm.one:main"], {"arm__one_dot_py": "from arm.two import main\n"}),
+        (
+            ["one = arm.one:main", "two = arm.one:main"],
+            {"arm__one_dot_py": "from . import two\ndef main(): two.main()"},
+        ),
+    ],
+)
+def test_lines_that_have_one_function_by_right(tmp_path: Path, lines: list[str], files: dict[str, str]) -> None:
+    """An alias, a module that another starts or imports, and one that has nothing to start."""
+    assert copied(tmp_path / "arm", lines, **files) == []
