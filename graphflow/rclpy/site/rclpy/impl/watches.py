@@ -10,6 +10,7 @@ from rclpy.impl.held_up import HeldUp
 from rclpy.impl.late_timers import LateTimers
 from rclpy.impl.uncalled import Uncalled
 from rclpy.impl.unexecuted import Unexecuted
+from rclpy.impl.unreached import Unreached
 from rclpy.impl.unserved import Unserved
 from rclpy.impl.unused import Unused
 
@@ -34,6 +35,7 @@ class Watches:
             Unserved(life, context, is_told),
             Unexecuted(life),
             Uncalled(life),
+            Unreached(),
         )
         unheard.attend(life)
         taken_out.attend(life)
