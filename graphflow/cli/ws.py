@@ -34,6 +34,7 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     from graphflow.graph.workspace import KINDS, find_workspace
     from graphflow.msgs import registry
     from graphflow.names import did_you_mean
+    from graphflow.wire.idl import is_type_name
 
     if habit and habit[0] not in _HABITS:
         raise UsageFault(f"ws shows the packages, and takes no {habit[0]!r}{did_you_mean(habit[0], _HABITS)}")
@@ -69,6 +70,12 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
         kinds = KINDS if package.has_interfaces else ()
         shown = [f"{kind}/{name}" for kind in kinds for name in registry.names_in(package.name, kind)]
         for name in shown:
+            base = name.rpartition("/")[2]
+            if not is_type_name(base):
+                file = registry.definition_file(f"{package.name}/{name}")
+                right = file.with_name(f"{registry.camel(base)}{file.suffix}")
+                faults.append(f"{file} must be {right}{registry.IN_CAMEL}")
+                continue
             try:
                 registry.hash_of(f"{package.name}/{name}")  # which reads the types of its fields, too
             except UnknownInterface as error:

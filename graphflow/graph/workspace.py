@@ -82,7 +82,11 @@ class Package:
     @property
     def has_interfaces(self) -> bool:
         """Whether messages, services or actions are defined in it."""
-        return any(next((self.folder / kind).rglob(f"*.{kind}"), None) is not None for kind in KINDS)
+        return any(self.has_kind(kind) for kind in KINDS)
+
+    def has_kind(self, kind: str) -> bool:
+        """Whether messages, or services, or actions are defined in it."""
+        return next((self.folder / kind).rglob(f"*.{kind}"), None) is not None
 
     @property
     def misplaced_interfaces(self) -> dict[Path, Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
@@ -240,15 +241,16 @@ def misplaced(package: str, name: str) -> str:
 
     A file that is where and called as it must be is not meant to be renamed: then it is the name that is wrong.
     """
-    for root in roots():
-        for file in sorted((root / package).rglob("*")):
+    folders = [root / package for root in roots()] + ([_packages[package]] if package in _packages else [])
+    for folder in folders:
+        for file in sorted(file for kind in KINDS for file in folder.rglob(f"*.{kind}")):
             kind = file.suffix[1:]
-            if kind in KINDS and file.stem.replace("_", "").lower() == name.replace("_", "").lower():
-                if file.parent == root / package / kind and file.stem != name and idl.is_type_name(file.stem):
+            if file.stem.replace("_", "").lower() == name.replace("_", "").lower():
+                if file.parent == folder / kind and file.stem != name and idl.is_type_name(file.stem):
                     return f"; did you mean {file.stem!r}?"
-                right = root / package / kind / f"{name}.{kind}"
+                right = folder / kind / f"{name if idl.is_type_name(name) else camel(name)}.{kind}"
                 if file != right:
-                    return f"; {file} must be {right}"
+                    return f"; {file} must be {right}{'' if idl.is_type_name(file.stem) else IN_CAMEL}"
     return ""
 
 
@@ -261,6 +263,15 @@ def why_different(name: str) -> str:
     if file.is_relative_to(BUNDLED):
         return ""
     return f"; if {file} was changed after the node had started, start the node again"
+
+
+def camel(name: str) -> str:
+    """The name of an interface for one that has underscores or small letters: `SetGoal` for `set_goal`."""
+    return "".join(part[:1].upper() + part[1:] for part in re.split("[_-]", name))
+
+
+IN_CAMEL = ": names of interfaces are in camel case"
+"""Why the file of an interface has to be renamed."""
 
 
 def definition_file(name: str) -> Path:

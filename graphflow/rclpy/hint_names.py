@@ -31,6 +31,8 @@ def _where(name: str, module: str) -> str:
     """Where the name is that a module has not."""
     package, _, kind = module.partition(".")
     if kind in KINDS:
+        if " must be " in (wrong := registry.misplaced(package, name)):
+            return wrong.removeprefix("; ")
         known = [f"{p}.{k}" for p in registry.packages() for k in KINDS if name in registry.names_in(p, k)]
         known.sort(key=lambda where: (not where.startswith(f"{package}."), where))
         if known:

@@ -187,6 +187,13 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
     if package is not None and name in of_ros():
         return f"your package {package.folder} hides ROS 2's {name}; call yours otherwise, there and in its files"
     if package is not None and kind in KINDS:
+        for file, right in package.misplaced_interfaces.items():
+            if right.suffix == f".{kind}":
+                return f"{file} must be {right}"
+        others = [p.name for p in workspace.packages.values() if p.has_kind(kind)]
+        near = nearest(name, others, cutoff=SLIP) or next((o for o in others if o.startswith(name)), None)
+        if near is not None:
+            return f"{name} has no .{kind} file; they are in {near}: from {near}.{kind} import ..."
         return f"{name} has no .{kind} file: {package.folder / kind}, where they would be, is not there or empty"
     if package is not None:
         return f"{name} has no module {module}; the package is {package.folder}"

@@ -146,3 +146,13 @@ def test_what_ros_2_would_not_build(machine: Machine, workspace: Path) -> None:
     assert f"{workspace}/src/lamp/package.xml:1: no element found" in told
     assert f"{workspace}/src/lamp/setup.py:2: the package is called 'lump' here, and 'lamp' in package.xml" in told
     assert f"{workspace}/src/std_msgs hides ROS 2's std_msgs" in told
+
+
+def test_a_definition_that_is_not_in_camel_case(machine: Machine, workspace: Path) -> None:
+    """The name that its file has to have is told."""
+    folder = workspace / "src/lamp_interfaces/srv"
+    folder.mkdir()
+    (folder / "set_goal.srv").write_text("---\n")
+    shown = machine.look("ws", cwd=workspace, code=1)
+    right = f"{folder}/SetGoal.srv: names of interfaces are in camel case"
+    assert f"error: {folder}/set_goal.srv must be {right}\n" in shown

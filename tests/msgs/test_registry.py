@@ -334,3 +334,19 @@ def test_a_definition_that_differs_elsewhere(save: Save) -> None:
     assert registry.why_different("changed_msgs/msg/Thing") == told
     assert registry.why_different("std_msgs/msg/String") == ""
     assert registry.why_different("gone_msgs/msg/Thing") == ""
+
+
+def test_a_definition_that_is_not_called_as_interfaces_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The name that it has to have is told, and so is the folder of one that lies among those of another kind."""
+    (tmp_path / "srv").mkdir()
+    (tmp_path / "srv" / "set_goal.srv").write_text("---\n")
+    (tmp_path / "srv" / "Drive.action").write_text("---\n---\n")
+    monkeypatch.setattr(registry, "_packages", {"reg_snake": tmp_path})
+    camel = f"{tmp_path}/srv/set_goal.srv must be {tmp_path}/srv/SetGoal.srv: names of interfaces are in camel case$"
+    for asked in ("reg_snake/srv/SetGoal", "reg_snake/SetGoal"):
+        with pytest.raises(UnknownInterface, match=camel):
+            registry.full_name(asked)
+    with pytest.raises(UnknownInterface, match=f"{tmp_path}/srv/Drive.action must be {tmp_path}/action/Drive.action$"):
+        registry.full_name("reg_snake/action/Drive")
+    assert registry.misplaced("reg_snake", "Other") == ""
+    assert registry.camel("set_goal") == registry.camel("setGoal") == registry.camel("SetGoal") == "SetGoal"

@@ -10,6 +10,8 @@ import pytest
 import std_msgs
 
 import rclpy
+from graphflow.msgs import registry
+from graphflow.rclpy import finder
 from rclpy.node import Node
 from tests.rclpy.hinted import hint_of
 
@@ -124,3 +126,18 @@ def test_an_init_that_is_none(node: Node, tmp_path: Path) -> None:
         assert hint_of(lambda s=source, f=file: exec(compile(s, str(f), "exec"), {"__name__": "lamp"})) == (  # type: ignore[misc]
             f"Lamp has {name} (lamp.py:4): write __init__"
         )
+
+
+def test_a_definition_that_must_be_called_otherwise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Comes before those of other packages that have the name."""
+    (tmp_path / "srv").mkdir()
+    for name in ("add_two_ints", "Other"):
+        (tmp_path / "srv" / f"{name}.srv").write_text("---\n")
+    monkeypatch.setattr(registry, "_packages", {"hint_snake": tmp_path})
+    monkeypatch.setitem(finder.KNOWN, "hint_snake", str(tmp_path))
+
+    def run() -> None:
+        exec("from hint_snake.srv import AddTwoInts", {})
+
+    right = f"{tmp_path}/srv/AddTwoInts.srv: names of interfaces are in camel case"
+    assert hint_of(run) == f"{tmp_path}/srv/add_two_ints.srv must be {right}"

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import UsageFault
-from graphflow.graph.workspace import BUNDLED
-from graphflow.rclpy.programs import find_program
+from graphflow.graph.workspace import BUNDLED, find_workspace
+from graphflow.rclpy.programs import _where_to_have, find_program
 from graphflow.transport.rendezvous import free_endpoint
 
 NODE = """
@@ -428,3 +428,23 @@ def test_a_thread_that_spins_outlives_the_main_thread() -> None:
     )
     last = "Exception in thread spinner:\nrclpy.executors.ExternalShutdownException\n"
     assert (ended.stdout, ended.stderr, ended.returncode) == ("alone True\n", last, 0)
+
+
+@pytest.mark.parametrize(
+    ("module", "sentence"),
+    [
+        ("lamp.srv", "lamp has no .srv file; they are in lamp_interfaces: from lamp_interfaces.srv import ..."),
+        ("lamp_interfaces.action", "{}/srv/Shine.action must be {}/action/Shine.action"),
+        ("lamp.action", "lamp has no .action file: "),
+    ],
+)
+def test_definitions_of_another_package_or_folder(tmp_path: Path, module: str, sentence: str) -> None:
+    """An import of what is not there is answered with where it is, or has to be."""
+    for name in ("lamp", "lamp_interfaces"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    folder = tmp_path / "src/lamp_interfaces"
+    (folder / "srv").mkdir()
+    (folder / "srv/SetLight.srv").write_text("---\n")
+    (folder / "srv/Shine.action").write_text("---\n---\n")
+    assert _where_to_have(module, find_workspace(tmp_path)).startswith(sentence.format(folder, folder))
