@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable, Sequence
 
@@ -27,6 +28,17 @@ def _plain(line: str) -> list[str]:
     reader.commenters = ""
     words = list(reader)
     return [] if any(word and not word.strip(";|&<>") for word in words) else words
+
+
+def one_word_fault(texts: Sequence[str]) -> str:
+    """What to write for a command whose only word is a whole line; empty for others, as a program with a space."""
+    if len(texts) != 1 or os.path.exists(texts[0]):
+        return ""
+    words = plain_words(texts[0])
+    if len(words) == 1 or not texts[0].strip():
+        return ""
+    way = f", cmd={words}" if words and "$(" not in texts[0] else ""
+    return f"cmd is one word with spaces: add shell=True{f', or give a list of words{way}' if words else ''}"
 
 
 def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str, Item] | None:

@@ -23,7 +23,7 @@ from graphflow.graph import executables, ros1_launch
 from graphflow.graph.model import FROM_LAUNCH
 from graphflow.graph.ros_attributes import children, items, says, shape_fault, split
 from graphflow.graph.ros_attributes import words as words_of
-from graphflow.graph.ros_commands import Complain, plain_words, step_of, typed
+from graphflow.graph.ros_commands import Complain, one_word_fault, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
 from graphflow.graph.ros_settings import as_text, conditional, conditions, pair, params, ros_words, setting
 from graphflow.graph.tree import Item, located
@@ -372,6 +372,10 @@ class _Translation:
             self._complain(command.place, f"cmd: {error}")
             return
         is_shells = says(item, "shell", "true", "1")
+        may_not_run = "if" in item.entries or "unless" in item.entries
+        if is_list and not (is_shells or may_not_run) and (fault := one_word_fault(texts)):
+            self._complain(command.place, fault)
+            return
         line = " ".join(texts)
         if is_shells and plain_words(line)[:1] == ["ros2"]:
             words, is_shells = plain_words(line), False

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import shlex
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from graphflow.errors import Place
-from graphflow.graph.ros_commands import plain_words, step_of, typed
+from graphflow.graph.ros_commands import one_word_fault, plain_words, step_of, typed
 from graphflow.graph.tree import Item
 
 CALL = {"call": "/a", "type": "b/srv/C"}
@@ -90,3 +91,31 @@ def test_texts_as_values(text: str, value: object) -> None:
 def test_lines_that_need_no_shell(line: str, words: list[str]) -> None:
     """Those without pipes and the like."""
     assert plain_words(line) == words
+
+
+WAY = "cmd is one word with spaces: add shell=True"
+
+
+@pytest.mark.parametrize(
+    ("texts", "fault"),
+    [
+        (["ros2 topic list"], f"{WAY}, or give a list of words, cmd=['ros2', 'topic', 'list']"),
+        (["$(find-exec ros2) topic list"], f"{WAY}, or give a list of words"),
+        (["echo a | cat"], WAY),
+        (["ros2", "topic list"], ""),
+        (["rviz2"], ""),
+        (["$(find-exec rviz 2)"], ""),
+        (["'a b'"], ""),
+        ([""], ""),
+        ([], ""),
+    ],
+)
+def test_a_line_that_is_given_as_one_word(texts: list[str], fault: str) -> None:
+    """Is told with the words, where no shell is needed for it."""
+    assert one_word_fault(texts) == fault
+
+
+def test_a_program_whose_name_has_a_space(tmp_path: Path) -> None:
+    """Is a program."""
+    (tmp_path / "my prog").touch()
+    assert one_word_fault([str(tmp_path / "my prog")]) == ""

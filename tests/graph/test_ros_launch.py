@@ -278,6 +278,7 @@ def test_lifecycle_nodes() -> None:
         ("set_remap: {to: a}", "f.yaml:1:11: the attribute 'from' is missing"),
         ("set_remap: {from: a, to: b, if: 'true'}", "f.yaml:1:11: set_remap: a condition here has no words"),
         ("executable: {}", "f.yaml:1:11: executable: the attribute 'cmd' is missing"),
+        ("executable: {cmd: ['ls -l']}", "f.yaml:1:29: cmd is one word with spaces: add shell=True, or give a list of"),
         ('executable: {cmd: "a \'b"}', "f.yaml:1:29: cmd: No closing quotation"),
         ("executable: {cmd: 'ros2 service call /a b/srv/C {d'}", "f.yaml:1:29: the request '{d'"),
         (
