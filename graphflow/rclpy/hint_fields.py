@@ -50,6 +50,8 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
         return _part(target, given, value, cls)
     if isinstance(value, StrictMessage) and hasattr(value, "data"):
         return f"{given} is a message: write {target} = {given}.data"
+    if kind in ("float", "int") and isinstance(shape := getattr(value, "shape", None), tuple):
+        return _of_array(target, given, kind, shape)
     if kind == "float" and isinstance(value, int):
         return f"{target} is a float: write {value}.0" if given == str(value) else f"write {target} = float({given})"
     if kind == "int" and isinstance(value, float):
@@ -58,6 +60,19 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
     if is_made and value is not None:
         return f"write {target} = {kind}({given})"
     return f"it was given {reprlib.repr(value)}: write True or False" if kind == "bool" else ""
+
+
+def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str:
+    """How a number is made of one of NumPy's, or of an array of them."""
+    if not shape:
+        return f"write {target} = {kind}({given})"
+    whole = given if PATH.fullmatch(given) else f"({given})"
+    what = f"{target} is {'an int' if kind == 'int' else 'a float'}, and was given an array of shape {shape}"
+    is_one = all(size == 1 for size in shape)
+    way = (
+        f"{kind}({whole}[{', '.join('0' for _ in shape)}])" if is_one else f"one of its elements, {kind}({whole}[...])"
+    )
+    return f"{what}: write {way}"
 
 
 def _given(checks: list[dict[str, Any]], text: str) -> str:
@@ -108,6 +123,8 @@ def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
     users = own(frames)
     if not isinstance(error, TypeError) or not users or not _RECKONED.search(str(error)):
         return ""
+    if "'property'" in str(error) or "'member_descriptor'" in str(error):
+        return _class_as_message(line_of(frames), users[-1])
     for path in PATH.findall(line_of(frames)):
         thing = named(path, users[-1])
         name = type(thing).__name__
@@ -118,6 +135,24 @@ def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
         fields = thing.SCHEMA.fields
         if fields:
             return f"{path} is a {name}, a message: take its field, {path}.{fields[0].name}"
+    return ""
+
+
+def _class_as_message(line: str, frame: FrameType) -> str:
+    """How a message is made in place of its class, of which a line takes a field."""
+    for path in PATH.findall(line):
+        owner = path.rpartition(".")[0]
+        cls = named(owner, frame) if owner else None
+        if isinstance(cls, type) and issubclass(cls, StrictMessage):
+            is_kept = owner != cls.__name__
+            return (
+                f"{owner} is {'the' if is_kept else 'a'} class{f' {cls.__name__}' if is_kept else ''}, and no message: "
+                + (
+                    f"write {owner} = {cls.__name__}()"
+                    if is_kept
+                    else f"write {cls.__name__}(), or name the message that is meant"
+                )
+            )
     return ""
 
 

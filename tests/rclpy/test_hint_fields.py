@@ -40,6 +40,22 @@ ONE = "dimensions, and the field one: write "
         ("t.linear.x = '2'", "write t.linear.x = float('2')"),
         ("t.linear.x = None", ""),
         (
+            "t.linear.x = 5.0 * zeros(1)",
+            "t.linear.x is a float, and was given an array of shape (1,): write float((5.0 * zeros(1))[0])",
+        ),
+        (
+            "t.linear.x = matrix",
+            "t.linear.x is a float, and was given an array of shape (1, 1): write float(matrix[0, 0])",
+        ),
+        (
+            "t.linear.x = zeros(2)",
+            "t.linear.x is a float, and was given an array of shape (2,): write one of its elements, float((zeros(2))",
+        ),
+        ("t.linear.x = float32(n)", "write t.linear.x = float(float32(n))"),
+        ("m.data = int64(n)", "write m.data = int(int64(n))"),
+        ("2.0 - made.linear", "made is the class Twist, and no message: write made = Twist()"),
+        ("2.0 - Vector3.x", "Vector3 is a class, and no message: write Vector3(), or name the message that is meant"),
+        (
             "image.data = zeros((2, 3, 3), 'uint8')",
             f"the array has 3 {ONE}array.tobytes()",
         ),
@@ -69,5 +85,6 @@ def test_values_of_fields(tmp_path: Path, line: str, sentence: str) -> None:
     known |= {"b": Bool(), "j": JointState()}
     known |= {"Int32": Int32, "Twist": Twist, "Vector3": Vector3, "param": Parameter("n", value=1)}
     known |= {"time": time, "value": ParameterValue(), "image": Image(), "joints": JointState(), "zeros": np.zeros}
+    known |= {"made": Twist, "matrix": np.zeros((1, 1)), "float32": np.float32, "int64": np.int64}
     found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
     assert found.startswith(sentence) if sentence else found == ""
