@@ -38,6 +38,20 @@ def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | 
     return found[0] if found else None
 
 
+def whole_rule(match: str, replacement: str, known: Iterable[str]) -> str:
+    """A sentence that helps with a remap rule of the first part of names, as `turtle1:=turtle2`; else nothing.
+
+    Args:
+        known: The names that a node has.
+    """
+    head = match.strip("/") + "/"
+    found = next((name for name in known if head != "/" and name.removeprefix("/").startswith(head)), None)
+    if found is None:
+        return ""
+    rest = found.removeprefix("/").removeprefix(head)
+    return f"; a rule has whole names: {found}:={replacement.rstrip('/')}/{rest}"
+
+
 def did_you_mean(word: str, choices: Iterable[str], hidden: Iterable[str] = ()) -> str:
     """A sentence that helps with a misspelt `word`: the nearest choice, else all of a short list, else nothing.
 

@@ -21,6 +21,7 @@ from graphflow.names import (
     join,
     nearest,
     split,
+    whole_rule,
 )
 
 
@@ -433,3 +434,21 @@ def test_wildcards_that_are_wrong(rule: str, message: str) -> None:
     """Are told when the first name is looked at."""
     with pytest.raises(InvalidName, match=message):
         Resolver("node", "/", [Remap.parse(rule)]).resolve("chatter")
+
+
+@pytest.mark.parametrize(
+    ("rule", "meant"),
+    [
+        ("turtle1:=turtle2", "turtle1/cmd_vel:=turtle2/cmd_vel"),
+        ("/turtle1:=/turtle2/", "turtle1/cmd_vel:=/turtle2/cmd_vel"),
+        ("/arm:=/leg", "/arm/left/pose:=/leg/left/pose"),
+        ("turtle:=turtle2", ""),
+        ("/:=/turtle2", ""),
+        ("pose:=other", ""),
+    ],
+)
+def test_rules_of_the_first_part_of_names(rule: str, meant: str) -> None:
+    """The rule that was meant has a whole name."""
+    match, _, replacement = rule.partition(":=")
+    found = whole_rule(match, replacement, ["pose", "turtle1/cmd_vel", "turtle1/pose", "/arm/left/pose"])
+    assert found == (f"; a rule has whole names: {meant}" if meant else "")

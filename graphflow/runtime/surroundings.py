@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from graphflow.errors import DeclarationError
 from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
-from graphflow.names import Remap, Resolver, did_you_mean
+from graphflow.names import Remap, Resolver, did_you_mean, whole_rule
 from graphflow.runtime.args import is_number_or_truth
 from graphflow.runtime.slow_hooks import telling_slow_init
 
@@ -127,5 +127,6 @@ def unused_remaps(
         name = rule.match[1:] if rule.match.startswith("_") else rule.match  # as ROS 1 sets a parameter
         is_param = name in parameters
         set_by = f"-p {name}:={rule.replacement}"
-        hint = f"; to set the parameter write {set_by}" if is_param else did_you_mean(rule.match, known)
+        hint = f"; to set the parameter write {set_by}" if is_param else whole_rule(rule.match, rule.replacement, known)
+        hint = hint or did_you_mean(rule.match, known)
         yield f"the remap {rule} matches no name of this node{hint}"

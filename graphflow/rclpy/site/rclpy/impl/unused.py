@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graphflow.graph import params_file
-from graphflow.names import Remap, did_you_mean
+from graphflow.names import Remap, did_you_mean, whole_rule
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
@@ -88,7 +88,9 @@ class Unused:
 
 
 def _meant(rule: Remap, params: set[str], known: list[str]) -> str:
-    return f"; to set the parameter: -p {rule}" if rule.match in params else _near(rule.match, known)
+    if rule.match in params:
+        return f"; to set the parameter: -p {rule}"
+    return whole_rule(rule.match, rule.replacement, known) or _near(rule.match, known)
 
 
 def _near(word: str, known: list[str]) -> str:

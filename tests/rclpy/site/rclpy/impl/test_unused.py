@@ -24,6 +24,7 @@ class Lamp(Node):
         super().__init__(name)
         self.declare_parameter("level", 1)
         self.create_publisher(String, "light", 10)
+        self.create_publisher(String, "arm/pose", 10)
         self.create_client(Trigger, "switch")
 
 
@@ -35,6 +36,7 @@ def told(caplog: Caplog) -> list[str]:
     ("line", "text"),
     [
         ("-r lihgt:=sun", "the remap lihgt:=sun matches no name of /lamp; did you mean 'light'?"),
+        ("-r arm:=leg", "the remap arm:=leg matches no name of /lamp; a rule has whole names: arm/pose:=leg/pose"),
         ("-r lamp:=sun", "the remap lamp:=sun matches no name of /lamp; to rename the node: -r __node:=sun"),
         ("-r level:=3", "the remap level:=3 matches no name of /lamp; to set the parameter: -p level:=3"),
         ("-r lamp:lihgt:=sun", "the remap lamp:lihgt:=sun matches no name of /lamp; did you mean 'light'?"),
