@@ -28,14 +28,15 @@ _TIGHT = re.compile(r"\w:\S")
 _REPAIRS = (
     (re.compile(r"(?<=\w)'(?=\w)"), "''"),
     (re.compile(r";(?=\s*\w+:\s)"), ","),
+    (re.compile(r",\s*\{(?=\w+:\s)"), ", "),
     (re.compile(r"(\w+:)\s+(\w+:\s+[^\s{}:,]+)"), r"\1 {\2}"),
     (re.compile(r"(?<=\w):(?=[^\s/])"), ": "),
     (re.compile(r"(?<=\w)\s*=\s*(?=[^\s=])"), ": "),
     (re.compile(r"(?<=\d),(?=\d)"), "."),
     (re.compile(r"(?<=[\w.}\]'\"])\s+(?=\w+:\s)"), ", "),
 )
-"""Slips in the values of a message, and what is right: `{x: 'it's'}`, `{x: 1; y: 2}`, `{p: x: 1}`, `{x:1}`, `{x=1}`,
-`{x: 1,5}`, `{x: 1 y: 2}`."""
+"""Slips in the values of a message, and what is right: `{x: 'it's'}`, `{x: 1; y: 2}`, `{p: {x: 1}, {q: {y: 2}}`,
+`{p: x: 1}`, `{x:1}`, `{x=1}`, `{x: 1,5}`, `{x: 1 y: 2}`."""
 _BETWEEN_DOCUMENTS = re.compile(r"^---(?=\s|\Z)", re.MULTILINE)
 """Nothing else begins a line so, not even in a text of several lines: YAML 1.2.2, section 9.1.2."""
 _IS_SAID = re.compile(r"^\s*[^\s#]", re.MULTILINE)
@@ -149,9 +150,24 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
         raise UsageFault(f"{text!r} is a text because of the quotes in it; did you mean {values!r}?")
     if not _has_fields(values) and (meant := repaired(text)):
         raise UsageFault(f"{text!r} has a key that is no name of a field; did you mean {meant!r}?")
+    if not from_stdin and (name := _emptied(values, text)):
+        why = "a shell takes away quotes within others"
+        raise UsageFault(f"{text!r}: {name} has no value, since {why}; write {name}: ''")
     if odd := next(_quoted_in(values), ""):
         talk(f"note: the quotes around {odd} are sent with it; those of YAML are ' and \"")
     return values
+
+
+def _emptied(value: Any, text: str) -> str:
+    """The key that has nothing behind it, as `name: ""` within double quotes has; empty for none."""
+    if isinstance(value, list):
+        return next((name for inner in value if (name := _emptied(inner, text))), "")
+    for key, inner in value.items() if isinstance(value, dict) else ():
+        if inner is None and re.search(rf"\b{re.escape(str(key))}:\s*(?:[,}}]|\Z)", text):
+            return str(key)
+        if name := _emptied(inner, text):
+            return name
+    return ""
 
 
 def _quoted_in(value: Any) -> Iterator[str]:

@@ -240,6 +240,7 @@ def test_messages_in_a_file_of_another_kind(tmp_path: Path) -> None:
         ("{data: 'it's me'}", "{data: 'it''s me'}"),
         ("data: 'it's me'", "data: 'it''s me'"),
         ("{p: {x: 1.0} q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
+        ("{p: {x: 1.0}, {q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
         ("“data: hi”", "data: hi"),
         ("\u2018{data: hi}\u2019", "{data: hi}"),
         ("“data”: hi", '"data": hi'),
@@ -292,3 +293,20 @@ def test_quotes_that_are_sent(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_list_for_each_field() -> None:
     """As ROS 1 takes them; the message says then how they are written."""
     assert message_values(["[1.0, 2]", "[3]"]) == [[1.0, 2], [3]]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [("{x: 2, name: }", "name"), ("name:", "name"), ("{p: {name: , x: 1}}", "name"), ("{l: [{name: }]}", "name")],
+)
+def test_quotes_that_the_shell_takes_away(text: str, name: str) -> None:
+    """`{name: ""}` within double quotes has no value; how it is written is told."""
+    message = f"{name} has no value, since a shell takes away quotes within others; write {name}: ''"
+    with pytest.raises(UsageFault, match=re.escape(message)):
+        message_values([text])
+
+
+@pytest.mark.parametrize("text", ["{name: ''}", "{name: null}", "{x: 1}", "", "[]"])
+def test_values_that_are_there(text: str) -> None:
+    """An empty text is a value; what is written as null is not told to have lost its quotes."""
+    message_values([text])
