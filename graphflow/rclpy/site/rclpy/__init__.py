@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from graphflow.rclpy import tracebacks
 from rclpy.context import Context
-from rclpy.impl.spun import check_executor, check_future, check_node
+from rclpy.impl.spun import check_executor, check_future, check_node, tell_unused
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -190,7 +190,9 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the callbacks of a node until the context is shut down."""
     check_node(node, "spin")
     check_executor(executor, "spin")
-    executor = get_global_executor() if executor is None else executor
+    if executor is None:
+        executor = get_global_executor()
+        tell_unused(node, executor)
     former, is_added = node.executor, False
     try:
         is_added = executor.add_node(node)

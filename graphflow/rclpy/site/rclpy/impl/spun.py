@@ -5,9 +5,12 @@ from __future__ import annotations
 import logging
 from typing import Any
 
+from graphflow.errors import Place
 from rclpy.impl.callers import caller
 from rclpy.task import Future
 
+_told: set[Place] = set()
+"""The lines whose executor has been told."""
 logger = logging.getLogger("graphflow")
 
 
@@ -80,6 +83,23 @@ def tell(call: str, thing: Any) -> None:
     if asked is not None and thing is not None:
         text = "%s: %s does nothing, since it takes a node and got %s; write executor.%s(node)"
         logger.warning(text, asked.place, call, thing.__name__ if isinstance(thing, type) else repr(thing), call)
+
+
+def tell_unused(node: Any, used: Any) -> None:
+    """Tell of an executor that the function which calls `rclpy.spin(node)` has made and gives to nothing."""
+    asked = caller(2)
+    if asked is None:
+        return
+    for name, value in list(asked.frame.f_locals.items()):
+        if value is used:
+            continue
+        spinning = None if isinstance(value, type) else getattr(value, "_graphflow", None)
+        if not hasattr(type(value), "add_node") or spinning is None or spinning.turns or spinning.is_spun:
+            continue
+        if asked.place not in _told and set(spinning.nodes) <= {node}:
+            _told.add(asked.place)
+            text = "%s: rclpy.spin does not use the %s in %s: write rclpy.spin(node, %s)"
+            logger.warning(text, asked.place, type(value).__name__, name, name)
 
 
 def is_node(thing: Any) -> bool:

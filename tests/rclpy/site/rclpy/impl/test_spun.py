@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from std_msgs.msg import String
 
 import rclpy
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.impl import spun
 from rclpy.impl.spun import check_executor
 from rclpy.node import Node
 from tests.rclpy.hinted import hint_of
@@ -125,3 +127,66 @@ def test_threads_that_are_no_number(node: Any) -> None:
         MultiThreadedExecutor("4")  # type: ignore[arg-type]
     text = "num_threads must be a number of threads, got '4': nodes are added by executor.add_node(node)"
     assert str(caught.value) == text
+
+
+def told_of(spin: Callable[[Node], None], node: Node, caplog: pytest.LogCaptureFixture) -> list[str]:
+    """What is told of an executor while a function spins a node, until it is shut down."""
+    spun._told.clear()
+    timer = node.create_timer(0.01, rclpy.shutdown)
+    spin(node)
+    timer.cancel()
+    return [r.getMessage() for r in caplog.records if "does not use" in r.getMessage()]
+
+
+def unused(node: Node) -> None:
+    """Make an executor, and leave it out."""
+    pool = MultiThreadedExecutor()
+    rclpy.spin(node)
+    pool.shutdown()
+
+
+def added(node: Node) -> None:
+    """Add the node to an executor, and spin it with another."""
+    pool = SingleThreadedExecutor()
+    pool.add_node(node)
+    rclpy.spin(node)
+
+
+def given(node: Node) -> None:
+    pool = MultiThreadedExecutor()
+    rclpy.spin(node, pool)
+
+
+def known(node: Node) -> None:
+    pool = rclpy.get_global_executor()
+    rclpy.spin(node)
+    assert pool is not None
+
+
+def others(node: Node) -> None:
+    """Have another thread spin another node."""
+    pool = SingleThreadedExecutor()
+    pool.add_node(Node("other"))
+    rclpy.spin(node)
+
+
+def tried(node: Node) -> None:
+    pool = SingleThreadedExecutor()
+    pool.spin_once(timeout_sec=0)
+    rclpy.spin(node)
+
+
+@pytest.mark.parametrize(("spin", "kind", "line"), [(unused, "Multi", 3), (added, "Single", 4)])
+def test_an_executor_that_is_not_used(
+    spin: Callable[[Node], None], kind: str, line: int, node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It is told with the line that leaves it out."""
+    place = f"test_spun.py:{spin.__code__.co_firstlineno + line}"
+    way = f"rclpy.spin does not use the {kind}ThreadedExecutor in pool: write rclpy.spin(node, pool)"
+    assert told_of(spin, node, caplog) == [f"{place}: {way}"]
+
+
+@pytest.mark.parametrize("spin", [given, known, others, tried])
+def test_executors_that_are_used(spin: Callable[[Node], None], node: Node, caplog: pytest.LogCaptureFixture) -> None:
+    """One that is given, the global one, and those that have other nodes or have been spun."""
+    assert told_of(spin, node, caplog) == []
