@@ -13,6 +13,7 @@ from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import Unknown, source_of
 from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
+from graphflow.deadlock.user_code import is_users, short_place
 
 _MAKERS = {"create_service": 1, "ActionServer": 2}
 """Calls that make servers, and the position of the name among their arguments."""
@@ -93,6 +94,23 @@ def opening_of(
         return None
     handlers = frozenset[str]() if found is None or found.parts else found.handlers
     return Opening(handlers, is_own) if handlers or is_own else None
+
+
+def comes_after(frames: Iterable[Frame]) -> str:
+    """Say that an `__init__` which waits makes servers only after the wait, as the end of a sentence; or nothing."""
+    for frame in frames:
+        is_init = frame.f_code.co_name == "__init__" and is_users(frame.f_code.co_filename)
+        offers = _offers(frame.f_code.co_filename) if is_init else []
+        later = [one for one in offers if _is_of(frame, one) and _follows(one, frame.f_lineno)]
+        first = min(later, key=lambda offer: offer.call.lineno, default=None)
+        if first is not None:
+            place = short_place(first.file, first.call.lineno)
+            what = "another server" if first.name is None else first.name
+            is_ = "are" if later[1:] else "is"
+            others = f" and {len(later) - 1} more" if later[1:] else ""
+            way = "offer first, or wait outside of __init__"
+            return f"; {what} ({place}){others} {is_} offered only after this wait: {way}"
+    return ""
 
 
 def tries_forever(frame: Frame) -> bool:

@@ -18,6 +18,7 @@ from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.impl.entities import full_name, role_of
 from rclpy.impl.held_up import label_of, place_of
+from rclpy.impl.openings import comes_after
 from rclpy.impl.stacks import Level, stacks
 
 if TYPE_CHECKING:
@@ -96,7 +97,8 @@ class Unserved:
             is_told = self._is_told(level.run, "r", f"{label_of(level.run)} of {full_name(node)}")
         if not is_told:
             text = "%s has waited for %.1f s in %s: %s"
-            logger.warning(text, full_name(node), seconds, place_of(level, node), nobody(client, self._context.cache))
+            why = nobody(client, self._context.cache) + comes_after(level.frames)
+            logger.warning(text, full_name(node), seconds, place_of(level, node), why)
 
 
 def nobody(client: Client | ActionClient, cache: GraphCache) -> str:

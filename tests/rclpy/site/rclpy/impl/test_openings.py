@@ -11,7 +11,7 @@ from std_srvs.srv import Trigger
 
 import rclpy
 from graphflow.deadlock.frames import Frame, running
-from rclpy.impl.openings import Opening, opening_of, tries_forever
+from rclpy.impl.openings import Opening, comes_after, opening_of, tries_forever
 from rclpy.impl.subjects import Subject
 from rclpy.node import Node
 from tests.rclpy.stepping import after_a_step
@@ -113,3 +113,29 @@ def test_loops(offers: Offers, way: Any, is_endless: bool) -> None:
     """One that tries until there is a server or the program ends, and others."""
     code = way(offers, Absent())
     assert tries_forever(after_a_step(code)) is is_endless
+
+
+class Late(Node):
+    """Waits in its `__init__`, before it offers."""
+
+    def __init__(self) -> None:
+        super().__init__("late")
+        self.create_service(Trigger, "first", print)
+        self.said = comes_after([running(sys._getframe())])
+        self.create_service(Trigger, "second", print)
+        self.create_service(Trigger, "third", print)
+        self.last = comes_after([running(sys._getframe())])
+
+    def elsewhere(self) -> str:
+        said = comes_after([running(sys._getframe())])
+        self.create_service(Trigger, "fourth", print)
+        return said
+
+
+def test_servers_that_come_after_a_wait(node: Node) -> None:
+    """Are told with the line of the first, where it is an `__init__` that waits; those before it are not."""
+    late = Late()
+    place = f"test_openings.py:{Late.__init__.__code__.co_firstlineno + 4}"
+    way = "are offered only after this wait: offer first, or wait outside of __init__"
+    assert late.said == f"; second ({place}) and 1 more {way}"
+    assert late.last == late.elsewhere() == ""
