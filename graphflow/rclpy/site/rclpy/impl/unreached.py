@@ -16,10 +16,9 @@ from pathlib import Path
 from types import CodeType, FunctionType, MethodType
 from typing import Any, NamedTuple
 
-import rclpy
 from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
-from graphflow.deadlock.user_code import is_users, short_place
+from graphflow.deadlock.user_code import is_ours, is_users, short_place
 from graphflow.reading import found_text
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
@@ -30,7 +29,6 @@ TELL_AFTER = 3.0
 """Seconds that a spin must have lasted."""
 LOOK_EVERY = 1.0
 """Seconds between two looks at what threads spin."""
-_SPINS = (rclpy.spin.__code__, Executor.spin.__code__)
 _SENDS = {"call_async", "send_goal_async", "send_goal", "wait_for_service", "wait_for_server"}
 _SENDS |= {"spin_until_future_complete"}
 """Methods that need other nodes."""
@@ -80,9 +78,14 @@ def _spinning() -> Iterator[Frame]:
     """The user's functions that have called what spins for ever."""
     for stack in stacks():
         frames = stack.levels[0].frames
-        at = next((place for place, frame in enumerate(frames) if frame.f_code in _SPINS), None)
+        at = next((place for place, frame in enumerate(frames) if _is_spin(frame.f_code)), None)
         if stack.is_users and at is not None:
             yield from (frame for frame in frames[:at] if is_users(frame.f_code.co_filename))
+
+
+def _is_spin(code: CodeType) -> bool:
+    """Whether it is `rclpy.spin` or an executor's, which come back when the context is shut down."""
+    return code.co_name == "spin" and is_ours(code.co_filename)
 
 
 def _tell(frame: Frame) -> None:
