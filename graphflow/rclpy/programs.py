@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import linecache
 import os
+import re
 import runpy
 import signal
 import sys
@@ -12,6 +14,7 @@ from importlib import import_module
 from inspect import isclass, isfunction
 from pathlib import Path
 from pkgutil import iter_modules
+from traceback import walk_tb
 from types import ModuleType, TracebackType
 from typing import NamedTuple
 
@@ -174,14 +177,26 @@ def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException,
     tracebacks.shorten(error)
     sys.__excepthook__(kind, error, error.__traceback__)
     if isinstance(error, ModuleNotFoundError) and error.name is not None and not hiding.hidden(error):
-        sys.stderr.write(f"note: {_where_to_have(error.name, workspace)}\n")
+        sys.stderr.write(f"note: {_where_to_have(error.name, workspace, _imported_in(error))}\n")
     if isinstance(error, AssertionError) and " field must be " in str(error):
         later = "ROS 2 Jazzy looks at this only when the message is sent, and then ends the process"
         sys.stderr.write(f"note: {later}; to have it looked at then here, too: ROS_PYTHON_CHECK_FIELDS=0\n")
 
 
-def _where_to_have(module: str, workspace: Workspace) -> str:
-    """Where a module may be had that is not there."""
+def _imported_in(error: BaseException) -> str:
+    """The first name that the line imports which an error is from; empty where it is of another form."""
+    parts = list(walk_tb(error.__traceback__))
+    line = linecache.getline(parts[-1][0].f_code.co_filename, parts[-1][1]) if parts else ""
+    found = re.match(r"\s*from\s+[\w.]+\s+import\s+\(?\s*(\w+)", line)
+    return found[1] if found is not None else ""
+
+
+def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
+    """Where a module may be had that is not there.
+
+    Args:
+        wanted: What is imported from it; empty where that is not known.
+    """
     name, _, kind = module.partition(".")
     package = workspace.packages.get(name)
     if package is not None and name in of_ros():
@@ -191,6 +206,9 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
             if right.suffix == f".{kind}":
                 return f"{file} must be {right}"
         others = [p.name for p in workspace.packages.values() if p.has_kind(kind)]
+        owners = [other for other in others if wanted in registry.names_in(other, kind)]
+        if owners:
+            return f"{wanted} is in {owners[0]}.{kind}: from {owners[0]}.{kind} import {wanted}"
         near = nearest(name, others, cutoff=SLIP) or next((o for o in others if o.startswith(name)), None)
         if near is not None:
             return f"{name} has no .{kind} file; they are in {near}: from {near}.{kind} import ..."

@@ -12,7 +12,8 @@ import pytest
 
 from graphflow.errors import UsageFault
 from graphflow.graph.workspace import BUNDLED, find_workspace
-from graphflow.rclpy.programs import _where_to_have, find_program
+from graphflow.msgs import registry
+from graphflow.rclpy.programs import _imported_in, _where_to_have, find_program
 from graphflow.transport.rendezvous import free_endpoint
 
 NODE = """
@@ -448,3 +449,21 @@ def test_definitions_of_another_package_or_folder(tmp_path: Path, module: str, s
     (folder / "srv/SetLight.srv").write_text("---\n")
     (folder / "srv/Shine.action").write_text("---\n---\n")
     assert _where_to_have(module, find_workspace(tmp_path)).startswith(sentence.format(folder, folder))
+
+
+def test_a_type_that_another_package_of_the_workspace_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The import to write has its name."""
+    for name in ("lamp", "lamp_kinds"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    (tmp_path / "src/lamp_kinds/srv").mkdir()
+    (tmp_path / "src/lamp_kinds/srv/SetLight.srv").write_text("---\n")
+    monkeypatch.setattr(registry, "_packages", {"lamp_kinds": tmp_path / "src/lamp_kinds"})
+    program = tmp_path / "program.py"
+    program.write_text("import os\nfrom lamp_no_such.srv import SetLight, Other\n")
+    with pytest.raises(ModuleNotFoundError) as caught:
+        exec(compile(program.read_text(), str(program), "exec"), {})
+    wanted = _imported_in(caught.value)
+    assert wanted == "SetLight"
+    right = "SetLight is in lamp_kinds.srv: from lamp_kinds.srv import SetLight"
+    assert _where_to_have("lamp.srv", find_workspace(tmp_path), wanted) == right
