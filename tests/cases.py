@@ -37,6 +37,29 @@ def sample(names: Sequence[T], step: int = 4) -> Sequence[T]:
     return names[::step] if _WANTED == "few" else names
 
 
+MANY = 5
+"""Cases of one test that are run by default, where there are more."""
+
+
+def few_of_many(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
+    """The tests to run, and those to leave to CI: of a test with many cases, some at equal distances are run.
+
+    With `--cases full`, all are.
+    """
+    kept: list[pytest.Item] = []
+    left: list[pytest.Item] = []
+    cases_of: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        cases_of.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    chosen: set[int] = set()
+    for same in cases_of.values():
+        step = -(-len(same) // MANY) if _WANTED == "few" else 1
+        chosen.update(map(id, same[::step]))
+    for item in items:
+        (kept if id(item) in chosen else left).append(item)
+    return kept, left
+
+
 def limit(number: int) -> pytest.MarkDecorator:
     """The time that so many cases may take."""
     return pytest.mark.timeout(120 + number // 5)

@@ -54,6 +54,17 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     return 2 * (os.cpu_count() or 1)
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave most cases of tests with many to CI, unless single tests are asked for by name."""
+    from tests.cases import few_of_many
+
+    if any("::" in word for word in config.args) or config.option.keyword:
+        return
+    items[:], left = few_of_many(items)
+    if left:
+        config.hook.pytest_deselected(items=left)
+
+
 class Program:
     """A command under way, with its output lines as they come."""
 
