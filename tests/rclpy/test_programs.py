@@ -349,7 +349,11 @@ def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
             "there is no lampp here; did you mean 'lamp'?",
         ),
         ("import lamp.no", ["Traceback", "lamp/late.py", "    import lamp.no"], "lamp has no module lamp.no"),
-        ("from lamp.msg import Qqq", ["Traceback", "lamp/late.py", "    from lamp.msg"], "lamp has no .msg file: "),
+        (
+            "from lamp.msg import A",
+            ["Traceback", "lamp/late.py", "    from lamp.msg"],
+            "lamp has no .msg file; they are in lamp_interfaces",
+        ),
         ("from rclpy.Node import Node", ["Traceback"], "there is no module rclpy.Node; did you mean 'rclpy.node'?"),
         (
             "from turtlesim.msgs import Pose",
