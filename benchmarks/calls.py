@@ -36,7 +36,7 @@ from benchmarks.rounds import compare, goal
 from graphflow import Node
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 CALLS = 600
 TOGETHER = 32

@@ -20,7 +20,7 @@ from graphflow import Node, Qos
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 BURST = 100
 PIXELS = 1_000_000

@@ -25,7 +25,7 @@ from graphflow import DeadlockError, Group, Node
 from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 keep: list[Any] = []
 

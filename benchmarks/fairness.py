@@ -21,7 +21,7 @@ from graphflow import Node, Publisher, subscription, timer
 from graphflow.executor import runner
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 BLOCKS = 0.02
 MESSAGE_HZ, TIMER_HZ = 62.0, 100.0

@@ -38,7 +38,7 @@ import numpy as np
 from graphflow import Node, timer
 from graphflow.msgs.std_msgs.msg import UInt8MultiArray
 from graphflow.qos import Qos
-from graphflow.runtime import raw
+from graphflow.runtime.endpoints import raw
 
 
 class Load(Node):

@@ -38,7 +38,7 @@ from benchmarks.rounds import compare, goal
 from graphflow import Node
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 PAYLOAD = bytes(64)
 PINGS = 1000

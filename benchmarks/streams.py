@@ -34,7 +34,7 @@ from graphflow import Node, Qos
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 SECONDS = 0.5
 LOOP = "asyncio"

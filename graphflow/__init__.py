@@ -50,10 +50,10 @@ if TYPE_CHECKING:
         Qos,
         Reliability,
     )
-    from graphflow.runtime.action_client import ClientGoalHandle, GoalClient
-    from graphflow.runtime.actions import ActionServer
+    from graphflow.runtime.actions.client import ClientGoalHandle, GoalClient
+    from graphflow.runtime.actions.server import ActionServer
     from graphflow.runtime.context import Context
-    from graphflow.runtime.declare import (
+    from graphflow.runtime.declarations.declare import (
         ActionClient,
         Client,
         Group,
@@ -61,23 +61,23 @@ if TYPE_CHECKING:
         Publisher,
         Subscription,
     )
-    from graphflow.runtime.events import QosEvent
-    from graphflow.runtime.failures import ErrorBudget
-    from graphflow.runtime.handlers import (
+    from graphflow.runtime.declarations.handlers import (
         action,
         service,
         subscription,
         task,
         timer,
     )
+    from graphflow.runtime.endpoints.events import QosEvent
+    from graphflow.runtime.endpoints.publishers import TopicPublisher
+    from graphflow.runtime.endpoints.service_client import ServiceClient
+    from graphflow.runtime.endpoints.services import ServiceServer
+    from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+    from graphflow.runtime.endpoints.timer import Timer, TimerInfo
+    from graphflow.runtime.failures import ErrorBudget
     from graphflow.runtime.lifecycle import LifecycleNode
     from graphflow.runtime.node import Node
-    from graphflow.runtime.publishers import TopicPublisher
     from graphflow.runtime.run import run, running
-    from graphflow.runtime.service_client import ServiceClient
-    from graphflow.runtime.services import ServiceServer
-    from graphflow.runtime.subscriptions import TopicSubscription
-    from graphflow.runtime.timer import Timer, TimerInfo
     from graphflow.times import Duration, Time
     from graphflow.wire.attachment import MessageInfo
 
@@ -131,13 +131,13 @@ _HOMES = {
         "Qos",
         "Reliability",
     ),
-    "graphflow.runtime.action_client": (
+    "graphflow.runtime.actions.client": (
         "ClientGoalHandle",
         "GoalClient",
     ),
-    "graphflow.runtime.actions": ("ActionServer",),
+    "graphflow.runtime.actions.server": ("ActionServer",),
     "graphflow.runtime.context": ("Context",),
-    "graphflow.runtime.declare": (
+    "graphflow.runtime.declarations.declare": (
         "ActionClient",
         "Client",
         "Group",
@@ -145,9 +145,9 @@ _HOMES = {
         "Publisher",
         "Subscription",
     ),
-    "graphflow.runtime.events": ("QosEvent",),
+    "graphflow.runtime.endpoints.events": ("QosEvent",),
     "graphflow.runtime.failures": ("ErrorBudget",),
-    "graphflow.runtime.handlers": (
+    "graphflow.runtime.declarations.handlers": (
         "action",
         "service",
         "subscription",
@@ -156,18 +156,18 @@ _HOMES = {
     ),
     "graphflow.runtime.lifecycle": ("LifecycleNode",),
     "graphflow.runtime.node": ("Node",),
-    "graphflow.runtime.publishers": ("TopicPublisher",),
+    "graphflow.runtime.endpoints.publishers": ("TopicPublisher",),
     "graphflow.runtime.run": (
         "run",
         "running",
     ),
-    "graphflow.runtime.service_client": ("ServiceClient",),
-    "graphflow.runtime.services": ("ServiceServer",),
-    "graphflow.runtime.timer": (
+    "graphflow.runtime.endpoints.service_client": ("ServiceClient",),
+    "graphflow.runtime.endpoints.services": ("ServiceServer",),
+    "graphflow.runtime.endpoints.timer": (
         "Timer",
         "TimerInfo",
     ),
-    "graphflow.runtime.subscriptions": ("TopicSubscription",),
+    "graphflow.runtime.endpoints.subscriptions": ("TopicSubscription",),
     "graphflow.times": (
         "Duration",
         "Time",
@@ -259,7 +259,7 @@ def __getattr__(name: str) -> object:
             value: object = getattr(import_module(home), name)
             globals()[name] = value
             return value
-    from graphflow.runtime.dictionary import translation
+    from graphflow.runtime.rclpy_words import translation
 
     hint = translation(name, "names")
     if name[:1].isupper() and name.lower() in __all__:

@@ -37,8 +37,8 @@ def sample(names: Sequence[T], step: int = 4) -> Sequence[T]:
     return names[::step] if _WANTED == "few" else names
 
 
-MANY = 5
-"""Cases of one test that are run by default, where there are more."""
+MANY, MANY_REAL = 4, 2
+"""Cases of one test that are run by default, where there are more; of one that starts processes."""
 
 
 def few_of_many(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
@@ -53,7 +53,8 @@ def few_of_many(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[p
         cases_of.setdefault(item.nodeid.partition("[")[0], []).append(item)
     chosen: set[int] = set()
     for same in cases_of.values():
-        step = -(-len(same) // MANY) if _WANTED == "few" else 1
+        many = MANY if same[0].get_closest_marker("real") is None else MANY_REAL
+        step = -(-len(same) // many) if _WANTED == "few" else 1
         chosen.update(map(id, same[::step]))
     for item in items:
         (kept if id(item) in chosen else left).append(item)

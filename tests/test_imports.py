@@ -40,7 +40,7 @@ def test_help_of_a_verb_imports_nothing_heavy(verb: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "module", ["graphflow.cli.topic", "graphflow.cli.node", "graphflow.cli.service", "graphflow.introspect.view"]
+    "module", [*(f"graphflow.cli.ros.{verb}" for verb in ("topic", "node", "service")), "graphflow.introspect.view"]
 )
 def test_the_modules_of_the_list_verbs_import_nothing_heavy(module: str) -> None:
     """Listing nodes, topics and services needs neither asyncio nor numpy, pydantic or textual."""
@@ -49,7 +49,7 @@ def test_the_modules_of_the_list_verbs_import_nothing_heavy(module: str) -> None
 
 def test_up_imports_nothing_heavy_before_the_fork() -> None:
     """The processes of a graph share what `up` had before it forked: nothing with threads, nothing that is slow."""
-    assert imported("import graphflow.cli.graphs, graphflow.supervisor.launch") == []
+    assert imported("import graphflow.cli.graphs.graphs, graphflow.supervisor.launching.launch") == []
 
 
 def test_the_package_itself_imports_nothing_heavy() -> None:

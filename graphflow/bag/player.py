@@ -22,9 +22,9 @@ from graphflow.errors import BagError, InvalidName
 from graphflow.msgs import registry
 from graphflow.names import check_full_name
 from graphflow.qos import CLOCK, DEFAULT, Durability, History, Qos, Reliability
-from graphflow.runtime import raw
+from graphflow.runtime.endpoints import raw
+from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.node import Node
-from graphflow.runtime.serialized import RawPublisher
 from graphflow.times import to_ns
 from graphflow.wire.profile import wire_profile, wire_type
 

@@ -21,9 +21,9 @@ from graphflow.bag.kept import Kept
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError, GraphflowError, printable
 from graphflow.qos import BEST_AVAILABLE, Qos
-from graphflow.runtime import raw
+from graphflow.runtime.endpoints import raw
+from graphflow.runtime.endpoints.serialized import RawSubscription
 from graphflow.runtime.node import Node
-from graphflow.runtime.serialized import RawSubscription
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 

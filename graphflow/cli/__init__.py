@@ -1,1 +1,5 @@
-"""The command line: ROS 2's verbs and those for graphs. One module per verb group, imported when used."""
+"""The command line.
+
+Begin with `main`, which has the table of verbs; each verb's module is imported when it is used. `ros` has ROS 2's
+verbs, `graphs` those for graphs; `messages` sends, shows and records; `projects` makes projects and finds nodes.
+"""

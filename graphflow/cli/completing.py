@@ -107,7 +107,7 @@ def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
     if word not in LIVE and word not in offers.MESSAGES:
         return ()
     if word not in NAMES:
-        from graphflow.cli.types import use_project
+        from graphflow.cli.messages.types import use_project
 
         use_project()
     if word in offers.MESSAGES:
@@ -128,8 +128,8 @@ def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
 
 def _started_by(given: Sequence[str]) -> set[str]:
     """The packages that have executables, or the executables of the one that was named."""
-    from graphflow.graph.executables import all_executables
-    from graphflow.graph.project import project_root
+    from graphflow.workspace.executables import all_executables
+    from graphflow.workspace.project import project_root
 
     rows = all_executables(project_root(Path.cwd()))
     return {row.name for row in rows if row.package == given[0]} if given else {row.package for row in rows}

@@ -127,7 +127,7 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
         UsageFault: The words are not YAML, or a missing space keeps them from being a mapping.
     """
     from graphflow.errors import UsageFault
-    from graphflow.graph.source import parse_value
+    from graphflow.markup.source import parse_value
 
     if words and from_stdin:
         raise UsageFault(f"--stdin reads the values from standard input; leave out {words[0]!r}")
@@ -180,7 +180,7 @@ def _quoted_in(value: Any) -> Iterator[str]:
 
 def _lists(words: Sequence[str]) -> list[Any] | None:
     """The values of words that are a list each, as ROS 1 takes them; None where one is none."""
-    from graphflow.graph.source import parse_value
+    from graphflow.markup.source import parse_value
 
     if len(words) < 2 or not all(word.startswith("[") for word in words):
         return None
@@ -213,7 +213,7 @@ def _is_closed(text: str) -> bool:
 
 def _is_message(text: str) -> bool:
     """Whether a text reads as fields with their values."""
-    from graphflow.graph.source import parse_value
+    from graphflow.markup.source import parse_value
 
     with suppress(GraphflowError):
         values = parse_value(text)
@@ -235,7 +235,7 @@ def messages_in(file: Path) -> list[tuple[str, Any]]:
         UsageFault: It cannot be read, has no message, or one of its documents is not YAML.
     """
     from graphflow.errors import GraphFileError, UsageFault
-    from graphflow.graph.source import read
+    from graphflow.markup.source import read
 
     try:
         text = found_text(file, bound=_MESSAGES_BOUND)

@@ -20,8 +20,8 @@ from collections.abc import Iterable, Iterator
 from types import CodeType, FunctionType, MethodType
 from typing import Any, Literal, NamedTuple
 
-from graphflow.deadlock.frames import Frame, awaited, code_of, suspended
-from graphflow.deadlock.user_code import is_users
+from graphflow.analysis.frames import Frame, awaited, code_of, suspended
+from graphflow.analysis.user_code import is_users
 
 FUTURE = ("set_result", "set_exception", "cancel")
 """Methods that end a future."""

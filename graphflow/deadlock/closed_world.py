@@ -19,6 +19,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from graphflow.analysis.attribute_uses import Use, is_own
+from graphflow.analysis.class_source import LAMBDA, Function, Unknown, source_of
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new, messages
+from graphflow.analysis.syntax import FunctionNode, first_line, is_nested, syntax_of, walk
+from graphflow.analysis.user_code import Pause
 from graphflow.deadlock.asyncio_frames import DEEDS, ENDINGS, awaited_future, is_inside, object_wait
 from graphflow.deadlock.conditions import (
     CONTAINERS,
@@ -32,14 +38,8 @@ from graphflow.deadlock.conditions import (
     arrays,
     makes_task,
 )
-from graphflow.deadlock.frames import Frame
-from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new, messages
 from graphflow.deadlock.module_names import changes
 from graphflow.deadlock.protocols import Subject
-from graphflow.deadlock.source import LAMBDA, Function, Unknown, source_of
-from graphflow.deadlock.syntax import FunctionNode, first_line, is_nested, syntax_of, walk
-from graphflow.deadlock.user_code import Pause
-from graphflow.deadlock.uses import Use, is_own
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
 

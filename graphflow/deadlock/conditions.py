@@ -20,13 +20,13 @@ from enum import Enum
 from types import MappingProxyType, ModuleType, NoneType
 from typing import Any, NamedTuple
 
+from graphflow.analysis.attribute_uses import looks
+from graphflow.analysis.class_source import ClassSource, Unknown, source_of
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.local_messages import messages
+from graphflow.analysis.syntax import FunctionNode, walk
+from graphflow.analysis.user_code import is_users_module, is_users_object
 from graphflow.deadlock.asyncio_frames import FUTURE
-from graphflow.deadlock.frames import Frame
-from graphflow.deadlock.fresh import messages
-from graphflow.deadlock.source import ClassSource, Unknown, source_of
-from graphflow.deadlock.syntax import FunctionNode, walk
-from graphflow.deadlock.user_code import is_users_module, is_users_object
-from graphflow.deadlock.uses import looks
 from graphflow.executor.ledger import PendingGoal
 
 Loop = ast.While | ast.For | ast.AsyncFor

@@ -16,12 +16,12 @@ import threading
 import time
 from typing import Any
 
-from graphflow.deadlock.protocols import Subject, Surroundings
+from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.search import Search
 from graphflow.errors import GraphflowError, InvalidName, RemoteError
 from graphflow.executor.allowance import Allowance
 from graphflow.executor.runner import Runner
-from graphflow.machines.wait_graph_json import to_json
+from graphflow.machines.waits.wait_graph_json import to_json
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Inbox
 from graphflow.wire import attachment
@@ -44,7 +44,7 @@ _KINDS = ("timer", "subscription", "service", "action")
 class Inspection:
     """The answers of one process."""
 
-    def __init__(self, process: Surroundings, search: Search) -> None:
+    def __init__(self, process: ProcessContext, search: Search) -> None:
         self._process, self._search = process, search
         self._thread = threading.get_ident()
         now_ns = process.clock.monotonic_ns

@@ -11,12 +11,12 @@ import sys
 from collections.abc import Iterator
 from types import ModuleType
 
+from graphflow.analysis.attribute_uses import Use, use_of
+from graphflow.analysis.class_source import ClassSource, Unknown
+from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new
+from graphflow.analysis.syntax import FunctionNode, is_nested, syntax_of, walk
+from graphflow.analysis.user_code import is_users_module
 from graphflow.deadlock.conditions import LOOKING, VIEWLESS, arrays
-from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new
-from graphflow.deadlock.source import ClassSource, Unknown
-from graphflow.deadlock.syntax import FunctionNode, is_nested, syntax_of, walk
-from graphflow.deadlock.user_code import is_users_module
-from graphflow.deadlock.uses import Use, use_of
 
 
 def changes(name: str, module_name: str, source: ClassSource) -> Iterator[Use]:

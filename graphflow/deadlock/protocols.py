@@ -13,7 +13,7 @@ from graphflow.executor.groups import Groups
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
 from graphflow.machines.cache import GraphCache, GraphChange
-from graphflow.machines.wait_graph import WaitGraph
+from graphflow.machines.waits.wait_graph import WaitGraph
 from graphflow.transport.base import Session
 
 
@@ -85,7 +85,7 @@ class Elsewhere(Protocol):
         """Reports of runs among them that keep others waiting for long. Called on any thread."""
 
 
-class Surroundings(Protocol):
+class ProcessContext(Protocol):
     """What the nodes of one process share, as far as the search needs it."""
 
     @property

@@ -19,7 +19,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from graphflow.deadlock.chains import Chains
-from graphflow.deadlock.protocols import Surroundings
+from graphflow.deadlock.protocols import ProcessContext
 from graphflow.deadlock.snapshot import Snapshot
 from graphflow.deadlock.stalls import Stalls
 from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive
@@ -30,10 +30,10 @@ from graphflow.executor.ledger import PendingCall
 from graphflow.executor.runner import Runner
 from graphflow.interface import DeadlockPolicy
 from graphflow.machines.cache import GraphChange
-from graphflow.machines.explain import again, explanation, headline, hopeless, is_in_vain, title
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import Deadlock, explained, is_ring
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.explain import again, explanation, headline, hopeless, is_in_vain, title
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.rings import Deadlock, explained, is_ring
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     Call,
@@ -45,7 +45,7 @@ from graphflow.machines.wait_graph import (
     joined,
     parts_of,
 )
-from graphflow.machines.wait_graph_json import from_json
+from graphflow.machines.waits.wait_graph_json import from_json
 from graphflow.times import to_ns
 from graphflow.wire.process import LOOK, WAITS, answer_key
 
@@ -116,7 +116,7 @@ class Foreign(NamedTuple):
 class Search:
     """The search for deadlocks in which one process has a part. One per process."""
 
-    def __init__(self, process: Surroundings, policy: DeadlockPolicy) -> None:
+    def __init__(self, process: ProcessContext, policy: DeadlockPolicy) -> None:
         self._process = process
         self.policy = policy
         self.is_on = policy != "off"

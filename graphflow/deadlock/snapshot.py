@@ -15,15 +15,15 @@ from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from graphflow.analysis.class_source import Unknown
+from graphflow.analysis.frames import Frame, stack_of
+from graphflow.analysis.user_code import Pause, where
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, handler_in, handler_of, method_of
-from graphflow.deadlock.frames import Frame, stack_of
-from graphflow.deadlock.held import setters
-from graphflow.deadlock.openings import start_of, unopened
-from graphflow.deadlock.protocols import Subject, Surroundings
-from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.user_code import Pause, where
+from graphflow.deadlock.object_waits import setters
+from graphflow.deadlock.protocols import ProcessContext, Subject
+from graphflow.deadlock.startup_waits import start_of, unopened
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.deadlock.ways import Subtask, Way, gathered, limit_of, subtasks
 from graphflow.errors import DecodeError
@@ -31,7 +31,7 @@ from graphflow.executor.activity import Activity
 from graphflow.executor.clock import WallClock
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Run, Runner
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     All,
@@ -62,7 +62,7 @@ LOOP_LIMIT = 0.2
 class Snapshot:
     """Takes the wait-for graph of one process, and remembers between two of them what has been seen before."""
 
-    def __init__(self, process: Surroundings, watchdog: Watchdog) -> None:
+    def __init__(self, process: ProcessContext, watchdog: Watchdog) -> None:
         self._process, self._watchdog = process, watchdog
         self._count = 0
         """The numbers of tasks that have one."""
@@ -110,7 +110,7 @@ class Snapshot:
 class _Look:
     """One wait-for graph in the making."""
 
-    def __init__(self, process: Surroundings, memory: Snapshot, watchdog: Watchdog) -> None:
+    def __init__(self, process: ProcessContext, memory: Snapshot, watchdog: Watchdog) -> None:
         self._process, self._memory, self._watchdog = process, memory, watchdog
         self._ledger = process.ledger
         self._zid = process.session.zid

@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 from dataclasses import dataclass
 
-from graphflow.machines.explain import stall
-from graphflow.machines.wait_graph import ActivityView, QueueView, WaitGraph
+from graphflow.machines.waits.explain import stall
+from graphflow.machines.waits.wait_graph import ActivityView, QueueView, WaitGraph
 from graphflow.times import NANOSECONDS
 
 logger = logging.getLogger("graphflow")

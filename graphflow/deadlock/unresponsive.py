@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import logging
 
-from graphflow.deadlock.protocols import Surroundings
-from graphflow.machines.explain import title, where
-from graphflow.machines.wait_graph import ActivityView, WaitGraph, calls_of
+from graphflow.deadlock.protocols import ProcessContext
+from graphflow.machines.waits.explain import title, where
+from graphflow.machines.waits.wait_graph import ActivityView, WaitGraph, calls_of
 from graphflow.times import NANOSECONDS
 from graphflow.transport.base import Closable
 from graphflow.wire import process
@@ -25,7 +25,7 @@ SILENT_AFTER = 1.0
 class Unresponsive:
     """The processes that did not answer. One per process."""
 
-    def __init__(self, here: Surroundings) -> None:
+    def __init__(self, here: ProcessContext) -> None:
         self._here = here
         self._processes: dict[str, ProcessToken] = {}
         self._since: dict[str, int] = {}

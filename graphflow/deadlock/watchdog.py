@@ -18,8 +18,8 @@ from collections import deque
 from collections.abc import Callable
 from types import CodeType
 
-from graphflow.deadlock.frames import Frame, stack_of
-from graphflow.deadlock.user_code import called_by_loop, innermost, is_ours, is_users
+from graphflow.analysis.frames import Frame, stack_of
+from graphflow.analysis.user_code import called_by_loop, innermost, is_ours, is_users
 
 logger = logging.getLogger("graphflow")
 

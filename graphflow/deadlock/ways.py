@@ -8,9 +8,9 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from graphflow.analysis.frames import Frame
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.closed_world import method_of
-from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
 from graphflow.executor.clock import ClockTimeout
 from graphflow.times import to_ns

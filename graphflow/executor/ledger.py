@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, Self
 
-from graphflow.machines.wait_graph import call_id
+from graphflow.machines.waits.wait_graph import call_id
 
 
 class PendingCall:

@@ -1,1 +1,5 @@
-"""Graph files: text -> tree with places -> models -> Plan -> check. Pure: reads files, imports and runs nothing."""
+"""Graph files, from a tree to a checked plan.
+
+Begin with `resolve`: `expand` flattens a file to nodes and steps, `model` is its grammar, `plan` the result, `check`
+compares it with the classes. Imports the pure layer, `workspace`, `markup` and `launchfiles`; runs nothing.
+"""

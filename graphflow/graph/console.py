@@ -26,8 +26,8 @@ from graphflow.errors import Place
 from graphflow.names import did_you_mean, nearest
 
 if TYPE_CHECKING:
-    from graphflow.graph import source
-    from graphflow.graph.source import Source
+    from graphflow.markup import source
+    from graphflow.markup.source import Source
 
 
 class ViewForm(NamedTuple):

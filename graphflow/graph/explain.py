@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from graphflow.graph.check import Interfaces, resolver
+from graphflow.graph.checks.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import Interface
 from graphflow.names import Kind

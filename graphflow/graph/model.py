@@ -26,8 +26,6 @@ from graphflow.names import nearest
 FROM_GROUPS = " of groups"
 """Ends the keys under which a node has what its groups give it; no file can say them."""
 
-FROM_LAUNCH = "from a launch file"
-"""The key that a launch file of ROS's has once it is a graph file; what ROS lets pass is no mistake in one."""
 NO_CLASS = "-"
 """Stands for the class of a foreign program, which has none."""
 _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")

@@ -16,9 +16,9 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictStr, ValidationError
 
 from graphflow.errors import GraphFileError, Problem
-from graphflow.graph import source
-from graphflow.graph.endpoint import endpoint
 from graphflow.graph.model import keys_of
+from graphflow.graph.zenoh_address import endpoint
+from graphflow.markup import source
 from graphflow.names import did_you_mean
 
 

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from graphflow.errors import GraphFileError, Place, Problem
-from graphflow.graph import source
 from graphflow.graph.plan import Setting
-from graphflow.graph.source import Source
+from graphflow.markup import source
+from graphflow.markup.source import Source
 from graphflow.names import did_you_mean, nearest
 
 PARAMETERS = "ros__parameters"

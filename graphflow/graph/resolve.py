@@ -13,25 +13,26 @@ from shutil import which
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.folders import newest_logs
-from graphflow.graph import params_file, source
-from graphflow.graph.arguments import given_values
+from graphflow.graph import params_file
+from graphflow.graph.checks.order import ordered
+from graphflow.graph.checks.validation import Problems, example, validated
 from graphflow.graph.console import console_section
-from graphflow.graph.executables import NoExecutable, command_of
-from graphflow.graph.expand import Expansion
-from graphflow.graph.faults import Problems, example, validated
+from graphflow.graph.expansion.arguments import given_values
+from graphflow.graph.expansion.expand import Expansion
 from graphflow.graph.model import BLOCKS, FROM_GROUPS, NO_CLASS, GraphFile, GroupSpec, NodeSpec, RestartSpec
-from graphflow.graph.order import ordered
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
-from graphflow.graph.project import no_file, project_root, shown
-from graphflow.graph.reading import Describe, read
-from graphflow.graph.source import Source
-from graphflow.graph.substitutions import Outside, Run
-from graphflow.graph.tree import Item, source_of, tree
-from graphflow.graph.workspace import Workspace, find_workspace
 from graphflow.interface import CALL_TIMEOUT, GroupChange
+from graphflow.launchfiles.reading import Describe, read
 from graphflow.machines.restarts import BACKOFF, Backoff
+from graphflow.markup import source
+from graphflow.markup.source import Source
+from graphflow.markup.substitutions import Outside, Run
+from graphflow.markup.tree import Item, source_of, tree
 from graphflow.names import Resolver, check_references, expand, split
+from graphflow.workspace.executables import NoExecutable, command_of
+from graphflow.workspace.packages import Workspace, find_workspace
+from graphflow.workspace.project import no_file, project_root, shown
 
 _ANYBODY = (
     "allow_control: whoever reaches this graph over the network can load code into its processes; remove it, unless "

@@ -9,10 +9,10 @@ from typing import Any
 
 from graphflow.errors import CallTimeout, RemoteError
 from graphflow.introspect.view import View
-from graphflow.machines.explain import group_of, offer, title
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import explained
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.explain import group_of, offer, title
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.rings import explained
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     All,
@@ -26,7 +26,7 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
     joined,
 )
-from graphflow.machines.wait_graph_json import from_json
+from graphflow.machines.waits.wait_graph_json import from_json
 from graphflow.wire.process import GROUPS, answer_key
 
 

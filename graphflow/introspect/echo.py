@@ -100,7 +100,7 @@ def _number(value: float) -> str:
 
 
 def _string(text: str) -> str:
-    from graphflow.graph.source import scalar as read
+    from graphflow.markup.source import scalar as read
 
     plain_safe = (
         text

@@ -93,7 +93,7 @@ def read_value(text: str, type_: int) -> Any:
     Raises:
         UsageFault: `text` is not YAML.
     """
-    from graphflow.graph.source import parse_value
+    from graphflow.markup.source import parse_value
 
     if type_ == 4:
         try:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from graphflow.interface import GroupChange
-from graphflow.machines.clauses import WIDTH
+from graphflow.machines.waits.wrapping import WIDTH
 
 THREADS = "blocking"
 """The group of handlers that are put in threads."""

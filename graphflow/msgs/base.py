@@ -9,9 +9,9 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 from msgspec import Struct
 
 from graphflow.names import did_you_mean
-from graphflow.wire.cdr import Codec
+from graphflow.wire.cdr.codec import Codec
+from graphflow.wire.cdr.unchecked import LENT, unchecked
 from graphflow.wire.schema import Message as Schema
-from graphflow.wire.unchecked import LENT, unchecked
 
 
 def lent_or_missing(self: Message, name: str) -> object:

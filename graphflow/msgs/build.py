@@ -17,11 +17,11 @@ from graphflow.msgs.values import Nested, convert
 from graphflow.msgs.views import VIEWS
 from graphflow.times import DurationFields, TimeFields
 from graphflow.wire import schema
+from graphflow.wire.cdr.unchecked import LENT
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType, Message
-from graphflow.wire.unchecked import LENT
 
 if TYPE_CHECKING:
-    from graphflow.wire.cdr import Codec
+    from graphflow.wire.cdr.codec import Codec
 
 Classes = Callable[[str], type]
 """Finds the class of `package/kind/Name`."""
@@ -177,7 +177,7 @@ def _array_factory(field: Field, nested: Nested) -> Callable[[], Any]:
         default, count = field.default, type_.size if type_.array == "fixed" else 0
 
         def make_array() -> Any:
-            from graphflow.wire.arrays import as_array, zeros
+            from graphflow.wire.cdr.arrays import as_array, zeros
 
             return zeros(type_.base, count) if default is None else as_array(default, type_.base).copy()
 

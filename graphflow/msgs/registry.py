@@ -15,8 +15,8 @@ from graphflow.msgs.values import checked
 from graphflow.names import did_you_mean, nearest
 from graphflow.reading import found_text
 from graphflow.wire import idl
-from graphflow.wire.cdr import Codec
-from graphflow.wire.codegen import FORMATS, Style, Types
+from graphflow.wire.cdr.codec import Codec
+from graphflow.wire.cdr.codegen import FORMATS, Style, Types
 from graphflow.wire.described import DESCRIBING, VALUES_BOUND, verified
 from graphflow.wire.extent import extent
 from graphflow.wire.profile import wire_profile, wire_type

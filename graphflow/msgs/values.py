@@ -10,8 +10,8 @@ from graphflow.msgs import base
 from graphflow.msgs.instead import instead, named
 from graphflow.names import did_you_mean
 from graphflow.wire import schema
+from graphflow.wire.cdr.unchecked import unchecked
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
-from graphflow.wire.unchecked import unchecked
 
 Nested = Mapping[str, type[base.Message]]
 """Classes of the message types that a message's fields hold, by name."""
@@ -68,7 +68,7 @@ def _array(type_: FieldType, value: Any, nested: Nested) -> Any:
         raise _Wrong(f"expected {type_}, got {value!r}{instead(type_, value)}")
     element = type_._replace(array="", size=0)
     if type_.base in schema.NUMERIC:
-        from graphflow.wire.arrays import as_array
+        from graphflow.wire.cdr.arrays import as_array
 
         try:
             array = as_array(value, type_.base)

@@ -143,8 +143,8 @@ def _of_workspace() -> list[str]:
     from pathlib import Path
 
     from graphflow.folders import home
-    from graphflow.graph.workspace import workspace_around
     from graphflow.msgs import registry
+    from graphflow.workspace.packages import workspace_around
 
     program = Path(sys.argv[0]) if sys.argv and sys.argv[0].endswith(".py") else Path.cwd()
     found = workspace_around(program) or workspace_around(Path.cwd())
@@ -174,7 +174,7 @@ def _tell_hidden(package: str) -> None:
     if found is not None and found.origin is not None and found.submodule_search_locations is None:
         from pathlib import Path
 
-        from graphflow.runtime import hiding
+        from graphflow.analysis import hiding
 
         hiding.tell(Path(found.origin))
 

@@ -12,11 +12,11 @@ from graphflow.names import Remap, Resolver
 from graphflow.qos import SERVICES
 from graphflow.rclpy.life import LOOP, Life
 from graphflow.runtime.args import RosArgs
-from graphflow.runtime.core import NodeCore, core_of
 from graphflow.runtime.failures import ErrorBudget
-from graphflow.runtime.host import Part
 from graphflow.runtime.node import Node
+from graphflow.runtime.node_core import NodeCore, core_of
 from graphflow.runtime.node_services import TypeDescriptions
+from graphflow.runtime.part import Part
 from graphflow.transport.base import Inbox
 from graphflow.wire.liveliness import Entity
 

@@ -11,7 +11,7 @@ from functools import partial
 from types import FrameType
 from typing import Any
 
-from graphflow.deadlock.user_code import is_ours, is_users, short_place
+from graphflow.analysis.user_code import is_ours, is_users, short_place
 from graphflow.names import nearest
 from graphflow.rclpy.hint_frames import PATH, is_defined_by_user, line_of, named, own
 from graphflow.rclpy.hint_tables import CALLS, GIVEN

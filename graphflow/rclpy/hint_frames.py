@@ -8,7 +8,7 @@ import sys
 from types import FrameType
 from typing import Any
 
-from graphflow.deadlock.user_code import is_users
+from graphflow.analysis.user_code import is_users
 from graphflow.rclpy.messages import StrictMessage
 
 PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")

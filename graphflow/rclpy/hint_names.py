@@ -11,7 +11,7 @@ from enum import EnumType
 from importlib import import_module
 from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
 
-from graphflow.deadlock.user_code import is_users, short_place
+from graphflow.analysis.user_code import is_users, short_place
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
 from graphflow.names import nearest

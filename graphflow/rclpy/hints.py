@@ -11,7 +11,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
 
-from graphflow.deadlock.user_code import parts_of
+from graphflow.analysis.hiding import hidden
+from graphflow.analysis.user_code import parts_of
 from graphflow.names import nearest
 from graphflow.rclpy.hint_calls import called_value, wrong_call
 from graphflow.rclpy.hint_fields import message_as_value, missing_field, no_message, wrong_value
@@ -19,7 +20,6 @@ from graphflow.rclpy.hint_frames import PATH, is_defined_by_user, lacking, line_
 from graphflow.rclpy.hint_names import missing_name, misspelt_init, unknown_name, unset
 from graphflow.rclpy.hint_tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages import StrictMessage
-from graphflow.runtime.hiding import hidden
 
 
 def hint(error: BaseException) -> str:

@@ -20,8 +20,8 @@ from graphflow.errors import EncodeError
 from graphflow.msgs import registry
 from graphflow.rclpy.once import made_once
 from graphflow.rclpy.values import SEQUENCE_CODES, Check, checker, lenient, rosidl_type
-from graphflow.wire.cdr import Codec
-from graphflow.wire.codegen import Types
+from graphflow.wire.cdr.codec import Codec
+from graphflow.wire.cdr.codegen import Types
 from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import INTEGER_RANGES, Action, Constant, Field, FieldType, Message, Service
 
@@ -192,7 +192,7 @@ def _zero(base: str) -> Any:
 def _numpy(base: str, items: list[Any]) -> Any:
     import numpy as np
 
-    from graphflow.wire.arrays import DTYPES
+    from graphflow.wire.cdr.arrays import DTYPES
 
     return np.array(items, DTYPES[base])
 

@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 from graphflow.msgs import registry
 from graphflow.qos import PARAMETERS
-from graphflow.runtime.core import NodeCore
-from graphflow.runtime.values import to_message
+from graphflow.runtime.node_core import NodeCore
+from graphflow.runtime.parameters.values import to_message
 
 
 class Known(Protocol):

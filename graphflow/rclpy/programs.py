@@ -18,18 +18,19 @@ from traceback import walk_tb
 from types import ModuleType, TracebackType
 from typing import NamedTuple
 
+from graphflow.analysis import hiding
 from graphflow.errors import UsageFault
-from graphflow.graph.executables import SLIP, of_ros
-from graphflow.graph.installed import package_of
-from graphflow.graph.setup_file import EntryPoint
-from graphflow.graph.unfound import launching
-from graphflow.graph.workspace import KINDS, Package, Workspace, bundled, find_workspace, is_graphflows, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder, tracebacks
-from graphflow.runtime import hiding, unrun
+from graphflow.runtime.mistakes import unrun
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
+from graphflow.workspace.executables import SLIP, of_ros
+from graphflow.workspace.installed import package_of
+from graphflow.workspace.packages import KINDS, Package, Workspace, bundled, find_workspace, is_graphflows, uses_ros
+from graphflow.workspace.setup_file import EntryPoint
+from graphflow.workspace.unfound import launching
 
 
 class Program(NamedTuple):

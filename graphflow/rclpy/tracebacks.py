@@ -6,9 +6,9 @@ import sys
 import threading
 from types import TracebackType
 
-from graphflow.deadlock.user_code import is_ours, is_refusal, is_users, parts_of
+from graphflow.analysis.user_code import is_ours, is_refusal, is_users, parts_of
 from graphflow.rclpy import hints
-from graphflow.runtime.attribute_errors import explain
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
 
 
 def install() -> None:

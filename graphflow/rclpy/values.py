@@ -204,7 +204,7 @@ def _fixed(type_: FieldType, value: Any, plain: Check) -> Any:
     """An array of fixed length, as numpy's."""
     import numpy as np
 
-    from graphflow.wire.arrays import DTYPES, ndarray
+    from graphflow.wire.cdr.arrays import DTYPES, ndarray
 
     dtype = DTYPES[type_.base]
     given = value

@@ -206,7 +206,7 @@ def _option(result: RosArgs, option: str, value: str) -> None:
             raise GraphflowError(f"-p {value!r}: the value is missing; write it behind := without a space")
         if re.search(r"\s[\w.]+:=", text):
             raise GraphflowError(f"-p {value!r}: write one -p each: {' '.join(f'-p {one}' for one in value.split())}")
-        from graphflow.graph.source import parse_value
+        from graphflow.markup.source import parse_value
 
         node, colon, name = target.rpartition(":")
         result.params.append((node if colon else None, name, parse_value(text), "command line"))

@@ -21,12 +21,12 @@ from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
 from graphflow.machines.cache import GraphCache, GraphChange
-from graphflow.runtime.direct import Switchboard
-from graphflow.runtime.handover import Handover
-from graphflow.runtime.reasons import Reasons
-from graphflow.runtime.shared_memory import Readers
-from graphflow.runtime.twins import Twins
-from graphflow.runtime.unmatched import Unmatched
+from graphflow.runtime.actions.goal_reasons import Reasons
+from graphflow.runtime.endpoints.direct_calls import Switchboard
+from graphflow.runtime.endpoints.intra_process import IntraProcess
+from graphflow.runtime.endpoints.shared_memory import Readers
+from graphflow.runtime.mistakes.network.same_names import Twins
+from graphflow.runtime.mistakes.network.unmatched import Unmatched
 from graphflow.transport.base import Closable, Session
 from graphflow.transport.loop import in_thread
 from graphflow.transport.threads import THREADS
@@ -76,7 +76,7 @@ class Context:
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
         self.switchboard = Switchboard(session, domain, self.loop)
         """Calls to and from other graphflow processes."""
-        self.handover = Handover()
+        self.intra_process = IntraProcess()
         """Messages between nodes of this process."""
         self.readers = Readers(session, domain)
         """Subscriptions that read large messages from this process's memory."""

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from types import FunctionType, MethodType
 from typing import Any
 
-from graphflow.deadlock.frames import stack_of
-from graphflow.deadlock.user_code import called_by_loop, innermost
+from graphflow.analysis.frames import stack_of
+from graphflow.analysis.user_code import called_by_loop, innermost
 
 logger = logging.getLogger("graphflow")
 

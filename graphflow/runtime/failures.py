@@ -8,12 +8,12 @@ from collections.abc import Callable
 from pathlib import PurePath
 from typing import NamedTuple
 
-from graphflow.deadlock.user_code import place_in, users_part
+from graphflow.analysis.user_code import place_in, users_part
 from graphflow.errors import DeadlockError, GraphflowError, TooManyErrors
 from graphflow.interface import OnError
-from graphflow.runtime.attribute_errors import explain
-from graphflow.runtime.host import Host
-from graphflow.runtime.python_errors import remark_on
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.mistakes.errors.python_errors import remark_on
+from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS, to_ns
 
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from graphflow.deadlock.user_code import users_frame
+from graphflow.analysis.user_code import users_frame
 from graphflow.errors import Place, RunsWhenImported
 
 _names: list[str] = []

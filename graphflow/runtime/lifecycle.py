@@ -7,7 +7,7 @@ from typing import Any
 
 from graphflow.errors import DeclarationError, Place
 from graphflow.machines.lifecycle import LifecycleState
-from graphflow.runtime import declared
+from graphflow.runtime.declarations import declared
 from graphflow.runtime.managed import ManagedCore
 from graphflow.runtime.node import Node
 

@@ -22,10 +22,10 @@ from graphflow.machines.lifecycle import (
 )
 from graphflow.msgs import registry
 from graphflow.qos import SERVICES, Qos
-from graphflow.runtime.core import NodeCore
-from graphflow.runtime.host import Part
-from graphflow.runtime.publishers import TopicPublisher
-from graphflow.runtime.slow_hooks import when_slow
+from graphflow.runtime.endpoints.publishers import TopicPublisher
+from graphflow.runtime.mistakes.slow_hooks import when_slow
+from graphflow.runtime.node_core import NodeCore
+from graphflow.runtime.part import Part
 
 P = TypeVar("P", bound=Part)
 

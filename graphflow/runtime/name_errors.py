@@ -7,8 +7,8 @@ import inspect
 from types import FrameType, ModuleType
 from typing import Any
 
-from graphflow.deadlock.syntax import syntax_of
-from graphflow.deadlock.user_code import is_users, parts_of
+from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.user_code import is_users, parts_of
 
 
 def owner_of(error: NameError) -> str:

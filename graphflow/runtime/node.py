@@ -8,6 +8,7 @@ from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import replace
 from typing import Any, ClassVar, TypeVar
 
+from graphflow.analysis.static_entities import with_made
 from graphflow.errors import DeclarationError
 from graphflow.executor.clock import Clock, period_ns
 from graphflow.executor.groups import HandlerGroup
@@ -16,10 +17,13 @@ from graphflow.machines.goal import GoalRules
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, Resolution, Resolver
 from graphflow.qos import SERVICES, Qos
-from graphflow.runtime import declared, surroundings, unrun
-from graphflow.runtime.action_client import GoalClient
-from graphflow.runtime.actions import ActionServer
-from graphflow.runtime.checks import (
+from graphflow.runtime import node_options
+from graphflow.runtime.actions.client import GoalClient
+from graphflow.runtime.actions.server import ActionServer
+from graphflow.runtime.call_site import here
+from graphflow.runtime.context import Context
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.checks import (
     check_callback,
     check_function,
     check_group,
@@ -30,27 +34,25 @@ from graphflow.runtime.checks import (
     check_type,
     written_at,
 )
-from graphflow.runtime.context import Context
-from graphflow.runtime.core import NodeCore
-from graphflow.runtime.declare import Group, Param
-from graphflow.runtime.dictionary import OF_PARTS, SpeaksRos, in_our_words
-from graphflow.runtime.doubled import tell_doubled
-from graphflow.runtime.endpoints import Endpoint
-from graphflow.runtime.events import OnEvent
+from graphflow.runtime.declarations.declare import Group, Param
+from graphflow.runtime.declarations.misplaced import check_hooks, check_misplaced, check_module
+from graphflow.runtime.endpoints.endpoint import Endpoint
+from graphflow.runtime.endpoints.events import OnEvent
+from graphflow.runtime.endpoints.publishers import TopicPublisher
+from graphflow.runtime.endpoints.service_client import ServiceClient
+from graphflow.runtime.endpoints.service_events import Introspection
+from graphflow.runtime.endpoints.services import OFFERED_TWICE, ServiceServer
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.failures import ErrorBudget
-from graphflow.runtime.made import with_made
-from graphflow.runtime.misplaced import check_hooks, check_misplaced, check_module
+from graphflow.runtime.mistakes import unrun
+from graphflow.runtime.mistakes.doubled import tell_doubled
+from graphflow.runtime.mistakes.other_threads import call_soon
+from graphflow.runtime.mistakes.repeats import tell_same
+from graphflow.runtime.mistakes.shadowing import check_names
 from graphflow.runtime.node_arguments import rules_of
-from graphflow.runtime.other_threads import call_soon
-from graphflow.runtime.place import here
-from graphflow.runtime.publishers import TopicPublisher
-from graphflow.runtime.repeats import tell_same
-from graphflow.runtime.service_client import ServiceClient
-from graphflow.runtime.service_events import Introspection
-from graphflow.runtime.services import OFFERED_TWICE, ServiceServer
-from graphflow.runtime.subscriptions import TopicSubscription
-from graphflow.runtime.timer import Timer
-from graphflow.runtime.twice import check_names
+from graphflow.runtime.node_core import NodeCore
+from graphflow.runtime.rclpy_words import OF_PARTS, SpeaksRos, in_our_words
 from graphflow.wire.attachment import MessageInfo
 
 M = TypeVar("M", bound=Message)
@@ -103,7 +105,7 @@ class Node(SpeaksRos):
         **params: Any,
     ) -> None:
         unrun.made()
-        given = surroundings.take(self)
+        given = node_options.take(self)
         rules = [*given.remaps, *rules_of(remap)]
         own_name = given.name or name or declared.default_name(type(self))
         names = Resolver(own_name, namespace if given.namespace is None else given.namespace, rules)

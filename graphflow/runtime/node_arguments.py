@@ -7,7 +7,7 @@ from typing import Any
 
 from graphflow.errors import InvalidName, UsageFault
 from graphflow.names import Remap
-from graphflow.runtime.place import here
+from graphflow.runtime.call_site import here
 
 _WORDS = {
     **dict.fromkeys(("ns", "node_namespace"), "namespace"),

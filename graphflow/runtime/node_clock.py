@@ -8,8 +8,8 @@ from typing import Any
 from graphflow.executor.clock import Alarm, Clock
 from graphflow.executor.sim_time import SimClock
 from graphflow.qos import CLOCK
-from graphflow.runtime.host import Host
-from graphflow.runtime.subscriptions import TopicSubscription
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS, to_ns
 
 TIMELESS = (

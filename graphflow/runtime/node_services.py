@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import InterfaceError
 from graphflow.msgs import registry
-from graphflow.runtime.endpoints import Endpoint
-from graphflow.runtime.logger import ROOT
-from graphflow.runtime.rosout import LEVELS
+from graphflow.runtime.endpoints.endpoint import Endpoint
+from graphflow.runtime.logs.logger import ROOT
+from graphflow.runtime.logs.rosout import LEVELS
 from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import referenced, type_id
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.deadlock.syntax import FunctionNode
-from graphflow.deadlock.user_code import short_place
-from graphflow.deadlock.uses import is_own
-from graphflow.runtime import declared
-from graphflow.runtime.declare import Subscription
-from graphflow.runtime.handlers import MARK, Handler
-from graphflow.runtime.twice import definition_of
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.user_code import short_place
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import Subscription
+from graphflow.runtime.declarations.handlers import MARK, Handler
+from graphflow.runtime.mistakes.shadowing import definition_of
 
 _LOST = {"subscription": "which nothing hears any more", "service": "which nothing answers any more"}
 _LOST |= {"action": "which nothing answers any more"}

@@ -10,27 +10,27 @@ from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontext
 from types import TracebackType
 from typing import Never
 
-from graphflow.deadlock.user_code import place_in, users_frame
+from graphflow.analysis.one_by_one import one_by_one
+from graphflow.analysis.user_code import place_in, users_frame
 from graphflow.errors import GraphflowError, TooManyErrors, UsageFault
 from graphflow.runtime.args import RosArgs, parse_ros_args
-from graphflow.runtime.attribute_errors import explain
-from graphflow.runtime.company import Company
+from graphflow.runtime.call_site import here
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
 from graphflow.runtime.ending import StopRequest, catch_signals
 from graphflow.runtime.failures import log_with_traceback
 from graphflow.runtime.importing import refuse_to_run
-from graphflow.runtime.logger import node_logger
-from graphflow.runtime.lost_errors import tell_lost_errors
+from graphflow.runtime.logs.logger import node_logger
+from graphflow.runtime.logs.rosout import log_level, setup_console
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.mistakes.errors.lost_errors import tell_lost_errors
+from graphflow.runtime.mistakes.other_threads import tell_strangers
+from graphflow.runtime.mistakes.unentered import Unentered
+from graphflow.runtime.mistakes.unread import unread
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_arguments import refuse_keywords
-from graphflow.runtime.one_by_one import one_by_one
-from graphflow.runtime.other_threads import tell_strangers
-from graphflow.runtime.place import here
-from graphflow.runtime.rosout import log_level, setup_console
-from graphflow.runtime.surroundings import Surroundings, make_within
-from graphflow.runtime.unentered import Unentered
-from graphflow.runtime.unread import unread
+from graphflow.runtime.node_core import core_of
+from graphflow.runtime.node_options import NodeOptions, make_within
+from graphflow.runtime.process_nodes import Company
 from graphflow.transport import loop
 
 logger = logging.getLogger("graphflow")
@@ -226,7 +226,7 @@ def make(cls: type[Node], ros: RosArgs) -> Node:
         GraphflowError: A parameter does not exist or fit.
     """
     interface = cls.interface()
-    given = Surroundings(remaps=ros.remaps, overrides=ros.params_for(interface), rosout=ros.has_rosout)
+    given = NodeOptions(remaps=ros.remaps, overrides=ros.params_for(interface), rosout=ros.has_rosout)
     node = make_within(cls, given, interface.node_name)
     core_of(node).ensure_made()
     return node

@@ -6,8 +6,8 @@ import inspect
 import re
 from typing import Any
 
-from graphflow.deadlock.user_code import is_users, parts_of
-from graphflow.runtime.declare import Param
+from graphflow.analysis.user_code import is_users, parts_of
+from graphflow.runtime.declarations.declare import Param
 
 _CALCULATED = re.compile(
     r"can't multiply sequence by non-int|unsupported operand type\(s\) for .*'str'|not supported between .*'str'|"

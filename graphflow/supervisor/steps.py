@@ -14,8 +14,8 @@ from graphflow.msgs import registry
 from graphflow.msgs.values import from_plain
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
+from graphflow.runtime.node_core import core_of
 from graphflow.wire.liveliness import Kind
 
 _DOUBLE, _DOUBLES = 3, 8
@@ -87,7 +87,7 @@ class StepRunner:
 
     async def _set(self, step: PlannedStep, node: Node) -> str:
         from graphflow.msgs.rcl_interfaces.msg import Parameter
-        from graphflow.runtime.values import to_message
+        from graphflow.runtime.parameters.values import to_message
 
         def ask(service: str, **fields: Any) -> Any:
             type_name = f"rcl_interfaces/srv/{service.title().replace('_', '')}"

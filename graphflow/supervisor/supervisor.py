@@ -17,16 +17,16 @@ from graphflow.machines.process import ALARMS, Do, Event, Exit, Need, Order, Sta
 from graphflow.machines.restarts import Again, GiveUp
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
-from graphflow.supervisor import debugging
-from graphflow.supervisor.components import Components
-from graphflow.supervisor.doors import Doors
-from graphflow.supervisor.health import Health
-from graphflow.supervisor.jobs import MESH_LIMIT, environment_of, worker_start
-from graphflow.supervisor.lives import Lives
-from graphflow.supervisor.process import Process
-from graphflow.supervisor.programs import signal_of, words_of
+from graphflow.supervisor.control.clients import Clients
+from graphflow.supervisor.control.components import Components
+from graphflow.supervisor.launching import debugging
+from graphflow.supervisor.launching.programs import signal_of, words_of
+from graphflow.supervisor.lifecycle_manager import Lives
+from graphflow.supervisor.processes.health import Health
+from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, worker_start
+from graphflow.supervisor.processes.process import Process
+from graphflow.supervisor.processes.starter import Start, Starter
 from graphflow.supervisor.rundir import log_file
-from graphflow.supervisor.starter import Start, Starter
 from graphflow.supervisor.steps import StepRunner
 
 logger = logging.getLogger("graphflow.supervisor")
@@ -47,7 +47,7 @@ class Supervisor:
         self.up = asyncio.Event()
         """Whether everything is ready and all steps are done."""
         self.ended = asyncio.Event()
-        self.doors = Doors(self._end_if_all_have)
+        self.clients = Clients(self._end_if_all_have)
         self._context = context
         self._starter = starter
         self._steps = StepRunner(context, step_types)
@@ -90,7 +90,7 @@ class Supervisor:
         names = [name for name in self._order.after if name not in later]
         return {Need(name) if name in self._processes else Need(name, "done") for name in names}
 
-    # what doors may ask
+    # what clients may ask
 
     def describe(self) -> list[dict[str, Any]]:
         """One row per node, for `ps`."""
@@ -102,9 +102,9 @@ class Supervisor:
         return self._plan
 
     def hello(self) -> dict[str, Any]:
-        """What a door is told when it begins to follow."""
+        """What a client is told when it begins to follow."""
         about = {"graph": self.plan.name, "file": self.plan.file, "console": self.plan.console}
-        return {"event": "hello", "version": __version__, **about, "layout": self.doors.layout}
+        return {"event": "hello", "version": __version__, **about, "layout": self.clients.layout}
 
     def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None:
         """Start a node's process again, whether it runs or has ended.
@@ -127,7 +127,7 @@ class Supervisor:
         if threads:
             self._planned[node] = process.put_in_threads(node, threads).to_json()
         in_threads = f" with {', '.join(threads)} in threads" if threads else ""
-        self.doors.announce(f"{'start' if only_ended else 'restart'} {node}{in_threads}", by)
+        self.clients.announce(f"{'start' if only_ended else 'restart'} {node}{in_threads}", by)
         process.restarts.forget()
         self._happen(process, Event.RESTART)
 
@@ -140,7 +140,7 @@ class Supervisor:
         process = self._named(node)
         if process.state is State.ENDED:
             raise SupervisorError(f"{node} is not running: {process.word}")
-        self.doors.announce(f"stop {node}", by)
+        self.clients.announce(f"stop {node}", by)
         process.stop_asked = True
         process.failed &= process.state is not State.WAITING  # it is not tried again because somebody wants so
         self._happen(process, Event.STOP)
@@ -173,7 +173,7 @@ class Supervisor:
         self._stop_next_layer()
 
     def note(self, text: str) -> None:
-        """Tell the doors that follow the graph something about its surroundings."""
+        """Tell the clients that follow the graph something about its surroundings."""
         self._tell(event="note", text=text)
 
     # events from below
@@ -461,7 +461,7 @@ class Supervisor:
             return
         if left:
             return
-        if self._stopping or not self.doors.consoles:
+        if self._stopping or not self.clients.consoles:
             self.ended.set()
         else:
             self._tell(event="note", text="all nodes have ended; restart one, or stop the graph")
@@ -481,4 +481,4 @@ class Supervisor:
         return self._processes[name].state is State.ENDED
 
     def _tell(self, **event: Any) -> None:
-        self.doors.tell(**event)
+        self.clients.tell(**event)

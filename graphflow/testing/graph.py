@@ -12,13 +12,13 @@ from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, did_you_mean
 from graphflow.qos import Durability, Qos
-from graphflow.runtime.action_client import GoalClient
+from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
-from graphflow.runtime.dictionary import SpeaksRos
+from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.node import Node
-from graphflow.runtime.publishers import TopicPublisher
-from graphflow.runtime.surroundings import Surroundings, make_within
+from graphflow.runtime.node_core import core_of
+from graphflow.runtime.node_options import NodeOptions, make_within
+from graphflow.runtime.rclpy_words import SpeaksRos
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.testing.forgotten import awaited
 from graphflow.testing.outside import outside
@@ -152,7 +152,7 @@ class Graph(SpeaksRos):
             ParameterError: It has no such parameter, or refuses the value.
         """
         rules = [rule if isinstance(rule, Remap) else Remap.parse(rule) for rule in remap]
-        given = Surroundings(name, namespace, rules, {key: (value, "graph.make") for key, value in parameters.items()})
+        given = NodeOptions(name, namespace, rules, {key: (value, "graph.make") for key, value in parameters.items()})
         return make_within(cls, given, cls.interface().node_name)
 
     @awaited

@@ -79,11 +79,11 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
     """Say what could be meant by an attribute that is not there, as the logs of nodes do, and what to write."""
-    errors = sys.modules.get("graphflow.runtime.attribute_errors")
+    errors = sys.modules.get("graphflow.runtime.mistakes.errors.attribute_errors")
     if call.excinfo is not None and errors is not None:
         errors.explain(call.excinfo.value)
         if "graphflow_runner" in getattr(item, "fixturenames", ()):
-            from graphflow.runtime.python_errors import remark_on
+            from graphflow.runtime.mistakes.errors.python_errors import remark_on
 
             if remark := remark_on(call.excinfo.value):
                 call.excinfo.value.add_note(remark)
@@ -236,7 +236,7 @@ async def _end_when_idle(limit: asyncio.Timeout) -> None:
 
 def _too_long(ended: BaseException, seconds: float) -> str:
     """What to say of a test that has not come to its end; its clock stands still unless it is advanced."""
-    from graphflow.deadlock.user_code import place_in
+    from graphflow.analysis.user_code import place_in
 
     where = place_in(ended)
     return (

@@ -23,8 +23,8 @@ from typing import Any
 from graphflow.executor.clock import Alarm, Clock
 from graphflow.interface import DeadlockPolicy
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
+from graphflow.runtime.node_core import core_of
 from graphflow.transport.memory import MemorySession, Network
 
 START_NS = 1_700_000_000_000_000_000

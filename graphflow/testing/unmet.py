@@ -6,12 +6,12 @@ import asyncio
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from graphflow.deadlock.frames import awaited, code_of
-from graphflow.deadlock.openings import place_of
+from graphflow.analysis.frames import awaited, code_of
+from graphflow.deadlock.startup_waits import place_of
 from graphflow.executor import clock as executor_clock
 from graphflow.names import did_you_mean, is_hidden
-from graphflow.runtime.core import NodeCore, core_of
-from graphflow.runtime.timer import Timer
+from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.node_core import NodeCore, core_of
 from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:

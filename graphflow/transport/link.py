@@ -22,8 +22,8 @@ import zenoh
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.errors import TransportError
-from graphflow.graph.endpoint import endpoint
 from graphflow.graph.net import NetProfile, read_profile
+from graphflow.graph.zenoh_address import endpoint
 from graphflow.transport.base import Bell, Inbox
 from graphflow.transport.config import (
     CONNECT_VARIABLE,

@@ -13,7 +13,7 @@ import zenoh
 
 from graphflow.domain import ENDPOINT_VARIABLE, rendezvous_endpoint
 from graphflow.errors import TransportError
-from graphflow.graph.endpoint import port_fault
+from graphflow.graph.zenoh_address import port_fault
 from graphflow.system import user_id
 from graphflow.transport.config import close_session, config, open_session
 

@@ -6,7 +6,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-from graphflow.graph import project
 from graphflow.graph.console import LAYOUTS, VIEWS, known_views
 from graphflow.tui.actions import carry_out, console_actions, keys_of, shown
 from graphflow.tui.dialogs import Ask, AskToStop, Choice, Item, Note, Pick
@@ -15,6 +14,7 @@ from graphflow.tui.ink import DARK, LIGHT
 from graphflow.tui.lines import Lines
 from graphflow.tui.pane_deeds import PaneDeeds
 from graphflow.tui.panes import Content
+from graphflow.workspace import project
 
 _ALSO_VERBS = ("groups",)
 """Views whose names are verbs too: with more words they are the verb."""

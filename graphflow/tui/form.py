@@ -12,8 +12,8 @@ from textual.message import Message as Posted
 from textual.widgets import Input, Label
 
 from graphflow.errors import EncodeError
-from graphflow.graph.source import parse_value
 from graphflow.introspect.echo import flow, plain
+from graphflow.markup.source import parse_value
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
 from graphflow.msgs.values import from_plain

@@ -11,7 +11,7 @@ from typing import Any
 
 from graphflow.errors import GraphflowError
 from graphflow.folders import state_root
-from graphflow.graph.source import parse_value
+from graphflow.markup.source import parse_value
 from graphflow.reading import found_text
 
 KEPT = 1000

@@ -21,14 +21,14 @@ from graphflow.introspect.numbers import Numbers
 from graphflow.introspect.picture import misfit
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import Deadlock, explained
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.rings import Deadlock, explained
 from graphflow.msgs.rcl_interfaces.msg import Log
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.node import Node
-from graphflow.runtime.subscriptions import TopicSubscription
+from graphflow.runtime.node_core import core_of
 from graphflow.tui.logs import plain_text
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, Kind

@@ -12,7 +12,7 @@ os.environ["TEXTUAL_FPS"] = "20"  # Textual reads it when it is imported
 
 from graphflow.domain import go_to
 from graphflow.errors import SupervisorError
-from graphflow.supervisor.control_client import ControlClient
+from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import GraphRun, running
 from graphflow.tui.app import Console
 from graphflow.tui.history import History, history_file

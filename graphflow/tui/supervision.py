@@ -12,7 +12,7 @@ from typing import Any
 
 from graphflow import __version__
 from graphflow.graph.plan import Plan
-from graphflow.supervisor.control import ControlStream
+from graphflow.supervisor.control.server import ControlStream
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.system import terminal_name
 

@@ -18,7 +18,7 @@ from graphflow.msgs.values import from_plain
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.qos import PARAMETER_EVENTS
 from graphflow.runtime.node import Node
-from graphflow.runtime.values import from_message, to_message
+from graphflow.runtime.parameters.values import from_message, to_message
 from graphflow.viewer.protocol import Value
 from graphflow.wire.liveliness import Kind
 

@@ -10,9 +10,9 @@ from graphflow.msgs import registry
 from graphflow.msgs.values import from_plain
 from graphflow.names import expand
 from graphflow.qos import DEFAULT
-from graphflow.runtime import raw
+from graphflow.runtime.endpoints import raw
+from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.node import Node
-from graphflow.runtime.serialized import RawPublisher
 from graphflow.viewer.client import Client
 from graphflow.viewer.protocol import Announced, Message
 

@@ -13,9 +13,9 @@ from graphflow.bag.definitions import asked
 from graphflow.errors import UsageFault, printable
 from graphflow.names import is_hidden
 from graphflow.qos import BEST_AVAILABLE
-from graphflow.runtime import raw
+from graphflow.runtime.endpoints import raw
+from graphflow.runtime.endpoints.serialized import RawSubscription
 from graphflow.runtime.node import Node
-from graphflow.runtime.serialized import RawSubscription
 from graphflow.viewer.client import Client
 from graphflow.viewer.protocol import Subscription, message_head, told
 from graphflow.wire.attachment import MessageInfo

@@ -18,7 +18,7 @@ from graphflow.errors import BagError
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import BEST_AVAILABLE, DEFAULT, SENSOR_DATA, Qos
-from graphflow.runtime import raw
+from graphflow.runtime.endpoints import raw
 from graphflow.testing import Graph
 from tests.bag.cast import CHATTER, LAB, LATCHED, START, THING, record, some_records, topic_of, write
 

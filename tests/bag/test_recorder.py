@@ -26,8 +26,8 @@ from graphflow.errors import BagError
 from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import Durability, Qos
-from graphflow.runtime import raw
-from graphflow.runtime.publishers import TopicPublisher
+from graphflow.runtime.endpoints import raw
+from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.testing import Graph
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind

@@ -17,8 +17,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graphflow.cli.param import set_
-from graphflow.cli.topic import pub
+from graphflow.cli.ros.param import set_
+from graphflow.cli.ros.topic import pub
 from graphflow.cli.words import message_values, messages_in, repaired, split_values
 from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3

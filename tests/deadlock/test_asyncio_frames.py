@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from graphflow.analysis.frames import Frame, stack_of
 from graphflow.deadlock import asyncio_frames as aio
-from graphflow.deadlock.frames import Frame, stack_of
 from graphflow.executor.activity import Activity
 from graphflow.testing.clock import settle
 

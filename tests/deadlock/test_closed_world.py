@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
+from graphflow.analysis.class_source import Unknown
 from graphflow.deadlock.asyncio_frames import frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, method_of
-from graphflow.deadlock.held import setters
-from graphflow.deadlock.source import Unknown
+from graphflow.deadlock.object_waits import setters
 from graphflow.executor.ledger import PendingGoal
 from graphflow.testing.clock import settle
-from tests.deadlock.conftest import Written
 from tests.deadlock.stage import Actor, Stage
+from tests.written import Written
 
 TEXT = """
 import asyncio

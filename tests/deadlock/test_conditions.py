@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+from graphflow.analysis.class_source import Unknown, source_of
 from graphflow.deadlock.conditions import LoopConditions, makes_task
-from graphflow.deadlock.source import Unknown, source_of
 from graphflow.executor.ledger import PendingGoal
-from tests.deadlock.conftest import Written
+from tests.written import Written
 
 TEXT = """
 import asyncio

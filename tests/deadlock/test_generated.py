@@ -24,15 +24,15 @@ from hypothesis import strategies as st
 
 from graphflow import CallError, DeadlockError, GoalError, Group, Node
 from graphflow.interface import DeadlockPolicy
-from graphflow.machines.explain import title
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.wait_graph import WaitGraph, joined
+from graphflow.machines.waits.explain import title
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.wait_graph import WaitGraph, joined
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.runtime.context import Context
-from graphflow.runtime.core import core_of
-from graphflow.runtime.timer import Timer
+from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.node_core import core_of
 from graphflow.testing.simulation import LoopClock, World, simulate
 from graphflow.transport.base import EARLY
 from graphflow.transport.memory import MemorySession, Network

@@ -12,10 +12,10 @@ from graphflow import Group, Node, service, subscription, timer
 from graphflow.deadlock.inspection import LOOKS, MOVES, groups_of
 from graphflow.errors import RemoteError
 from graphflow.executor.groups import GROUPS_BOUND
-from graphflow.machines.wait_graph_json import from_json
+from graphflow.machines.waits.wait_graph_json import from_json
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.clock import settle
 from graphflow.transport.base import Answer

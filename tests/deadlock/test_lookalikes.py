@@ -34,14 +34,14 @@ from graphflow import (
 )
 from graphflow.executor.clock import Clock
 from graphflow.interface import DeadlockPolicy, GroupChange, WhenFull
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import explained
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.rings import explained
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.msgs.turtlesim.msg import Pose
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from tests.cases import sample
 from tests.deadlock.cast import Caplog, Dialler, Driver, DrivesByPose, Planner, Promised, Robot, Waiter, reports, say

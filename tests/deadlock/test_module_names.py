@@ -9,14 +9,14 @@ from typing import Any
 
 import pytest
 
+from graphflow.analysis.class_source import Unknown, source_of
 from graphflow.deadlock.asyncio_frames import frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters
-from graphflow.deadlock.held import setters
 from graphflow.deadlock.module_names import changes
-from graphflow.deadlock.source import Unknown, source_of
+from graphflow.deadlock.object_waits import setters
 from graphflow.testing.clock import settle
-from tests.deadlock.conftest import Written
 from tests.deadlock.stage import Stage
+from tests.written import Written
 
 TEXT = """
 import array

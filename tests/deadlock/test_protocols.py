@@ -7,11 +7,11 @@ import inspect
 
 import pytest
 
-from graphflow.deadlock.protocols import Subject, Surroundings
+from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.search import Search
-from graphflow.machines.wait_graph import FREE
-from graphflow.runtime.core import core_of
+from graphflow.machines.waits.wait_graph import FREE
 from graphflow.runtime.node import Node
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from tests.deadlock.stage import Stage, begin
 
@@ -26,12 +26,12 @@ async def test_what_the_runtime_has(graph: Graph) -> None:
     node = Node("n")
     await graph.start(node)
     subject: Subject = core_of(node)
-    surroundings: Surroundings = node.context
+    surroundings: ProcessContext = node.context
 
     assert len(names_of(Subject)) == 11
-    assert len(names_of(Surroundings)) == 10
+    assert len(names_of(ProcessContext)) == 10
     assert [name for name in names_of(Subject) if not hasattr(subject, name)] == []
-    assert [name for name in names_of(Surroundings) if not hasattr(surroundings, name)] == []
+    assert [name for name in names_of(ProcessContext) if not hasattr(surroundings, name)] == []
     assert list(surroundings.nodes) == [subject]
 
 

@@ -31,15 +31,15 @@ from graphflow import (
 )
 from graphflow.deadlock import search as detector
 from graphflow.interface import DeadlockPolicy, GroupChange
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import explained
-from graphflow.machines.wait_graph import joined
-from graphflow.machines.wait_graph_json import from_json, to_json
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.rings import explained
+from graphflow.machines.waits.wait_graph import joined
+from graphflow.machines.waits.wait_graph_json import from_json, to_json
 from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer
 from graphflow.wire import attachment, chain

@@ -17,12 +17,12 @@ from graphflow.executor.clock import WallClock
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
-from graphflow.machines.wait_graph import FREE, ActivityView, All, AnyOf, Call, Condition, Join, SetBy, Slot
+from graphflow.machines.waits.wait_graph import FREE, ActivityView, All, AnyOf, Call, Condition, Join, SetBy, Slot
 from graphflow.testing.clock import settle
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
-from tests.deadlock.conftest import Written
 from tests.deadlock.stage import Actor, Stage, begin
+from tests.written import Written
 
 GID = b"\1" * 16
 ADD = Call(f"{GID.hex()}:7", "/add")

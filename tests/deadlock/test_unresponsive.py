@@ -9,7 +9,7 @@ import pytest
 
 from graphflow import Client, Node, service, subscription
 from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive
-from graphflow.machines.wait_graph import FREE, ActivityView, Call, Condition, WaitGraph
+from graphflow.machines.waits.wait_graph import FREE, ActivityView, Call, Condition, WaitGraph
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph

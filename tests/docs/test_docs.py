@@ -49,13 +49,13 @@ from pydantic import ValidationError
 
 from graphflow.errors import GraphFileError
 from graphflow.graph import params_file
-from graphflow.graph.check import check
+from graphflow.graph.checks.check import check
 from graphflow.graph.net import NetProfile
 from graphflow.graph.resolve import load
-from graphflow.graph.source import read
+from graphflow.markup.source import read
 from graphflow.msgs import registry
-from graphflow.supervisor.classes import interfaces
-from graphflow.supervisor.probed import read_interfaces
+from graphflow.supervisor.launching.classes import interfaces
+from graphflow.supervisor.launching.probed import read_interfaces
 from graphflow.testing import Graph
 from tests.cases import slow
 from tests.conftest import LIMIT, PROJECT, Machine, Program

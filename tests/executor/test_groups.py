@@ -16,7 +16,7 @@ from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import NO_GROUP, GroupChange
 from graphflow.machines.regrouping import Regrouping
-from graphflow.runtime.declare import Group
+from graphflow.runtime.declarations.declare import Group
 from graphflow.testing.clock import settle
 
 

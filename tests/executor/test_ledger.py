@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from graphflow.executor.ledger import Ledger, PendingGoal
-from graphflow.machines.wait_graph import call_id
+from graphflow.machines.waits.wait_graph import call_id
 
 GID = bytes(range(16))
 

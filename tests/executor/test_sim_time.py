@@ -11,7 +11,7 @@ from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import CLOCK
-from graphflow.runtime.publishers import TopicPublisher
+from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.testing import Graph
 from graphflow.times import NANOSECONDS, Time, to_ns
 from tests.runtime.cast import Log

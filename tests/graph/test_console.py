@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from graphflow.errors import Place
-from graphflow.graph import source
 from graphflow.graph.console import console_section, known_views
+from graphflow.markup import source
 
 
 def read(text: str) -> tuple[object, list[str]]:

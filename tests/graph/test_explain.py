@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from graphflow.errors import Place
-from graphflow.graph import source
 from graphflow.graph.explain import names
 from graphflow.graph.resolve import resolve
 from graphflow.interface import EndpointInfo, Interface
+from graphflow.markup import source
 
 HERE = Place("nodes/robot.py", 7, 5)
 ROBOT = Interface(

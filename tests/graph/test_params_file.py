@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import params_file
-from graphflow.graph.check import check
+from graphflow.graph.checks.check import check
 from graphflow.graph.params_file import Section, params_for, strays, write
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import load

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import GraphFileError, Place
-from graphflow.graph import source
 from graphflow.graph.plan import Plan, Rule, node_from_json
 from graphflow.graph.resolve import resolve
+from graphflow.markup import source
 from graphflow.names import Remap
 
 TEXT = """\

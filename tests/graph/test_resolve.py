@@ -13,11 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from graphflow.errors import GraphFileError, Place
-from graphflow.graph import source
-from graphflow.graph.check import check
-from graphflow.graph.order import find_cycle
+from graphflow.graph.checks.check import check
+from graphflow.graph.checks.order import find_cycle
 from graphflow.graph.plan import Plan, Rule, Setting
 from graphflow.graph.resolve import load, resolve
+from graphflow.markup import source
 from nodes.turtlesim import TurtleSim
 from tests.cases import count
 

@@ -8,8 +8,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from graphflow.graph import source
 from graphflow.graph.schema import graph_schema, schema_text
+from graphflow.markup import source
 from tests.conftest import PROJECT
 
 VALIDATOR = jsonschema.Draft202012Validator(graph_schema())

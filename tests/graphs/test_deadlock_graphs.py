@@ -8,8 +8,8 @@ from typing import NamedTuple
 import pytest
 
 from graphflow.graph.resolve import load
-from graphflow.supervisor.classes import add_root
-from graphflow.supervisor.worker import make_node
+from graphflow.supervisor.launching.classes import add_root
+from graphflow.supervisor.processes.worker import make_node
 from graphflow.testing import Graph
 from tests.cases import slow, some
 from tests.conftest import PROJECT, Machine

@@ -11,7 +11,7 @@ from graphflow.errors import Place
 from graphflow.introspect import concurrency
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     All,
@@ -26,7 +26,7 @@ from graphflow.machines.wait_graph import (
     Slot,
     WaitGraph,
 )
-from graphflow.machines.wait_graph_json import to_json
+from graphflow.machines.waits.wait_graph_json import to_json
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import ProcessToken
 

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graphflow.graph.source import read
 from graphflow.introspect.echo import block, csv, flow, plain, scalar, truncated
+from graphflow.markup.source import read
 from graphflow.msgs import registry
 from graphflow.msgs.geometry_msgs.msg import Pose, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterEvent, ParameterValue

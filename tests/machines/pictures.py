@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     Call,

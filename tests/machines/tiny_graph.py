@@ -16,7 +16,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     All,

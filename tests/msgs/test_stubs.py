@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.msgs import registry, stubs
-from graphflow.wire.unchecked import LENT
+from graphflow.wire.cdr.unchecked import LENT
 
 
 def test_checked_in_stubs_are_current() -> None:

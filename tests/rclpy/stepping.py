@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from graphflow.deadlock.frames import Frame, suspended
+from graphflow.analysis.frames import Frame, suspended
 
 
 def after_a_step(steps: Iterator[object]) -> Frame:

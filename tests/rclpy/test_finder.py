@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.analysis import hiding
 from graphflow.rclpy import finder, messages
-from graphflow.runtime import hiding
 
 
 def test_bundled_packages_are_found() -> None:

@@ -11,7 +11,7 @@ from graphflow.names import Resolver
 from graphflow.rclpy import held
 from graphflow.rclpy.held import NodeBell
 from graphflow.rclpy.life import LOOP, Life, parse_only_ros
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.transport.base import Inbox
 
 

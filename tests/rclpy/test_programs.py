@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import UsageFault
-from graphflow.graph.workspace import BUNDLED, find_workspace
 from graphflow.msgs import registry
 from graphflow.rclpy.programs import _imported_in, _where_to_have, find_program
 from graphflow.transport.rendezvous import free_endpoint
+from graphflow.workspace.packages import BUNDLED, find_workspace
 
 NODE = """
 import sys

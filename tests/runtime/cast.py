@@ -35,9 +35,9 @@ from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.qos import Durability, Qos
-from graphflow.runtime.action_client import ClientGoalHandle
-from graphflow.runtime.core import core_of
-from graphflow.runtime.service_client import ServiceClient
+from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.endpoints.service_client import ServiceClient
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 
 

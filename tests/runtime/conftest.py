@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.runtime.direct import ServerLines
+from graphflow.runtime.endpoints.direct_calls import ServerLines
 
 
 @pytest.fixture(params=["direct", "query"])

@@ -49,10 +49,10 @@ from graphflow.msgs.registry import interface_class
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.qos import ACTION_STATUS
-from graphflow.runtime import action_client, actions
-from graphflow.runtime.action_client import CANCEL_TIMEOUT, LOST_GRACE, RESULT_LONGEST, ClientGoalHandle
-from graphflow.runtime.actions import RESULT_KEPT
-from graphflow.runtime.core import core_of
+from graphflow.runtime.actions import client, server
+from graphflow.runtime.actions.client import CANCEL_TIMEOUT, LOST_GRACE, RESULT_LONGEST, ClientGoalHandle
+from graphflow.runtime.actions.server import RESULT_KEPT
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import Seeded, World, simulate
 from graphflow.times import NANOSECONDS
@@ -927,10 +927,10 @@ class Play:
             runners: list[Any] = [endpoint.runner for endpoint in doer.at_work.endpoints if hasattr(endpoint, "runner")]
             assert not any(runner.active or (doer is self.doer and runner.items) for runner in runners)
         clients = [sent.asker.do for sent in self.sent]
-        for client in clients:
-            assert not client._goals
-            assert not client._followers
-            assert not client._send._pending | client._get._pending | client._cancel._pending
+        for do in clients:
+            assert not do._goals
+            assert not do._followers
+            assert not do._send._pending | do._get._pending | do._cancel._pending
         nodes: list[Node] = [node for node in (*self.askers, self.doer) if node is not None]
         for ledger in [node.context.ledger for node in nodes]:
             assert not ledger.calls
@@ -956,8 +956,8 @@ FOLLOW = _follow()
 def watched(model: Model) -> Iterator[None]:
     """Have what happens to goals written down, and nothing logged."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(actions, "GoalBook", partial(Book, model))
-        patch.setattr(action_client, "ClientGoalHandle", partial(SeenGoal, model))
+        patch.setattr(server, "GoalBook", partial(Book, model))
+        patch.setattr(client, "ClientGoalHandle", partial(SeenGoal, model))
         logging.disable()
         try:
             yield

@@ -10,8 +10,8 @@ import pytest
 from graphflow import ErrorBudget, Node, timer
 from graphflow.errors import DeadlockError, TooManyErrors
 from graphflow.interface import OnError
-from graphflow.runtime.core import core_of
 from graphflow.runtime.failures import report
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 
 

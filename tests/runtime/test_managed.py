@@ -6,8 +6,8 @@ import pytest
 
 from graphflow import LifecycleNode, LifecycleState, TransitionFailed, TransitionRefused, service, timer
 from graphflow.msgs.std_srvs.srv import Trigger
-from graphflow.runtime.core import core_of
 from graphflow.runtime.managed import ManagedCore
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 
 

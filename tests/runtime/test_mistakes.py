@@ -18,10 +18,10 @@ from typing import NamedTuple
 import pytest
 
 from graphflow.errors import GraphflowError
-from graphflow.runtime import unawaited
-from graphflow.runtime.attribute_errors import explain
-from graphflow.runtime.surroundings import Surroundings, make_within
-from graphflow.supervisor.classes import import_class
+from graphflow.runtime.mistakes import unawaited
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.node_options import NodeOptions, make_within
+from graphflow.supervisor.launching.classes import import_class
 from graphflow.testing import Graph
 from tests.cases import slow
 from tests.conftest import PROJECT
@@ -265,7 +265,7 @@ async def what_is_said(mistake: Mistake, file: Path, graph: Graph, caplog: pytes
     try:
         cls = import_class(f"{module}:Slide")
         cls.interface()  # as every command does
-        node = make_within(cls, Surroundings(), "slide")
+        node = make_within(cls, NodeOptions(), "slide")
     except (GraphflowError, AttributeError) as error:
         explain(error)  # as whoever reports it does
         return str(error)

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.runtime.python_errors import remark_on
+from graphflow.runtime.mistakes.errors.python_errors import remark_on
 
 HEAD = """\
 import graphflow

@@ -11,8 +11,8 @@ import pytest
 
 from graphflow import InvalidName, Node, Param, ParameterError
 from graphflow.names import Remap
-from graphflow.runtime.core import core_of
 from graphflow.runtime.node_arguments import instead_of, rules_of
+from graphflow.runtime.node_core import core_of
 from tests.conftest import LIMIT
 
 WANTED = 'remap=["goal:=/turtle1/pose"]'

@@ -11,8 +11,8 @@ from graphflow.errors import ClosedError
 from graphflow.executor.sim_time import SimClock
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.qos import CLOCK
-from graphflow.runtime.core import core_of
 from graphflow.runtime.node_clock import TIMELESS, NodeClock
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.times import Time, to_ns
 

@@ -25,7 +25,7 @@ from graphflow.interface import DeadlockPolicy, GroupChange, WhenFull
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.srv import ListParameters
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from tests.runtime.cast import Log
 

@@ -15,7 +15,7 @@ from graphflow.msgs.rcl_interfaces.msg import LoggerLevel
 from graphflow.msgs.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from graphflow.msgs.type_description_interfaces.msg import TypeDescription
 from graphflow.msgs.type_description_interfaces.srv import GetTypeDescription
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.wire import typehash
 from graphflow.wire.liveliness import Kind

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow import Node
-from graphflow.runtime.slips import slips
+from graphflow.runtime.mistakes.slips import slips
 
 BASE = """\
 from graphflow import Node, Subscription, action, service, subscription, task, timer

@@ -27,8 +27,8 @@ from graphflow.errors import ClosedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
-from graphflow.runtime.company import Company
 from graphflow.runtime.ending import StopRequest
+from graphflow.runtime.process_nodes import Company
 from graphflow.runtime.run import make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from graphflow import Node, Param
-from graphflow.runtime.python_errors import remark_on
+from graphflow.runtime.mistakes.errors.python_errors import remark_on
 
 
 class Robot(Node):

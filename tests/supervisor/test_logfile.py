@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.streaming import LogReader
+from graphflow.cli.graphs.streaming import LogReader
 from graphflow.supervisor import logfile
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="an open file cannot be put aside there")

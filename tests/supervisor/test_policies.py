@@ -12,9 +12,9 @@ import pytest
 
 from graphflow import Context
 from graphflow.errors import SupervisorError
-from graphflow.graph import source
 from graphflow.graph.resolve import resolve
-from graphflow.supervisor.debugging import debugged
+from graphflow.markup import source
+from graphflow.supervisor.launching.debugging import debugged
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.testing.clock import ManualClock
 from graphflow.transport.memory import Network
@@ -76,7 +76,7 @@ class Stage:
     def __init__(self, supervisor: Supervisor, workers: Workers, running: asyncio.Task[int]) -> None:
         self.supervisor, self.workers, self._running = supervisor, workers, running
         self.events: list[dict[str, Any]] = []
-        supervisor.doors.subscribe(self.events.append, replay=True)
+        supervisor.clients.subscribe(self.events.append, replay=True)
 
     def states(self) -> dict[str, str]:
         return {row["node"]: row["state"] for row in self.supervisor.describe()}

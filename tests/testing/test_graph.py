@@ -19,7 +19,7 @@ from graphflow import (
 )
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.attribute_errors import explain
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.testing import Graph, ManualClock, Tap
 from graphflow.testing.graph import TRANSIENT_LOCAL
 

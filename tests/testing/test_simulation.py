@@ -24,7 +24,7 @@ from graphflow import (
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Trigger
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing.simulation import Standstill, World, simulate
 from tests.cases import count
 

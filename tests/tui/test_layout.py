@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from graphflow.graph import source
 from graphflow.graph.console import console_section
 from graphflow.introspect.drawing import Rect
+from graphflow.markup import source
 from graphflow.tui.layout import Layout, to_section
 from graphflow.tui.panes import Content
 from tests.tui.stage import as_json

@@ -16,9 +16,9 @@ import pytest
 from graphflow.errors import Place
 from graphflow.graph.console import VIEWS
 from graphflow.introspect.concurrency import ConcurrencyReport
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import explained
-from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueView, WaitGraph
+from graphflow.machines.waits.reduction import deadlocked
+from graphflow.machines.waits.rings import explained
+from graphflow.machines.waits.wait_graph import ActivityView, Call, GroupView, QueueView, WaitGraph
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import String

@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from graphflow.graph.plan import Plan
-from graphflow.supervisor.control import ControlServer
-from graphflow.supervisor.doors import Doors
+from graphflow.supervisor.control.clients import Clients
+from graphflow.supervisor.control.server import ControlServer
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.tui import supervision as module
 from graphflow.tui.supervision import Supervision
@@ -29,10 +29,10 @@ class Graph:
 
     def __init__(self) -> None:
         self.asked: list[str] = []
-        self.doors = Doors(lambda: self.asked.append("empty"))
+        self.clients = Clients(lambda: self.asked.append("empty"))
 
     def hello(self) -> dict[str, Any]:
-        return {"event": "hello", "version": "0.0.0", "layout": self.doors.layout}
+        return {"event": "hello", "version": "0.0.0", "layout": self.clients.layout}
 
     def describe(self) -> list[dict[str, Any]]:
         return [{"node": "/a", "state": "ready"}]
@@ -42,7 +42,7 @@ class Graph:
 
     def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None:
         self.asked.append(f"restart {node}")
-        self.doors.announce(f"restart {node}", by)
+        self.clients.announce(f"restart {node}", by)
 
     def stop(self, node: str, by: str) -> None:
         self.asked.append(f"stop {node}")
@@ -128,7 +128,7 @@ async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.M
     [told] = [e for e in heard if e["event"] == "announced"]
     assert (told["text"], told["by"]) == ("restart /a", "pts/2")
     two.send(do="keep_layout", layout={"windows": []})
-    await until(lambda: graph.doors.layout == {"windows": []})
+    await until(lambda: graph.clients.layout == {"windows": []})
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
@@ -147,10 +147,10 @@ async def test_what_was_asked_last_is_done(portable: str, tmp_path: Path, monkey
     task = asyncio.ensure_future(one.follow())
     await until(lambda: bool(one.nodes))
     for i in range(100):
-        graph.doors.tell(event="note", text=str(i))
+        graph.clients.tell(event="note", text=str(i))
         one.send(do="keep_layout", layout={"windows": [i]})
     await one.leave()
-    assert graph.doors.layout == {"windows": [99]}
+    assert graph.clients.layout == {"windows": [99]}
     assert not one.send(do="ps")
     await asyncio.wait_for(task, 5.0)
     assert "lost" not in [event["event"] for event in heard]
@@ -180,7 +180,7 @@ async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.Monkey
     one = Supervision(run_at(await server.open(tmp_path / "c.sock")), heard.append)
     task = asyncio.ensure_future(one.follow())
     await until(lambda: bool(one.nodes))
-    graph.doors.tell(event="end", exit_code=3)
+    graph.clients.tell(event="end", exit_code=3)
     await server.close()
     await asyncio.wait_for(task, 5.0)
     assert one.exit_code == 3

@@ -22,12 +22,12 @@ from graphflow import (
 from graphflow.msgs.example_interfaces.srv import AddTwoInts, AddTwoInts_Request, AddTwoInts_Response
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
-from graphflow.runtime.core import core_of
-from graphflow.runtime.publishers import TopicPublisher
-from graphflow.runtime.service_client import ServiceClient
-from graphflow.runtime.services import ServiceServer
-from graphflow.runtime.subscriptions import TopicSubscription
-from graphflow.runtime.timer import Timer
+from graphflow.runtime.endpoints.publishers import TopicPublisher
+from graphflow.runtime.endpoints.service_client import ServiceClient
+from graphflow.runtime.endpoints.services import ServiceServer
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph, Tap
 from graphflow.wire.attachment import MessageInfo
 

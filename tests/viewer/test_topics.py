@@ -9,7 +9,7 @@ import pytest
 from graphflow import Node
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.viewer import topics
 from graphflow.wire.liveliness import Entity, Kind

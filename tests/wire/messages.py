@@ -11,7 +11,7 @@ from msgspec import defstruct
 
 from graphflow.msgs import base, registry
 from graphflow.wire import idl
-from graphflow.wire.codegen import Types
+from graphflow.wire.cdr.codegen import Types
 from graphflow.wire.schema import INTEGER_RANGES, FieldType, Interface, Message, Service, string_length
 
 from .conftest import INTERFACES

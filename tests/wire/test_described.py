@@ -9,7 +9,7 @@ import pytest
 
 from graphflow.errors import InterfaceError
 from graphflow.msgs import registry
-from graphflow.wire.cdr import Codec
+from graphflow.wire.cdr.codec import Codec
 from graphflow.wire.described import FieldSaid, definition_of, verified
 from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import base_of, referenced, type_id

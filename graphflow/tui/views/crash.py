@@ -10,7 +10,6 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from graphflow.graph.project import INSTALLED_DEMOS, PACKAGE
 from graphflow.times import ago
 from graphflow.tui.actions import Action
 from graphflow.tui.bars import MARKS
@@ -20,6 +19,7 @@ from graphflow.tui.logs import Logs, Record
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 from graphflow.tui.views.source import edit, find_file
+from graphflow.workspace.project import INSTALLED_DEMOS, PACKAGE
 
 LAST_LINES = 20
 _LIBRARY = re.compile(r"/lib\d*/python3|/(site|dist)-packages/")

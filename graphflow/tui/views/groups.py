@@ -14,11 +14,11 @@ from textual.widget import Widget
 
 from graphflow.introspect import concurrency
 from graphflow.introspect.view import View as Graph
-from graphflow.machines.explain import group_of, headline, title, wanted
-from graphflow.machines.group_fixes import Fix, Thread, fixes
-from graphflow.machines.remedies import remedies
-from graphflow.machines.rings import Deadlock
-from graphflow.machines.wait_graph import FREE, ActivityView, GroupView, WaitGraph
+from graphflow.machines.waits.explain import group_of, headline, title, wanted
+from graphflow.machines.waits.group_fixes import Fix, Thread, fixes
+from graphflow.machines.waits.remedies import remedies
+from graphflow.machines.waits.rings import Deadlock
+from graphflow.machines.waits.wait_graph import FREE, ActivityView, GroupView, WaitGraph
 from graphflow.tui.actions import Action
 from graphflow.tui.dialogs import Item, Pick
 from graphflow.tui.hub import Hub

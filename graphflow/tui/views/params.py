@@ -15,7 +15,7 @@ from graphflow.interface import TYPE_NAMES, type_id
 from graphflow.introspect.echo import flow
 from graphflow.introspect.parameters import RemoteParameters, read_value
 from graphflow.introspect.view import View as Graph
-from graphflow.runtime.values import from_message, to_message
+from graphflow.runtime.parameters.values import from_message, to_message
 from graphflow.tui.actions import Action
 from graphflow.tui.hub import Hub
 from graphflow.tui.logs import plain_text

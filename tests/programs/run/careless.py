@@ -6,7 +6,7 @@ import asyncio
 
 from graphflow import Context, Node
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 
 
 async def main() -> None:

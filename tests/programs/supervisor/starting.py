@@ -15,9 +15,9 @@ from typing import Any
 
 from graphflow.errors import Place
 from graphflow.graph.plan import PlannedNode
-from graphflow.supervisor.forking import ForkingStarter
-from graphflow.supervisor.spawning import SpawningStarter
-from graphflow.supervisor.starter import Starter
+from graphflow.supervisor.processes.forking import ForkingStarter
+from graphflow.supervisor.processes.spawning import SpawningStarter
+from graphflow.supervisor.processes.starter import Starter
 
 KINDS: dict[str, Callable[[], Starter]] = {"forking": lambda: ForkingStarter(()), "spawning": SpawningStarter}
 ROOT = Path(sys.argv[2])

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.graph.workspace import BUNDLED
+from graphflow.workspace.packages import BUNDLED
 
 Program = dict[str, Any]
 

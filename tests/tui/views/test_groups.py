@@ -9,8 +9,8 @@ import pytest
 
 from graphflow import Client, Group, Node, service, task
 from graphflow.graph.resolve import load
-from graphflow.machines.group_fixes import Limit, Thread
-from graphflow.machines.rings import Deadlock
+from graphflow.machines.waits.group_fixes import Limit, Thread
+from graphflow.machines.waits.rings import Deadlock
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content

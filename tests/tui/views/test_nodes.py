@@ -11,8 +11,8 @@ import pytest
 
 from graphflow import LifecycleNode, TransitionRefused
 from graphflow.introspect.concurrency import ConcurrencyReport
-from graphflow.machines.rings import Deadlock
-from graphflow.machines.wait_graph import ActivityView, Call, WaitGraph
+from graphflow.machines.waits.rings import Deadlock
+from graphflow.machines.waits.wait_graph import ActivityView, Call, WaitGraph
 from graphflow.system import host_name
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content

@@ -9,11 +9,11 @@ import os
 import sys
 from pathlib import Path
 
-from graphflow.graph.executables import package_prefix, package_share
-from graphflow.graph.share import share_folder
-from graphflow.graph.unfound import why_no_package
-from graphflow.graph.workspace import Workspace, find_workspace
 from graphflow.names import did_you_mean
+from graphflow.workspace.executables import package_prefix, package_share
+from graphflow.workspace.package_share import share_folder
+from graphflow.workspace.packages import Workspace, find_workspace
+from graphflow.workspace.unfound import why_no_package
 
 
 class PackageNotFoundError(KeyError):

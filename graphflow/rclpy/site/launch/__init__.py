@@ -1,8 +1,8 @@
 """launch for code that is shared with launch files: stand-ins, which remember what they are called with."""
 
-from graphflow.runtime import unrun
-from graphflow.supervisor.launch_service import LaunchService
-from graphflow.supervisor.launch_stand_ins import stand_in
+from graphflow.launchfiles.python.stand_ins import stand_in
+from graphflow.runtime.mistakes import unrun
+from graphflow.supervisor.launching.launch_service import LaunchService
 
 __all__ = ["LaunchService"]
 unrun.watch()

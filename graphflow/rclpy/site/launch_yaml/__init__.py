@@ -1,5 +1,5 @@
 """launch_yaml for code that is shared with launch files: stand-ins, which remember what they are called with."""
 
-from graphflow.supervisor.launch_stand_ins import stand_in
+from graphflow.launchfiles.python.stand_ins import stand_in
 
 __getattr__ = stand_in(__name__)

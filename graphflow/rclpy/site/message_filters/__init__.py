@@ -13,7 +13,7 @@ from functools import cache
 from itertools import product
 from typing import Any
 
-from graphflow.deadlock.user_code import short_place, users_frame
+from graphflow.analysis.user_code import short_place, users_frame
 from rclpy.clock import ROSClock
 from rclpy.duration import Duration
 from rclpy.logging import get_logger

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from graphflow.errors import ServerLost
 from graphflow.rclpy import messages
 from graphflow.rclpy.wake import Wake
-from graphflow.runtime.service_events import ServiceEvent
+from graphflow.runtime.endpoints.service_events import ServiceEvent
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import Handle
 from rclpy.impl.passing import passed_on
@@ -19,7 +19,7 @@ from rclpy.task import Future
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
-    from graphflow.runtime.threaded import Answered, ThreadedClient
+    from graphflow.runtime.endpoints.threaded import Answered, ThreadedClient
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
     from rclpy.qos import QoSProfile

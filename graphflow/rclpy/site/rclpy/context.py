@@ -15,9 +15,9 @@ from weakref import WeakMethod, ref
 
 from graphflow.errors import GraphflowError
 from graphflow.rclpy.life import Life
-from graphflow.runtime import unrun
 from graphflow.runtime.args import cut_off, meant, missed
-from graphflow.runtime.rosout import log_level, setup_console
+from graphflow.runtime.logs.rosout import log_level, setup_console
+from graphflow.runtime.mistakes import unrun
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
 from rclpy.handle import Handle
 from rclpy.impl.logging_severity import LoggingSeverity

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from graphflow.runtime.events import QosEvent
+from graphflow.runtime.endpoints.events import QosEvent
 from rclpy._rclpy_pybind11 import UnsupportedEventTypeError
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSPolicyKind

@@ -6,7 +6,7 @@ import logging as python_logging
 import os
 from pathlib import Path
 
-from graphflow.runtime.logger import ROOT
+from graphflow.runtime.logs.logger import ROOT
 from rclpy._rclpy_pybind11 import RCUtilsError
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.rcutils_logger import RcutilsLogger

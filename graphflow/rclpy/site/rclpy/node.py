@@ -14,7 +14,7 @@ from graphflow.names import Resolver
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.held import HeldNode, NodeBell
 from graphflow.rclpy.life import Life, parse_only_ros
-from graphflow.runtime.threaded import ThreadedClient, ThreadedPublisher, ThreadedService, ThreadedSubscription
+from graphflow.runtime.endpoints import threaded
 from rclpy._rclpy_pybind11 import NodeNameNonExistentError, RCLInvalidROSArgsError, UnknownROSArgsError
 from rclpy.callback_groups import CallbackGroup
 from rclpy.client import Client
@@ -237,7 +237,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         told = dispatcher(handlers)
         with self.handle:
             endpoint = held.add(
-                inner.node, lambda core: ThreadedPublisher(core, msg_type, name, to_graphflow(qos), told)
+                inner.node, lambda core: threaded.ThreadedPublisher(core, msg_type, name, to_graphflow(qos), told)
             )
         made: Publisher = publisher_class(
             endpoint,
@@ -286,7 +286,9 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         with self.handle:
             endpoint = held.add(
                 inner.node,
-                lambda core: ThreadedSubscription(core, msg_type, name, to_graphflow(qos), inner.bell, mark, told),
+                lambda core: threaded.ThreadedSubscription(
+                    core, msg_type, name, to_graphflow(qos), inner.bell, mark, told
+                ),
             )
         handle = self._graphflow_withdraws(endpoint)
         made = Subscription(
@@ -334,8 +336,9 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             for wake in list(changed):
                 wake.set()
 
-        def make(core: Any) -> ThreadedClient:
-            return ThreadedClient(core, type_, name, to_graphflow(qos_profile), inner.bell, mark, servers_changed)
+        def make(core: Any) -> threaded.ThreadedClient:
+            profile = to_graphflow(qos_profile)
+            return threaded.ThreadedClient(core, type_, name, profile, inner.bell, mark, servers_changed)
 
         with self.handle:
             endpoint = held.add(inner.node, make)
@@ -374,7 +377,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         with self.handle:
             endpoint = held.add(
                 inner.node,
-                lambda core: ThreadedService(core, type_, name, to_graphflow(qos_profile), inner.bell, mark),
+                lambda core: threaded.ThreadedService(core, type_, name, to_graphflow(qos_profile), inner.bell, mark),
             )
         handle = self._graphflow_withdraws(endpoint)
         made = Service(endpoint, srv_type, srv_name, callback, group, qos_profile, life=inner.life, handle=handle)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from graphflow.errors import GraphflowError
 from graphflow.graph import params_file
-from graphflow.graph.source import parse_value
+from graphflow.markup.source import parse_value
 from rclpy.impl.passing import passed_on
 from rclpy.impl.value_fields import FIELDS, check
 

@@ -12,7 +12,7 @@ from rclpy.impl.passing import passed_on
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
-    from graphflow.runtime.threaded import ThreadedPublisher
+    from graphflow.runtime.endpoints.threaded import ThreadedPublisher
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import EventHandler, PublisherEventCallbacks
     from rclpy.qos import QoSProfile

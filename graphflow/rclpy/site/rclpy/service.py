@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.errors import DecodeError
 from graphflow.rclpy import messages
-from graphflow.runtime.service_events import ServiceEvent
+from graphflow.runtime.endpoints.service_events import ServiceEvent
 from rclpy.handle import Handle
 from rclpy.impl.arguments import must_return
 from rclpy.impl.passing import passed_on
@@ -17,7 +17,7 @@ from rclpy.impl.service_end import ServiceEnd
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
-    from graphflow.runtime.threaded import Asked, ThreadedService
+    from graphflow.runtime.endpoints.threaded import Asked, ThreadedService
     from rclpy.callback_groups import CallbackGroup
     from rclpy.qos import QoSProfile
 

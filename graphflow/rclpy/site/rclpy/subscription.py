@@ -15,7 +15,7 @@ from rclpy.handle import Handle
 from rclpy.impl.passing import passed_on
 
 if TYPE_CHECKING:
-    from graphflow.runtime.threaded import Taken, ThreadedSubscription
+    from graphflow.runtime.endpoints.threaded import Taken, ThreadedSubscription
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
     from rclpy.qos import QoSProfile

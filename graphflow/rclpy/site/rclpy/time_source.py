@@ -13,7 +13,7 @@ from graphflow.rclpy import held, messages
 from graphflow.rclpy.held import NodeBell
 from graphflow.rclpy.life import LOOP
 from graphflow.rclpy.wake import Wake
-from graphflow.runtime.threaded import ThreadedSubscription
+from graphflow.runtime.endpoints.threaded import ThreadedSubscription
 from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType

@@ -7,7 +7,7 @@ from typing import Any
 from graphflow.rclpy import held
 from graphflow.rclpy.held import NodeBell
 from graphflow.rclpy.wake import Wake
-from graphflow.runtime.threaded import ThreadedSubscription
+from graphflow.runtime.endpoints.threaded import ThreadedSubscription
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, to_graphflow, validated
 from rclpy.serialization import deserialize_message

@@ -8,7 +8,7 @@ import pytest
 from std_msgs.msg import Int32, String
 
 import rclpy
-from graphflow.runtime.events import QosEvent
+from graphflow.runtime.endpoints.events import QosEvent
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import (

@@ -55,7 +55,7 @@ def test_what_is_no_message_of_the_type_is_counted(node: Node, spin: Spinner) ->
 
 
 def _broken() -> Any:
-    from graphflow.runtime.threaded import Taken
+    from graphflow.runtime.endpoints.threaded import Taken
     from graphflow.wire.attachment import MessageInfo
 
     return Taken(b"\0\1\0\0\xff\0\0\0", MessageInfo(1, 1, bytes(16)))

@@ -1,5 +1,5 @@
 """launch.substitutions, as `launch` says; a file, so that editors find it."""
 
-from graphflow.supervisor.launch_stand_ins import stand_in
+from graphflow.launchfiles.python.stand_ins import stand_in
 
 __getattr__ = stand_in(__name__)

@@ -14,7 +14,7 @@ from graphflow.machines.goal import GoalStatus as Status
 from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.wake import Wake
-from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
+from graphflow.runtime.endpoints.threaded import ThreadedClient, ThreadedSubscription
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
 from rclpy.impl.arguments import explained

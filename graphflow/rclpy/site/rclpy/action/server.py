@@ -19,7 +19,7 @@ from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.life import LOOP
 from graphflow.rclpy.tracebacks import shorten
-from graphflow.runtime.threaded import Asked, ThreadedPublisher, ThreadedService
+from graphflow.runtime.endpoints.threaded import Asked, ThreadedPublisher, ThreadedService
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending

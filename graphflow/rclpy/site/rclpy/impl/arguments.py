@@ -12,7 +12,7 @@ from functools import wraps
 from itertools import combinations, permutations
 from typing import Any, ParamSpec, TypeVar
 
-from graphflow.deadlock.user_code import short_place
+from graphflow.analysis.user_code import short_place
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
 from rclpy.impl import repeats

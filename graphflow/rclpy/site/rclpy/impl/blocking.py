@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.frames import Frame, stack_from
-from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.user_code import is_users
+from graphflow.analysis.class_source import Unknown
+from graphflow.analysis.frames import Frame, stack_from
+from graphflow.analysis.user_code import is_users
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 from types import CodeType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.frames import Frame
-from graphflow.deadlock.syntax import syntax_of
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import syntax_of
 
 _WAITS: dict[CodeType, tuple[str, ...]] = {}
 

@@ -8,7 +8,7 @@ from itertools import pairwise, takewhile
 from types import FrameType
 from typing import NamedTuple
 
-from graphflow.deadlock.user_code import is_users, short_place
+from graphflow.analysis.user_code import is_users, short_place
 from graphflow.errors import Place
 
 

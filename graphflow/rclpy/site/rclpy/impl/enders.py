@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.syntax import FunctionNode, Syntax, syntax_of
-from graphflow.deadlock.user_code import is_installed, is_users
-from graphflow.deadlock.uses import is_own
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode, Syntax, syntax_of
+from graphflow.analysis.user_code import is_installed, is_users
 from rclpy.task import Future
 
 _WAYS = ("cancel", "set_result", "set_exception", "remove_pending_request")

@@ -7,12 +7,12 @@ from functools import partial
 from types import CellType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.frames import Frame, awaited, suspended
-from graphflow.deadlock.source import ANSWERED
-from graphflow.deadlock.user_code import is_ours
+from graphflow.analysis.class_source import ANSWERED
+from graphflow.analysis.frames import Frame, awaited, suspended
+from graphflow.analysis.user_code import is_ours
 from graphflow.errors import ClosedError, ServerLost
-from graphflow.machines.wait_graph import goal_id
-from graphflow.runtime.threaded import Asked, read_request
+from graphflow.machines.waits.wait_graph import goal_id
+from graphflow.runtime.endpoints.threaded import Asked, read_request
 from rclpy.action.client import ActionClient
 from rclpy.action.server import ActionServer, ServerGoalHandle
 from rclpy.client import Client

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakSet
 
-from graphflow.deadlock.frames import Frame
-from graphflow.deadlock.user_code import is_ours, is_users, short_place, where
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.user_code import is_ours, is_users, short_place, where
 from graphflow.errors import Place
 from graphflow.rclpy.wake import Wake
 from rclpy.action.client import ActionClient

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from types import CodeType, FunctionType, MethodType
 from typing import Any
 
-from graphflow.deadlock.user_code import is_users, short_place
+from graphflow.analysis.user_code import is_users, short_place
 from rclpy.constants import S_TO_NS
 from rclpy.timer import Timer
 

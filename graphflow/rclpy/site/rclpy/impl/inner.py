@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy.held import HeldNode, NodeBell
 from graphflow.rclpy.life import Life
-from graphflow.runtime.core import core_of
+from graphflow.runtime.node_core import core_of
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
 from rclpy.clock import ROSClock

@@ -7,10 +7,10 @@ import threading
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.frames import Frame
-from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.syntax import Syntax, first_line, syntax_of, walk
-from graphflow.deadlock.user_code import is_users
+from graphflow.analysis.class_source import Unknown
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import Syntax, first_line, syntax_of, walk
+from graphflow.analysis.user_code import is_users
 
 _LOCKS = (type(threading.Lock()), type(threading.RLock()))
 

@@ -9,7 +9,7 @@ import logging
 import sys
 from typing import Any
 
-from graphflow.deadlock.user_code import short_place, users_frame
+from graphflow.analysis.user_code import short_place, users_frame
 from graphflow.errors import Place
 
 _told: set[Place] = set()

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
+from graphflow.analysis.class_source import Unknown, source_of
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
+from graphflow.analysis.user_code import is_users, short_place
 from graphflow.deadlock.closed_world import handlers_above
-from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
-from graphflow.deadlock.source import Unknown, source_of
-from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
-from graphflow.deadlock.user_code import is_users, short_place
 
 _MAKERS = {"create_service": 1, "ActionServer": 2}
 """Calls that make servers, and the position of the name among their arguments."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from graphflow.deadlock.user_code import place_in
+from graphflow.analysis.user_code import place_in
 from graphflow.rclpy import held
 from graphflow.rclpy.hints import hint
 from graphflow.rclpy.life import LOOP

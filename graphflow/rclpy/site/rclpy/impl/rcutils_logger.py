@@ -8,8 +8,8 @@ import time
 from types import CodeType, FrameType, SimpleNamespace
 from typing import Any
 
-from graphflow.runtime.logger import ROOT, node_logger
-from graphflow.runtime.rosout import Console, setup_console
+from graphflow.runtime.logs.logger import ROOT, node_logger
+from graphflow.runtime.logs.rosout import Console, setup_console
 from rclpy.impl.logging_severity import LoggingSeverity
 
 

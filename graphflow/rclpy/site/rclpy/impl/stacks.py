@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
-from graphflow.deadlock.frames import Frame, stack_from
-from graphflow.deadlock.user_code import is_ours, is_users
+from graphflow.analysis.frames import Frame, stack_from
+from graphflow.analysis.user_code import is_ours, is_users
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.spinning import Run, Spinning
 

@@ -10,7 +10,7 @@ import sys
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from graphflow.deadlock.user_code import short_place, users_frame
+from graphflow.analysis.user_code import short_place, users_frame
 from graphflow.rclpy.life import LOOP
 from rclpy.impl.stacks import is_in_run, stacks
 

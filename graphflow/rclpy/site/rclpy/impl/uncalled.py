@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from graphflow.deadlock.syntax import syntax_of
-from graphflow.deadlock.user_code import is_users, short_place
+from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.uncalled import uncalled_methods
+from graphflow.analysis.user_code import is_users, short_place
 from graphflow.runtime.ineffective import ineffective
-from graphflow.runtime.misgiven import misgiven
-from graphflow.runtime.uncalled import uncalled_methods
+from graphflow.runtime.mistakes.misgiven import misgiven
 from rclpy.impl.entities import entities_of
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from types import FrameType
 from typing import Any
 
-from graphflow.deadlock.syntax import syntax_of
-from graphflow.deadlock.user_code import is_installed, is_users, short_place, users_frame
+from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.user_code import is_installed, is_users, short_place, users_frame
 
 TELL_AFTER = 1.0
 """Seconds from the first question in vain: a listener may be made after it."""

@@ -16,9 +16,9 @@ from pathlib import Path
 from types import CodeType, FunctionType, MethodType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.frames import Frame
-from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
-from graphflow.deadlock.user_code import is_ours, is_users, short_place
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
+from graphflow.analysis.user_code import is_ours, is_users, short_place
 from graphflow.reading import found_text
 from rclpy.action.client import ActionClient
 from rclpy.client import Client

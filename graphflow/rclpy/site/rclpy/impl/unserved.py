@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy import messages
 from graphflow.rclpy.wake import Wake
-from graphflow.runtime.service_client import nobody_serves
-from graphflow.runtime.unserved import GAP, TELL_AFTER, nobody_acts
+from graphflow.runtime.endpoints.service_client import nobody_serves
+from graphflow.runtime.mistakes.network.unserved import GAP, TELL_AFTER, nobody_acts
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.impl.entities import full_name, role_of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from graphflow.machines.cache import GraphCache
     from graphflow.rclpy.life import Life
     from graphflow.runtime.context import Context
-    from graphflow.runtime.threaded import ThreadedClient
+    from graphflow.runtime.endpoints.threaded import ThreadedClient
 
 _WAIT = Wake.wait.__code__
 logger = logging.getLogger("graphflow")

@@ -18,14 +18,14 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+from graphflow.analysis.local_messages import know_messages
+from graphflow.analysis.user_code import Pause, where
 from graphflow.deadlock.asyncio_frames import know_futures
 from graphflow.deadlock.closed_world import Setters
-from graphflow.deadlock.fresh import know_messages
-from graphflow.deadlock.held import setters
-from graphflow.deadlock.user_code import Pause, where
+from graphflow.deadlock.object_waits import setters
 from graphflow.errors import ClosedError
-from graphflow.machines.explain import offer
-from graphflow.machines.wait_graph import (
+from graphflow.machines.waits.explain import offer
+from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     Call,

@@ -10,7 +10,7 @@ from typing import Any
 
 from tf2_ros import Buffer
 
-from graphflow.deadlock.frames import stack_from
+from graphflow.analysis.frames import stack_from
 from rclpy.duration import Duration
 from rclpy.impl.buffers import BufferWait, buffer_wait, know_buffer
 

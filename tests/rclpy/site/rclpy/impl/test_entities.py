@@ -9,7 +9,7 @@ from example_interfaces.action import Fibonacci
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from graphflow.deadlock.source import ANSWERED
+from graphflow.analysis.class_source import ANSWERED
 from rclpy.action import ActionClient, ActionServer
 from rclpy.impl.entities import after_answers, arrived, role_of
 from rclpy.node import Node

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.deadlock.frames import stack_of
+from graphflow.analysis.frames import stack_of
 from rclpy.impl.locks import Entering, entered_at, is_inside, is_kept
 from tests.rclpy.locking import WHOSE, Bank
 from tests.rclpy.stepping import after_a_step

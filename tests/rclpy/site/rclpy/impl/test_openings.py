@@ -10,7 +10,7 @@ import pytest
 from std_srvs.srv import Trigger
 
 import rclpy
-from graphflow.deadlock.frames import Frame, running
+from graphflow.analysis.frames import Frame, running
 from rclpy.impl.openings import Opening, comes_after, opening_of, tries_forever
 from rclpy.impl.subjects import Subject
 from rclpy.node import Node

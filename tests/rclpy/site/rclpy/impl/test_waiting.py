@@ -14,7 +14,7 @@ import pytest
 from std_srvs.srv import Trigger
 
 import rclpy
-from graphflow.deadlock.source import source_of
+from graphflow.analysis.class_source import source_of
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl import stacks, waiting

@@ -1,0 +1,75 @@
+"""Files that hide packages: where a `numpy.py` lies beside a program, `import numpy` is that file."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import sys
+from importlib.machinery import PathFinder
+from pathlib import Path
+from types import ModuleType
+
+from graphflow.analysis.user_code import is_installed, is_users
+from graphflow.msgs import registry
+from graphflow.reading import found_text
+from graphflow.system import SITE
+
+_LACKING = re.compile(r"cannot import name|is not a package")
+_told: set[str] = set()
+"""The packages of which it has been told."""
+
+
+def hidden(error: BaseException) -> str:
+    """The file that hides the package which an error is about, and what to do; empty where there is none."""
+    name = ""
+    if isinstance(error, ImportError) and error.name and _LACKING.search(str(error)):
+        name = error.name.partition(".")[0]
+    elif isinstance(error, AttributeError) and isinstance(error.obj, ModuleType):
+        name = error.obj.__name__
+    file = _file_of(name) if name else None
+    return _text(file) if file is not None and _is_package(name, file) else ""
+
+
+def tell(file: Path) -> None:
+    """Say once that a file hides a package."""
+    if file.stem not in _told:
+        _told.add(file.stem)
+        sys.stderr.write(f"note: {_text(file)}\n")
+
+
+def hides_what_it_imports(file: Path) -> bool:
+    """Whether a program has the name of a package that it imports itself."""
+    name = file.stem
+    if not name.isidentifier() or not _is_package(name, file):
+        return False
+    try:
+        module = ast.parse(found_text(file, "replace"))
+    except (OSError, SyntaxError, ValueError):
+        return False  # it is told when the file is run
+    imported = {alias.name for node in ast.walk(module) if isinstance(node, ast.Import) for alias in node.names}
+    imported |= {n.module for n in ast.walk(module) if isinstance(n, ast.ImportFrom) and n.module and not n.level}
+    return name in {other.partition(".")[0] for other in imported}
+
+
+def _text(file: Path) -> str:
+    named = file.parent if file.name == "__init__.py" else file
+    return f"{named} hides the package {named.stem}: rename it, as in my_{named.name}"
+
+
+def _file_of(name: str) -> Path | None:
+    """The user's own file that is imported under a name; None if that is another's."""
+    file = getattr(sys.modules.get(name), "__file__", None)
+    if file is None and (spec := PathFinder.find_spec(name)) is not None:  # an import that failed leaves no module
+        file = spec.origin
+    return Path(file) if file is not None and is_users(file) and not is_installed(file) else None
+
+
+def _is_package(name: str, file: Path) -> bool:
+    """Whether a name is that of a package, of ROS's or installed, besides that of a file."""
+    if name in sys.stdlib_module_names or name in registry.packages() or name == "graphflow":
+        return True
+    own = file.parents[1] if file.name == "__init__.py" else file.parent
+    elsewhere = [SITE, *(entry for entry in sys.path if Path(entry or os.curdir).resolve() != own.resolve())]
+    found = PathFinder.find_spec(name, elsewhere)
+    return found is not None and found.origin is not None

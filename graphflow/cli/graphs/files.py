@@ -1,0 +1,318 @@
+"""`graphflow plan`, `check`, `explain` and `schema`: graph files without running them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence, Sized
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.arguments import GraphCommand
+from graphflow.errors import UsageFault
+from graphflow.names import did_you_mean, nearest
+from graphflow.reading import found_bytes
+
+if TYPE_CHECKING:
+    from graphflow.errors import Place, Problem
+    from graphflow.graph.checks.check import Interfaces
+    from graphflow.graph.plan import Plan
+
+
+_SHOWN = 12
+"""Files of a folder that are named."""
+
+
+def find_graph(text: str) -> Path:
+    """The file that `up NAME` means: a path, or the name of a graph of the project, an installed package or graphflow.
+
+    Raises:
+        UsageFault: `text` is neither.
+    """
+    path = Path(text)
+    if path.is_file():
+        if path.suffix == ".py" and not is_launch_file(path):
+            _refuse_source(path)
+        return path
+    from graphflow.workspace import installed
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.project import bundled_graphs, project_root, shown
+    from graphflow.workspace.unfound import launching
+
+    own = project_root(Path.cwd()) / "graphs" / f"{text.removesuffix('.yaml')}.yaml"
+    if own.is_file():
+        output.talk(f"{text}: using that of the project, {shown(own)}")
+        return Path(shown(own))
+    name, bundled, others = text.removesuffix(".yaml"), bundled_graphs(), installed.graphs()
+    found = others.get(name) or ([bundled[name]] if name in bundled else [])
+    if len(found) == 1:
+        source = "an installed package" if name in others else "graphflow"
+        output.talk(f"{text}: using the one that comes with {source}, {found[0]}")
+        return found[0]
+    if found:
+        raise UsageFault(f"several packages have a graph {name!r}; name its file: {', '.join(map(str, found))}")
+    if path.exists() and not path.is_dir():
+        raise UsageFault(f"{text}: it is not a regular file")
+    _refuse_node(text)
+    if way := launching(text, find_workspace(Path.cwd()).packages.values()):
+        raise UsageFault(f"{text}: there is no such file{way}")
+    folder = path if path.is_dir() else path.parent
+    near = {str(p): p.stem for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))}
+    what = "is a folder" if path.is_dir() else "there is no such file"
+    if path.is_dir() and (inside := sorted(map(str, [*path.glob("*.yaml")] or path.rglob("*.yaml")))):
+        raise UsageFault(f"{text}: is a folder; name one of its files: {', '.join(inside[:_SHOWN])}")
+    hint = did_you_mean(text, [*near, *bundled, *others])
+    if not hint and (stem := nearest(path.stem, near.values())) is not None:  # which the ending made too short
+        hint = f"; did you mean {next(file for file in near if near[file] == stem)!r}?"
+    raise UsageFault(f"{text}: {what}{hint}")
+
+
+def _refuse_node(name: str) -> None:
+    """Say what to do with the name of a node, where a graph is wanted.
+
+    Raises:
+        UsageFault: It is one, of the project or with graphflow.
+    """
+    from graphflow.workspace.executables import project_nodes
+    from graphflow.workspace.project import demos_root, project_root
+
+    root = project_root(Path.cwd())
+    files = [folder / "nodes" / f"{name}.py" for folder in (root, demos_root())]
+    if name in project_nodes(root) or any(file.is_file() for file in files):
+        raise UsageFault(f"{name!r} is a node and no graph: graphflow run {name}")
+
+
+def _refuse_source(file: Path) -> None:
+    """Say what to do with a Python file that describes nodes, where a graph is wanted.
+
+    Raises:
+        UsageFault: It has nodes.
+    """
+    from graphflow.workspace.node_classes import node_classes_in
+    from graphflow.workspace.packages import uses_ros
+
+    classes = [] if uses_ros(file) else list(node_classes_in(file))
+    if not classes and not uses_ros(file):
+        return
+    from graphflow.workspace.project import module_of
+
+    _, module = module_of(file)
+    several = f"; it has {', '.join(classes)}" if len(classes) > 1 else ""
+    run = f"graphflow run {f'{module}:{classes[0]}' if several else file}"
+    named = (
+        f"; a graph file names it: nodes: {{/{classes[0].lower()}: {{class: {module}:{classes[0]}}}}}"
+        if classes
+        else ""
+    )
+    raise UsageFault(f"{file} is a node and no graph file{several}; run it with: {run}{named}")
+
+
+_graph = click.argument("graph", metavar="GRAPH.yaml")
+_graph_or_source = click.argument("graph", metavar="GRAPH.yaml|FILE.py|FOLDER")
+_args = click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
+_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+@click.command(cls=GraphCommand)
+@_graph
+@_args
+@_json
+@click.option("--diff", "other", metavar="OTHER.yaml", help="Show what would be different in another file.")
+def plan(graph: str, args: tuple[str, ...], as_json: bool, other: str | None) -> None:
+    """Show exactly what a graph file would run and where each setting comes from. Imports nothing.
+
+    A launch file in Python is run for that, in a process of its own.
+    """
+    path = find_graph(graph)
+    from graphflow.graph.resolve import load
+    from graphflow.supervisor.launching.launch_python import described
+
+    resolved = load(path, args, describe=described)
+    if other is not None:
+        output.lines(_difference(resolved, load(find_graph(other), args, describe=described)))
+    elif as_json:
+        output.as_json(resolved.to_json())
+    else:
+        output.lines(resolved.lines())
+
+
+def _difference(one: Plan, other: Plan) -> Iterator[str]:
+    """Two plans as a unified diff, without the places of settings."""
+    from difflib import unified_diff
+
+    ours, theirs = ([line.partition("  # ")[0] for line in list(plan.lines())[1:]] for plan in (one, other))
+    yield from unified_diff(ours, theirs, one.file, other.file, lineterm="", n=2)
+
+
+def _graph_meant(text: str) -> Path | None:
+    """The graph file that is to be checked; None for source. A graph's name counts more than a folder's.
+
+    Raises:
+        UsageFault: It is neither.
+    """
+    path = Path(text)
+    if text.endswith(".py") and not is_launch_file(path):
+        return None
+    try:
+        return find_graph(text)
+    except UsageFault:
+        if path.is_dir():
+            return None
+        module = text.partition(":")[0]
+        file = Path(module if module.endswith(".py") else f"{module.replace('.', '/')}.py")
+        if file.is_file():
+            raise UsageFault(f"{text}: source is checked by its file: graphflow check {file}") from None
+        raise
+
+
+@click.command(cls=GraphCommand)
+@_graph_or_source
+@_args
+@_json
+def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
+    """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
+
+    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
+    remarks: names that nothing in the graph answers to, and slips in the source that Python runs without a word. Of a
+    Python file or a folder, node classes are imported, and the nodes that are written for rclpy only read. A launch
+    file in Python is run, in a process of its own.
+    """
+    path = _graph_meant(graph)
+    if path is None:
+        from graphflow.cli.graphs.sources import check_sources
+
+        return check_sources([Path(graph), *map(Path, args)], as_json=as_json)
+    from graphflow.analysis.deadlock_check import findings
+    from graphflow.errors import GraphFileError
+    from graphflow.graph.checks.loose_ends import loose_ends
+
+    try:
+        resolved, found, slips = _checked(path, args)
+    except GraphFileError as error:
+        problems = sorted(error.problems)
+        if as_json:
+            output.as_json({"problems": [_problem(problem) for problem in problems], "remarks": [], "deadlocks": []})
+        else:
+            output_problems(problems)
+        return exits.USAGE
+    ways = findings(resolved, found)
+    remarks = [*resolved.remarks, *map(str, sorted(loose_ends(resolved, found))), *slips]
+    certain = [way for way in ways if way.grade == "CERTAIN"]
+    if as_json:
+        deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
+        output.as_json({"problems": [], "remarks": remarks, "deadlocks": deadlocks})
+        return exits.FAILED if certain else exits.OK
+    for text in (*remarks, *ways):
+        output.talk(str(text))
+    possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
+    unresolved = [way for way in ways if way.grade == "unresolved"]
+    told = [
+        _count(things, what)
+        for things, what in (
+            (certain, "deadlock"),
+            (possible, "possible deadlock"),
+            (unresolved, "unresolved call"),
+            (remarks, "remark"),
+        )
+        if things
+    ]
+    more = f"no mistakes, {', '.join(told)}" if told else "no problems"
+    output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
+    return exits.FAILED if certain else exits.OK
+
+
+_DESCRIBING = b"def generate_launch_description", b"LaunchService"
+"""Marks of a Python file that describes a launch: the function that returns it, or the service that starts it."""
+
+
+def is_launch_file(file: Path) -> bool:
+    """Whether a Python file is a launch file of ROS's."""
+    named = file.name.endswith((".launch.py", "_launch.py"))
+    return file.is_file() and (named or any(word in found_bytes(file) for word in _DESCRIBING))
+
+
+def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces, list[str]]:
+    """A graph, what its classes declare, and the slips in their source.
+
+    Raises:
+        GraphFileError: Every mistake that was found.
+    """
+    from graphflow.errors import GraphFileError
+    from graphflow.graph.checks.check import check as check_plan
+    from graphflow.graph.resolve import load
+    from graphflow.supervisor.launching.launch_python import described
+    from graphflow.supervisor.launching.probe import probe
+    from graphflow.supervisor.launching.probed import read_interfaces, slips_in
+    from graphflow.workspace.project import add_interfaces
+
+    resolved = load(path, args, describe=described)
+    add_interfaces(Path(resolved.root))
+    data = probe(resolved.classes(), resolved.root)
+    found = read_interfaces(data)
+    problems = check_plan(resolved, found)
+    if problems:
+        raise GraphFileError(problems)
+    return resolved, found, slips_in(data)
+
+
+def output_problems(problems: Sequence[Problem]) -> None:
+    """Say what is wrong with a graph file."""
+    for problem in problems:
+        output.talk(str(problem))
+    output.talk(_count(problems, "problem"))
+
+
+def _problem(problem: Problem) -> dict[str, Any]:
+    return {"message": problem.message, **_place(problem.place)}
+
+
+def _place(place: Place) -> dict[str, Any]:
+    return {"file": place.file, "line": place.line, "column": place.column}
+
+
+@click.command(cls=GraphCommand)
+@_graph
+@click.argument("name", required=False)
+@_args
+@_json
+def explain(graph: str, name: str | None, args: tuple[str, ...], as_json: bool) -> None:
+    """Explain how a name of a graph comes about: who uses it, by which namespace and rule.
+
+    Without NAME, all names that the classes show.
+    """
+    from graphflow.graph import explain as explaining
+
+    if not Path(graph).exists() and (graph.startswith("/") or (name is not None and Path(name).is_file())):
+        file = name if name is not None and ":=" not in name else "GRAPH.yaml"
+        runs = "" if name is not None else f"; of what runs: graphflow node info {graph} or topic info {graph}"
+        raise UsageFault(f"the graph file stands first: graphflow explain {file} {graph}{runs}")
+    if name is not None and ":=" in name:
+        args, name = (name, *args), None
+    resolved, found, _ = _checked(find_graph(graph), args)
+    names = explaining.names(resolved, found)
+    if name is not None:
+        full = name if name.startswith("/") else f"/{name}"
+        if full not in names:
+            raise UsageFault(f"nothing in {graph} is called {full}{did_you_mean(full, names)}")
+        names = {full: names[full]}
+    if as_json:
+        output.as_json(names)
+        return
+    for full, lines in sorted(names.items()):
+        output.lines([full, *(f"  {line}" for line in lines)])
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of graph files, with which an editor completes and checks them as you type.
+
+    Save it, and begin a graph file with:  # yaml-language-server: $schema=graph.schema.json
+    """
+    from graphflow.graph.schema import schema_text
+
+    output.data(schema_text().rstrip())
+
+
+def _count(things: Sized, word: str) -> str:
+    return f"{len(things)} {word}{'' if len(things) == 1 else 's'}"

@@ -1,0 +1,252 @@
+"""`graphflow start`, `stop`, `restart`, `status` and `wait`: single nodes of a running graph."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError, UsageFault
+from graphflow.introspect.view import View
+from graphflow.machines.process import START_LIMIT, STOP_LIMIT
+from graphflow.names import did_you_mean
+from graphflow.supervisor import rundir
+from graphflow.supervisor.control.choosing import choose
+from graphflow.supervisor.control.client import ControlClient
+from graphflow.supervisor.starts import being_started
+from graphflow.system import host_name
+from graphflow.times import ago
+
+LIMIT = START_LIMIT + 2 * STOP_LIMIT
+"""Seconds that a node may take to end and to be ready again."""
+LAST_LINES = 20
+"""Lines of a node's log that `status` shows."""
+LOOK_EVERY = 0.05
+OVER = ("failed", "given_up", "ended")
+"""States in which a node stays."""
+
+_graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+_nodes = click.argument("nodes", nargs=-1, required=True, metavar="NODE...")
+
+
+@click.command()
+@_nodes
+@_graph
+def start(nodes: tuple[str, ...], name: str | None) -> int:
+    """Start nodes that have ended or failed. Returns when they are ready."""
+    for file in (node for node in nodes if node.endswith((".yaml", ".yml"))):
+        raise UsageFault(f"a graph is started by: graphflow up {file}")
+    return max(_ask("start", node, name) for node in nodes)
+
+
+@click.command()
+@_nodes
+@_graph
+def restart(nodes: tuple[str, ...], name: str | None) -> int:
+    """Restart nodes, whether they run or have ended. Returns when they are ready."""
+    return max(restart_node(node, name) for node in nodes)
+
+
+@click.command()
+@_nodes
+@_graph
+def stop(nodes: tuple[str, ...], name: str | None) -> int:
+    """Stop nodes. The others run on; `graphflow start` starts them again."""
+    return max(_ask("stop", node, name) for node in nodes)
+
+
+@click.command()
+@click.argument("node", metavar="NODE")
+@_graph
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def status(node: str, name: str | None, as_json: bool) -> int:
+    """Show how a node is, how it last ended, and the end of its log.
+
+    Exit code 0: it is ready, or will be; 1: it has failed.
+    """
+    run = choose(name)
+    row = _row(run.socket, _full(node))
+    last = _last_lines(Path(row["log"]))
+    is_bad = row["state"] in ("failed", "given_up")
+    if as_json:
+        output.as_json({"graph": run.graph, **row, "last_lines": last})
+        return exits.FAILED if is_bad else exits.OK
+    state = f"{row['state']}, {row['lifecycle']}" if row["lifecycle"] else row["state"]
+    process = f", process {row['pid']}" if row["pid"] and row["state"] not in (*OVER, "waiting", "pending") else ""
+    output.data(f"{row['node']}: {state} for {ago(time.time() - row['since'])}{process}")
+    facts = {
+        "": row["detail"],
+        "class": row["class"],
+        "shares the process": row["process"],
+        "started again": {0: "", 1: "once"}.get(row["restarts"], f"{row['restarts']} times"),
+        "its last end": row["last_end"],
+        "log": row["log"],
+    }
+    output.lines(f"  {what}: {fact}" if what else f"  {fact}" for what, fact in facts.items() if fact)
+    if last:
+        output.data(f"  its last {len(last)} lines:" if len(last) > 1 else "  its last line:")
+        output.lines(f"    {line}" for line in last)
+    return exits.FAILED if is_bad else exits.OK
+
+
+@click.command()
+@click.argument("nodes", nargs=-1, metavar="[NODE]...")
+@click.option("--ready", is_flag=True, help="Until they are ready, which is what is waited for without it, too.")
+@click.option("--ended", is_flag=True, help="Until they have ended.")
+@click.option("--timeout", type=click.FloatRange(0), default=60.0, show_default=True, help="Seconds to wait.")
+@_graph
+@click.option("--json", "as_json", is_flag=True, help="Print how the nodes are then as JSON, as `ps` does.")
+def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name: str | None, as_json: bool) -> int:
+    """Wait until nodes are ready, or all nodes of a graph that is being started; it may not even have begun to.
+
+    Exit code 0: they are; 1: one has failed; 4: not within --timeout.
+    """
+    if ready and ended:
+        raise UsageFault("--ready and --ended: one of them")
+    rows, code, why = _waited(nodes, name, timeout, ended=ended)
+    if as_json:
+        output.as_json(rows)
+    if why:
+        output.error(why)
+    return code
+
+
+def _waited(
+    nodes: tuple[str, ...], graph: str | None, timeout: float, *, ended: bool
+) -> tuple[list[dict[str, Any]], int, str]:
+    """Wait for nodes; returns their rows, the exit code and, if they are not as wanted, why."""
+    deadline = time.monotonic() + timeout
+    while True:
+        rows = _rows_if_any(graph)
+        if rows is None and ended:
+            return [], exits.OK, ""
+        wanted = _wanted(nodes, rows) if rows is not None else []
+        failed = [row for row in wanted if row["state"] in ("failed", "given_up")]
+        if failed and not ended:
+            text = f"{failed[0]['node']} has failed: {failed[0]['detail']}\n  its log: {failed[0]['log']}"
+            return wanted, exits.FAILED, text
+        good = OVER if ended else ("ready", "ended")
+        if wanted and all(row["state"] in good for row in wanted):
+            return wanted, exits.OK, ""
+        if time.monotonic() > deadline:
+            left = ", ".join(f"{row['node']} is {row['state']}" for row in wanted if row["state"] not in good)
+            return wanted, exits.TIMEOUT, f"after {timeout:g} s {left or _not_there()}"
+        time.sleep(LOOK_EVERY)
+
+
+def _not_there() -> str:
+    return f"no graph is running yet; {starts}" if (starts := being_started()) else "no graph is running"
+
+
+def _rows_if_any(graph: str | None) -> list[dict[str, Any]] | None:
+    """The rows of all nodes; None while no graph is running."""
+    try:
+        return _rows(choose(graph).socket)
+    except SupervisorError as error:
+        if error.exit_code in (exits.NOT_RUNNING, exits.FAILED):  # it is not there yet, or has just gone
+            return None
+        raise
+
+
+def _wanted(nodes: tuple[str, ...], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    if not nodes:
+        return rows
+    known = {row["node"]: row for row in rows}
+    for node in map(_full, nodes):
+        if node not in known:
+            raise SupervisorError(f"the graph has no node {node}{did_you_mean(node, known)}")
+    return [known[_full(node)] for node in nodes]
+
+
+def _full(node: str) -> str:
+    return node if node.startswith("/") else f"/{node}"
+
+
+def _rows(socket: str) -> list[dict[str, Any]]:
+    with ControlClient(socket) as client:
+        client.send(do="ps")
+        rows: list[dict[str, Any]] = next(client.receive(), {}).get("nodes", [])
+    return rows
+
+
+def _row(socket: str, node: str) -> dict[str, Any]:
+    return _wanted((node,), _rows(socket))[0]
+
+
+def _last_lines(log: Path) -> list[str]:
+    try:
+        with log.open("rb") as file:
+            file.seek(max(0, file.seek(0, 2) - 65536))
+            return file.read().decode(errors="replace").splitlines()[-LAST_LINES:]
+    except OSError:
+        return []
+
+
+def restart_node(node: str, graph: str | None, *, threads: list[str] | None = None) -> int:
+    """Start a node again and wait until it is ready; returns the exit code.
+
+    Args:
+        threads: Handlers that run in threads from then on.
+    """
+    return _ask("restart", node, graph, **({"threads": threads} if threads else {}))
+
+
+def _ask(what: str, node: str, graph: str | None, **more: Any) -> int:
+    node = _full(node)
+    try:
+        run = choose(graph)
+    except SupervisorError as error:
+        if error.exit_code == exits.NOT_RUNNING and (text := by_itself(node)):
+            raise SupervisorError(text, exits.NOT_RUNNING) from None
+        raise
+    with ControlClient(run.socket) as client:
+        client.send(do=what, node=node, **more)
+        answer = next(client.receive(), {})
+    if answer.get("event") == "error":
+        raise SupervisorError(by_itself(node) or answer["message"])
+    try:
+        row = _await(run.socket, node, "ended" if what == "stop" else "ready")
+    except (SupervisorError, UsageFault):
+        if what != "stop" or _rows_if_any(run.graph):
+            raise
+        output.data(f"{node} has ended; it was the last that ran, and graph {run.graph} has ended with it")
+        return exits.OK
+    if what == "stop":
+        output.data(f"{node} has ended")
+        return exits.OK
+    if row["state"] != "ready":
+        output.error(f"{node} did not start: {row['detail']}\n  its log: {row['log']}")
+        return exits.FAILED
+    output.data(f"{node} runs again, process {row['pid']}")
+    return exits.OK
+
+
+def by_itself(node: str) -> str:
+    """Say where a node runs that no graph here has, and how it is ended; empty if the network shows none."""
+    try:
+        if any(row["node"] == node for run in rundir.running() if run.is_here for row in _rows(run.socket)):
+            return ""
+        with View(domain_id()) as view:
+            if node not in view.cache.nodes():
+                return ""
+            owner, process = view.owner(node), view.process_of(node)
+    except SupervisorError:  # nothing runs at all, or what does is ending
+        return ""
+    end = f", or by: kill {process.pid}" if process is not None and process.host == host_name() else ""
+    return f"{node} runs by itself, in no graph of `up`, in {owner}; end it there by Ctrl-C{end}"
+
+
+def _await(socket: str, node: str, wanted: str) -> dict[str, Any]:
+    """The row of a node once it is as wanted, or stays as it is."""
+    deadline = time.monotonic() + LIMIT
+    while True:
+        row = _row(socket, node)
+        if row["state"] in (wanted, *OVER):
+            return row
+        if time.monotonic() > deadline:
+            raise SupervisorError(f"{node} is still {row['state']} after {LIMIT:g} s", exits.TIMEOUT)
+        time.sleep(LOOK_EVERY)

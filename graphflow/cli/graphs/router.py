@@ -1,0 +1,46 @@
+"""`graphflow router`: the rendezvous as a program of its own, as ROS 2's courses start it."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+import click
+
+from graphflow.cli import output
+from graphflow.cli.net_options import reach, reach_options
+from graphflow.domain import rendezvous_endpoint
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+LOOK_EVERY = 0.05
+"""Seconds between two looks whether the rendezvous has been reached."""
+
+
+@click.command()
+@reach_options
+def router(connect: tuple[str, ...], net: str | None) -> int:
+    """Run a Zenoh router, the rendezvous of this machine. Ctrl-C ends it.
+
+    None is needed: the first process of a graph is the rendezvous, and another takes over when it ends. This one
+    only stays, and with --connect or --net keeps the machine linked to others.
+    """
+    from graphflow.cli.temporary_node import visit
+
+    reach(connect, net)
+
+    async def work(node: Node) -> int:
+        endpoint = rendezvous_endpoint()
+        if node.context.is_rendezvous:
+            output.data(f"Started Zenoh router with id {node.context.router_id}")
+            output.talk(f"ROS 2 and graphflow find each other at {endpoint}. Ctrl-C ends it")
+        else:
+            while not (zid := node.context.router_id):  # it is being connected to
+                await asyncio.sleep(LOOK_EVERY)
+            output.data(f"There is a Zenoh router at {endpoint} already, with id {zid}")
+            output.talk("This one waits to take over when it ends. Ctrl-C ends it")
+        await asyncio.get_running_loop().create_future()
+        return 0
+
+    return visit(work)

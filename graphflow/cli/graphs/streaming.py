@@ -1,0 +1,390 @@
+"""What `up` shows while a graph comes up, runs and goes down; and log files, followed."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from graphflow.cli import exits, output
+from graphflow.cli.graphs.loglines import Chosen, record
+from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError
+from graphflow.supervisor.control.client import ControlClient
+from graphflow.supervisor.processes.process_tree import state_of
+from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, left_over
+from graphflow.system import is_portable, terminal_name
+
+_POLL = 0.1
+"""Seconds between reads of the log files."""
+GONE_LIMIT = 5.0
+"""Seconds that a supervisor may take to end once its graph has."""
+_DOWN_LIMIT = 60.0
+"""Seconds between two ends of processes when a graph goes down."""
+_SILENCE_LIMIT = 2.0
+"""Seconds that a supervisor may take to answer a request."""
+_SOCKET_LIMIT = 3.0
+"""Seconds that a supervisor may take to see that its socket was removed, and to make it again."""
+_ANSWERS = ("stopping", "exited", "end", "error")
+"""Events by which a supervisor answers a request to stop; others may have been under way when it was sent."""
+_TOLD = ("up", "step", "said", "note", "exited", "stopping", "error", "end")
+"""Events of the supervisor's that `up --json` prints."""
+_COLOURS = (36, 33, 32, 35, 34, 31)
+
+
+class LogReader:
+    """Prints what is appended to log files, each line with the name of its node.
+
+    Args:
+        width: Of the names.
+        chosen: Which lines; None for all.
+        as_json: A line of JSON for each, for programs.
+    """
+
+    def __init__(
+        self, files: Iterable[Path], width: int, chosen: Chosen | None = None, *, as_json: bool = False
+    ) -> None:
+        self._chosen, self._as_json = chosen, as_json
+        self._files = dict.fromkeys(files, (0, b""))
+        self._width = width
+        self._colours = {path: _COLOURS[i % len(_COLOURS)] for i, path in enumerate(self._files)}
+        self._is_terminal = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+        self.count = 0
+        """Lines printed."""
+
+    def show(self, last: int | None = None) -> None:
+        """Print what is new; only the `last` lines of each file if given."""
+        for path, (offset, partial) in list(self._files.items()):
+            try:
+                with path.open("rb") as file:
+                    if file.seek(0, 2) < offset:  # a new one was begun; the rest is in the one put aside
+                        partial += _rest(path.with_name(f"{path.name}.1"), offset)
+                        offset = 0
+                    file.seek(offset)
+                    data = partial + file.read()
+                    offset = file.tell()
+            except FileNotFoundError:
+                continue
+            lines, _, rest = data.rpartition(b"\n")
+            self._files[path] = (offset, rest)
+            if lines:
+                texts = lines.decode(errors="replace").split("\n")
+                if self._chosen is not None:
+                    texts = self._chosen.of(path, texts)
+                self._print(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
+
+    def _print(self, path: Path, texts: list[str]) -> None:
+        self.count += len(texts)
+        name = path.stem.ljust(self._width)
+        if self._as_json:
+            for text in texts:
+                output.as_json(record(path.stem, text))
+        elif self._is_terminal:
+            output.colored(name, self._colours[path], (f" | {text}" for text in texts))
+        else:
+            output.lines(f"{name} | {text}" for text in texts)
+
+
+def _rest(path: Path, offset: int) -> bytes:
+    """What a file has from some place on; nothing if there is none."""
+    try:
+        with path.open("rb") as file:
+            file.seek(offset)
+            return file.read()
+    except OSError:
+        return b""
+
+
+def stream(
+    run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: Callable[[], str], as_json: bool = False
+) -> int:
+    """Follow a graph from its start, to its end or until it is up; returns the exit code of `up`.
+
+    Args:
+        end: Waits for the guardian, and says what ended it and the supervisor.
+        as_json: Print what happens and what is logged as lines of JSON, too.
+    """
+    interrupts: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda got, _: interrupts.append(got))
+    # This comes first: a graph that fails at once waits for a follower, tells it everything, and is gone.
+    try:
+        nodes = _list_nodes(run["socket"])
+        with ControlClient(run["socket"]) as client:
+            client.send(do="follow")
+            followed = _Stream(run, classes, nodes, client, detach, interrupts, as_json=as_json).run()
+    except SupervisorError:
+        if not GraphRun(**run).wait_gone(GONE_LIMIT):
+            raise
+        followed = None
+    if followed is None:
+        return tell_loss(run, end)
+    if not detach:
+        GraphRun(**run).wait_gone(GONE_LIMIT)
+    return followed
+
+
+def _list_nodes(socket: str) -> list[dict[str, Any]]:
+    with ControlClient(socket) as client:
+        client.send(do="ps")
+        answer = next(client.receive(), {})
+    nodes: list[dict[str, Any]] = answer.get("nodes", [])
+    return nodes
+
+
+class _Stream:
+    def __init__(
+        self,
+        run: dict[str, Any],
+        classes: dict[str, str],
+        nodes: list[dict[str, Any]],
+        client: ControlClient,
+        detach: bool,
+        interrupts: list[int],
+        *,
+        as_json: bool = False,
+    ) -> None:
+        self._as_json = as_json
+        self._run, self._classes, self._client, self._detach = run, classes, client, detach
+        self._interrupts = interrupts
+        """Signals that asked to stop, in order of arrival."""
+        self._stop_sent = 0
+        self._unanswered_since: float | None = None
+        """When the oldest request to stop was sent that nothing has answered; None without one."""
+        self._has_told_silence = False
+        self._nodes = nodes
+        self._logs: LogReader | None = None
+        self._is_up = False
+
+    def run(self) -> int | None:
+        """Returns the exit code of `up`; None if the supervisor has gone without a word."""
+        files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
+        self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0), as_json=self._as_json)
+        while True:
+            select.select([self._client], [], [], _POLL)
+            events = self._client.pending()
+            if events is None:
+                self._logs.show()
+                return None
+            for event in events:
+                if event["event"] in _ANSWERS:
+                    self._unanswered_since = None
+                code = self._show(event)
+                if code is not None:
+                    return code
+            if not self._detach:
+                self._logs.show()
+            if len(self._interrupts) > self._stop_sent:
+                self._stop_sent = len(self._interrupts)
+                reason = "Ctrl-C" if self._interrupts[-1] == signal.SIGINT else "SIGTERM"
+                self._client.send(do="down", now=self._stop_sent > 1, reason=reason)
+                self._unanswered_since = self._unanswered_since or time.monotonic()
+            self._break_silence()
+
+    def _break_silence(self) -> None:
+        """If the supervisor does not answer: say so, and once asked twice end the graph without it."""
+        since = self._unanswered_since
+        if since is None or time.monotonic() - since < _SILENCE_LIMIT:
+            return
+        run = GraphRun(**self._run)
+        if self._stop_sent > 1:
+            self._unanswered_since = None
+            end_silent(run)
+        elif not self._has_told_silence:
+            self._has_told_silence = True
+            output.talk(f"{silent(run)}; Ctrl-C again ends the graph without it")
+
+    def _show(self, event: dict[str, Any]) -> int | None:
+        """Show one event; returns an exit code when it is the last."""
+        what = event["event"]
+        if self._as_json and what in _TOLD:
+            more = {"graph": self._run["graph"], "domain": self._run["domain"], "logs": self._run["logs"]}
+            output.as_json({**event, **(more | {"nodes": self._nodes} if what == "up" else {})})
+        if what == "step":
+            mark = "done" if event["ok"] else "FAILED"
+            output.talk(f"step {event['step']} {mark}: {event['text']}")
+        elif what == "said":
+            output.talk(event["text"])
+        elif what == "up":
+            self._greet(event["seconds"], event.get("pending", {}))
+            self._is_up = True
+        elif what == "checked" and self._detach:
+            return exits.OK
+        elif what == "note":
+            output.talk(f"note: {event['text']}")
+        elif what == "stopping":
+            if self._logs is not None and not self._detach:
+                self._logs.show()
+            again = "; Ctrl-C again kills" if event["reason"] == "Ctrl-C" else ""
+            output.talk(f"stopping ({event['reason']}){again}")
+        elif what == "exited" and event["unexpected"]:
+            self._tell_death(event)
+        elif what == "error":
+            output.error(event["message"])
+        elif what == "end":
+            if self._logs is not None and not self._detach:
+                self._logs.show()
+            output.talk(f"graph {self._run['graph']} has ended")
+            has_failed = self._detach and not self._is_up
+            return int(event["exit_code"]) or (exits.FAILED if has_failed else exits.OK)
+        return None
+
+    def _tell_death(self, event: dict[str, Any]) -> None:
+        if self._logs is not None and not self._detach:
+            self._logs.show()
+        names = ", ".join(event["nodes"])
+        reason = f": {event['error']}" if event["error"] else ""
+        follows = ""
+        if event.get("again") is not None:
+            follows = f"; it is started again in {event['again']:.1f} s"
+        elif event.get("given_up"):
+            follows = f"; given up: {event['given_up']}"
+        output.error(
+            f"{names} died, process {event['pid']}, {event['how']}{reason}{follows}\n  its log: {event['log']}"
+        )
+
+    def _greet(self, seconds: float, pending: Mapping[str, str]) -> None:
+        run = self._run
+        width = max((len(n["node"]) for n in self._nodes), default=0)
+        class_width = max((len(n["class"]) for n in self._nodes), default=0)
+        count = f"{len(self._nodes)} node{'' if len(self._nodes) == 1 else 's'}"
+        output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
+        for node in self._nodes:
+            place = self._classes.get(node["class"], "")
+            waits = pending.get(node["node"])
+            label = node["node"] if node["is_named"] else node["node"].removeprefix("/")  # of a process
+            told = f"waits for {waits}" if waits else _shown(place)
+            output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {told}")
+        output.talk("")
+        output.talk("In another terminal:")
+        name = next((node["node"] for node in self._nodes if node["is_named"]), "")
+        of_node = {
+            f"graphflow node info {name}": "what a node does",
+            f"graphflow param list {name}": "what can be set",
+        }
+        hints = {
+            "graphflow topic list": "what the nodes say to each other",
+            **(of_node if name else {"graphflow node list": "which nodes there are"}),
+            "graphflow ps": "how the nodes are doing",
+        }
+        if run["domain"] != domain_id():
+            hints = {f"export GRAPHFLOW_DOMAIN={run['domain']}": "first: the file has its own domain", **hints}
+        for command, what in hints.items():
+            output.talk(f"  {command:32}  {what}")
+        output.talk(f"Logs are in {run['logs']}")
+        if self._detach:
+            output.talk("Open the console with: graphflow attach\nStop with: graphflow down")
+        else:
+            output.talk("Stop with Ctrl-C.")
+        output.talk("")
+
+
+def tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
+    """Tell of a supervisor that was killed, once nothing is left of its graph; returns the exit code of `up`."""
+    lost = GraphRun(**run).renewed()
+    has_gone = lost.wait_gone(GONE_LIMIT)
+    why = last_words(lost) or (end() if has_gone else silent(lost))
+    output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
+    return exits.FAILED
+
+
+def last_words(run: GraphRun) -> str:
+    """The report that the guardian has written of a supervisor's death; empty if it could not."""
+    begin = f"the supervisor, process {run.pid}, was ended"
+    for line in reversed(_supervisor_log(Path(run.logs))):
+        if line.startswith(begin):
+            return line
+    return ""
+
+
+def how_ended(logs: Path) -> str:
+    """What ended the graph with a folder of logs; empty if it ended by itself, or nobody could write it down."""
+    for _, run in left_over():
+        if run.logs == str(logs):
+            return f"the supervisor, process {run.pid}, was killed{', and its guardian' if run.guardian else ''}"
+    for line in reversed(_supervisor_log(logs)):
+        if line.startswith("the supervisor, process "):
+            return line
+        told = line.partition(" INFO ")[2]
+        if told.startswith(('{"event": "error"', '{"event": "stopping"')):
+            with suppress(ValueError):  # a full disk has cut it off
+                event: dict[str, Any] = json.loads(told)
+                return str(event["message"] if event["event"] == "error" else f"it was stopped ({event['reason']})")
+    return ""
+
+
+def _supervisor_log(logs: Path) -> list[str]:
+    try:
+        return (logs / SUPERVISOR_LOG).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+
+
+def _shown(place: str) -> str:
+    from graphflow.workspace.project import shown
+
+    path, colon, line = place.partition(":")
+    return f"{shown(Path(path))}{colon}{line}" if path else ""
+
+
+def take_down(run: GraphRun, *, now: bool, as_json: bool = False) -> int:
+    """Stop a graph and say what ends; returns the exit code. Its consoles are told which terminal has stopped it."""
+    output.talk(f"stopping graph {run.graph} in domain {run.domain}")
+    if not _answers(run):
+        end_silent(run)
+    else:
+        with ControlClient(run.socket) as client:
+            client.send(do="down", now=now, reason=f"down, by {terminal_name()}")
+            for event in client.receive(timeout=_DOWN_LIMIT):
+                if event["event"] == "exited":
+                    output.talk(f"  {', '.join(event['nodes'])} ended")
+                elif event["event"] == "end":
+                    break
+    is_down = run.wait_gone(2 * GONE_LIMIT)
+    if as_json:
+        output.as_json({"graph": run.graph, "domain": run.domain, "is_down": is_down})
+    if not is_down:
+        output.error(f"the supervisor of {run.graph}, process {run.pid}, is still running")
+        return exits.TIMEOUT
+    if not as_json:
+        output.data(f"graph {run.graph} is down")
+    return exits.OK
+
+
+def _answers(run: GraphRun) -> bool:
+    """Whether the supervisor answers requests, once it has made its socket again if that was removed."""
+    deadline = time.monotonic() + _SOCKET_LIMIT
+    while not is_portable() and run.is_alive and not Path(run.socket).exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    try:
+        with ControlClient(run.socket) as client:
+            client.send(do="hello")
+            return next(client.receive(_SILENCE_LIMIT), None) is not None
+    except SupervisorError:
+        return False
+
+
+def silent(run: GraphRun) -> str:
+    """What is the matter with a supervisor that does not answer."""
+    how = "is stopped" if state_of(run.pid) == "T" else "does not answer"
+    return f"the supervisor, process {run.pid}, {how}"
+
+
+def end_silent(run: GraphRun) -> None:
+    """End a graph whose supervisor does not answer: it is killed, and its guardian ends the rest."""
+    import psutil
+
+    if not run.is_alive:  # it has just gone
+        return
+    output.talk(f"{silent(run)}; it is killed, and its nodes are ended")
+    with suppress(psutil.Error):
+        psutil.Process(run.pid).kill()
+        if run.guardian:
+            psutil.Process(run.guardian).resume()

@@ -1,0 +1,81 @@
+"""`graphflow view`: the running graph in Foxglove, Lichtblick and PlotJuggler."""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import socket
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.errors import UsageFault
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+NODE = "foxglove_bridge"
+PORT = 8765
+"""Where viewers look by default."""
+
+
+@click.command(short_help="Serve the running graph to Foxglove, Lichtblick and PlotJuggler.")
+@click.option(
+    "-p", "--port", type=click.IntRange(0, 65535), default=PORT, show_default=True, help="Port of the server."
+)
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address of the server; 0.0.0.0 for all.")
+@click.option("--read-only", is_flag=True, help="Viewers look, and neither publish, nor call, nor set.")
+@click.option("--allow-commands", is_flag=True, help="Viewers on other machines may publish, call and set, too.")
+@click.option("--allow-page", "pages", multiple=True, help="Origin of a web page that may connect: https://HOST.")
+@click.option("--node-name", default=NODE, show_default=True, help="Name of the serving node.")
+def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tuple[str, ...], node_name: str) -> int:
+    """Serve the running graph to Foxglove, Lichtblick and PlotJuggler. Ctrl-C ends it.
+
+    Topics, services, parameters and who is connected with whom, over Foxglove's WebSocket protocol. Other machines
+    are served with --host 0.0.0.0; they only look, unless --allow-commands is given.
+    """
+    if find_spec("websockets") is None:
+        from graphflow.introspect.installation import requirement
+
+        raise UsageFault(f"viewers need the extra `view`: pip install {requirement('view')}")
+    from graphflow.cli.messages.types import use_project
+    from graphflow.cli.temporary_node import visit
+
+    use_project()
+    is_read_only = read_only or not (allow_commands or _is_loopback(host))
+
+    async def work(node: Node) -> int:
+        from graphflow.viewer.bridge import Bridge
+
+        name = f"graphflow on {socket.gethostname()}"
+        bridge = Bridge(node, name, is_read_only=is_read_only, pages=frozenset(pages))
+        try:
+            found = await bridge.open(host, port)
+            output.data(f"Serving viewers on ws://{_shown(host)}:{found}{'; they only look' if is_read_only else ''}")
+            output.talk("In Foxglove or Lichtblick: Open connection, Foxglove WebSocket. Ctrl-C ends it")
+            await asyncio.get_running_loop().create_future()
+        finally:
+            await bridge.close()
+        return exits.OK
+
+    return visit(work, node_name)
+
+
+def _shown(host: str) -> str:
+    """A host as it stands in an address that viewers can open."""
+    try:
+        address = ipaddress.ip_address(host)
+    except ValueError:
+        return host
+    if address.is_unspecified:
+        return socket.gethostname()
+    return f"[{address}]" if address.version == 6 else host
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"

@@ -1,0 +1,1 @@
+"""Messages on the command line: typed, sent, shown, measured, plotted, recorded and played."""

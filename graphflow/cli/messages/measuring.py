@@ -1,0 +1,163 @@
+"""What `topic hz`, `topic bw` and `topic delay` do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from graphflow.cli import output
+from graphflow.cli.messages.conditions import compiled
+from graphflow.cli.temporary_node import visit
+from graphflow.domain import domain_id
+from graphflow.errors import DecodeError, UsageFault
+from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.rates import Arrivals, Delays, Weights, table
+from graphflow.introspect.view import View
+from graphflow.msgs import registry
+from graphflow.qos import BEST_AVAILABLE, Durability
+from graphflow.runtime.endpoints import raw
+from graphflow.runtime.node import Node
+from graphflow.times import to_ns
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Kind
+
+EVERY = 1.0
+"""Seconds between two lines."""
+LOOK_EVERY = 0.05
+"""Seconds between two looks whether there is something to print."""
+HEARD = replace(BEST_AVAILABLE, durability=Durability.VOLATILE, depth=2000)
+"""What is listened with: nothing that was sent before, and no burst is missed."""
+SILENT = 2.0
+"""Seconds after which it is said that nobody publishes, or that nothing comes."""
+
+
+Take = Callable[[bytes, int, int], object]
+"""Takes in a message that came at a moment of the monotonic clock, and of the clock of stamps, in nanoseconds."""
+
+
+def hz(topics: list[str], window: int, expression: str, *, as_json: bool) -> int:
+    """Tell how often messages come; returns the exit code."""
+    condition = compiled(expression) if expression else None
+    rates = {topic: Arrivals(window) for topic in topics}
+
+    def meter(topic: str, type_name: str) -> Take:
+        add = rates[topic].add
+        if condition is None:
+            return lambda _, now_ns, __: add(now_ns)
+        decode = registry.codec(type_name).decode
+        return lambda payload, now_ns, _: condition(decode(payload)) and add(now_ns)
+
+    def tell(_: int) -> None:
+        if as_json:
+            _tell_numbers({topic: one.numbers() for topic, one in rates.items()})
+        else:
+            _tell_text(table(rates) if len(topics) > 1 else rates[topics[0]].text())
+
+    return visit(lambda node: _measure(node, topics, meter, tell))
+
+
+def bw(topics: list[str], window: int, *, as_json: bool) -> int:
+    """Tell how many bytes come; returns the exit code."""
+    weights = {topic: Weights(window) for topic in topics}
+    if not as_json:
+        output.lines(f"Subscribed to [{topic}]" for topic in topics)
+
+    def meter(topic: str, _: str) -> Take:
+        add = weights[topic].add
+        return lambda payload, now_ns, _: add(now_ns, len(payload))
+
+    def tell(now_ns: int) -> None:
+        if as_json:
+            _tell_numbers({topic: one.numbers(now_ns) for topic, one in weights.items()})
+            return
+        texts = {topic: words for topic, one in weights.items() if (words := one.text(now_ns))}
+        _tell_text("\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items()))
+
+    return visit(lambda node: _measure(node, topics, meter, tell))
+
+
+def delay(topic: str, window: int, *, as_json: bool) -> int:
+    """Tell how old messages are when they come; returns the exit code."""
+    delays = Delays(window)
+
+    def meter(_: str, type_name: str) -> Take:
+        fields = {f.name: f.type.base for f in registry.message_schema(type_name).fields}
+        if fields.get("header") != "std_msgs/msg/Header":
+            raise UsageFault(f"{type_name} has no header, and so no stamp to tell a delay by")
+        decode = registry.codec(type_name).decode
+
+        def take(payload: bytes, _: int, time_ns: int) -> None:
+            stamp = decode(payload).header.stamp
+            delays.add(time_ns - (stamp.sec * 10**9 + stamp.nanosec))
+
+        return take
+
+    def tell(_: int) -> None:
+        _tell_numbers({topic: delays.numbers()}) if as_json else _tell_text(delays.text())
+
+    return visit(lambda node: _measure(node, [topic], meter, tell))
+
+
+def _tell_text(words: str) -> None:
+    if words:  # of a single message there is nothing to tell yet
+        output.data(words)
+
+
+def _tell_numbers(found: Mapping[str, Mapping[str, float] | None]) -> None:
+    """A line of JSON for each topic of which there is something to tell."""
+    for topic, numbers in found.items():
+        if numbers is not None:
+            output.as_json({"topic": topic, **numbers})
+
+
+async def _measure(
+    node: Node, topics: list[str], meter: Callable[[str, str], Take], tell: Callable[[int], None]
+) -> int:
+    """Listen to topics, as soon as each is there, and tell of them every second."""
+    clock, cache = node.clock, node.context.cache
+    failed: list[UsageFault] = []
+    count = 0
+
+    def listen(topic: str, type_name: str, type_hash: str) -> None:
+        take = meter(topic, type_name)
+
+        def arrived(payload: bytes, _: MessageInfo) -> None:
+            nonlocal count
+            count += 1
+            try:
+                take(payload, clock.monotonic_ns(), clock.time_ns())
+            except (UsageFault, DecodeError) as error:
+                failed.append(UsageFault(str(error)))
+
+        raw.subscribe(node, type_name, topic, arrived, HEARD, type_hash=type_hash)
+
+    waiting, told = set(topics), 0
+    next_ns = (heard_ns := clock.monotonic_ns()) + to_ns(EVERY)
+    is_silence_told = False
+    while not failed:
+        for topic in sorted(waiting):
+            for publisher in cache.endpoints(Kind.PUBLISHER, topic)[:1]:
+                waiting.discard(topic)
+                listen(topic, publisher.type, publisher.hash)
+        await clock.sleep(LOOK_EVERY)
+        now_ns = clock.monotonic_ns()
+        if now_ns >= next_ns:
+            next_ns += to_ns(EVERY)
+            if count > told:
+                told, heard_ns, is_silence_told = count, now_ns, False
+                tell(now_ns)
+        if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
+            is_silence_told = True
+            for topic in sorted(waiting):
+                output.talk(f"WARNING: {cache.unpublished(topic)}")
+            if waiting and not cache.nodes(hidden=False):
+                output.talk(await node.offload(nothing_here, "no nodes"))
+            if not waiting:
+                output.talk(await node.offload(_why_silent, topics))
+    raise failed[0]
+
+
+def _why_silent(topics: list[str]) -> str:
+    """That nothing comes of topics that somebody publishes; and the net profile that keeps it back, if one does."""
+    with View(domain_id()) as view:
+        return next(filter(None, (view.kept_back(topic, Kind.PUBLISHER) for topic in topics)), "no new messages")

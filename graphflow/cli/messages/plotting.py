@@ -1,0 +1,226 @@
+"""What `topic plot` and `bag plot` do."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import sys
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from graphflow.bag import typed
+from graphflow.bag.reader import Bag
+from graphflow.cli import exits, output
+from graphflow.cli.temporary_node import visit
+from graphflow.errors import CallError, UsageFault
+from graphflow.introspect.curves import COLOURS, CURVES, Curve, chart
+from graphflow.introspect.fields import numbers
+from graphflow.msgs import registry
+from graphflow.names import did_you_mean, expand
+from graphflow.qos import BEST_AVAILABLE
+from graphflow.runtime.node import Node
+
+EVERY = 0.2
+"""Seconds between two pictures on a terminal."""
+HEIGHT = 24
+"""Rows of a picture that goes to a file or a pipe."""
+DOTS = 150
+"""Dots per inch of a PNG file."""
+
+
+@dataclass(frozen=True)
+class PlotOptions:
+    """The options of both verbs, by the names click gives them."""
+
+    seconds: float = 30.0
+    """What a terminal shows."""
+    duration: float | None = None
+    svg: str | None = None
+    png: str | None = None
+    as_csv: bool = False
+
+    def check(self) -> None:
+        """Find out early what would fail in the end.
+
+        Raises:
+            UsageFault: What draws files is not installed, or there is no such folder.
+        """
+        for file in filter(None, (self.svg, self.png)):
+            if not Path(file).parent.is_dir():
+                raise UsageFault(f"{file}: there is no folder {Path(file).parent}")
+        if self.svg or self.png:
+            try:
+                import matplotlib  # noqa: F401
+            except ImportError:
+                from graphflow.introspect.installation import requirement
+
+                raise UsageFault(f"--svg and --png need the extra `plot`: pip install {requirement('plot')}") from None
+
+    @property
+    def is_live(self) -> bool:
+        """Whether the picture moves on a terminal."""
+        return not (self.svg or self.png or self.as_csv) and sys.stdout.isatty()
+
+
+def wanted(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]]:
+    """The topics that are meant, and of each the fields; none for all numbers.
+
+    Args:
+        words: `/pose`, `/pose.x,theta`, `/pose/x` or `/pose/linear/x`, as rqt_plot and PlotJuggler write fields.
+        topics: Those that are there.
+    """
+    found: dict[str, list[str]] = {}
+    for word in words:
+        name, fields = _parted(word)
+        full = expand(name, "/", "cli")
+        listed = [field for field in fields.split(",") if field]
+        if full not in topics and not listed:
+            above = max((t for t in topics if full.startswith(f"{t}/")), key=len, default=full)
+            listed = [full[len(above) + 1 :].replace("/", ".")] if above != full else []
+            full = above
+        found.setdefault(full, []).extend(listed)
+    return found
+
+
+def _parted(word: str) -> tuple[str, str]:
+    """What stands before the first dot, and behind it; an element, `ranges[0]`, belongs to what is behind."""
+    name, dot, fields = word.partition(".")
+    if not dot and "[" in name:
+        name, _, fields = name.rpartition("/")
+    return name, fields
+
+
+def curves_of(meant: Mapping[str, list[str]], types: Mapping[str, str]) -> dict[str, list[Curve]]:
+    """The curves to draw, by topic.
+
+    Raises:
+        UsageFault: A topic has no such field, or no numbers.
+    """
+    found: dict[str, list[Curve]] = {}
+    for topic, fields in meant.items():
+        chosen = fields or numbers(types[topic])[:CURVES]
+        if not chosen:
+            raise UsageFault(f"{topic}: {types[topic]} has no field that is a number")
+        head = f"{topic}." if len(meant) > 1 else ""
+        found[topic] = [Curve(field, types[topic], f"{head}{field}") for field in chosen]
+    return found
+
+
+def live(meant: Mapping[str, list[str]], types: Mapping[str, str], options: PlotOptions) -> int:
+    """Draw topics as their messages come; returns the exit code."""
+    curves = curves_of(meant, types)
+    return visit(lambda node: _listen(node, curves, types, options))
+
+
+def recorded(path: Path, words: Sequence[str], start: float, end: float | None, options: PlotOptions) -> int:
+    """Draw topics of a bag over the seconds since its beginning; returns the exit code."""
+    bag = Bag(path)
+    topics = bag.contents.topics
+    meant = wanted(words, topics)
+    for topic in meant:
+        if topic not in topics:
+            raise CallError(f"{path} has no topic {topic}{did_you_mean(topic, topics)}")
+        typed.learn(topics[topic])
+    curves = curves_of(meant, {topic: topics[topic].type for topic in meant})
+    zero = bag.contents.start_ns
+    start_ns = zero + int(start * 1e9)
+    end_ns = None if end is None else zero + int(end * 1e9)
+    for said in typed.read(path, meant, start_ns=start_ns, end_ns=end_ns):
+        for curve in curves[said.topic]:
+            curve.add((said.time_ns - zero) / 1e9, said.message)
+    return _finished(curves, options)
+
+
+async def _listen(node: Node, curves: Mapping[str, list[Curve]], types: Mapping[str, str], options: PlotOptions) -> int:
+    zero = node.clock.monotonic_ns() / 1e9
+
+    def listen(topic: str) -> None:
+        def arrived(message: Any) -> None:
+            at = node.clock.monotonic_ns() / 1e9 - zero
+            for curve in curves[topic]:
+                curve.add(at, message)
+
+        node.create_subscription(registry.interface_class(types[topic]), topic, arrived, BEST_AVAILABLE)
+
+    for topic in curves:
+        listen(topic)
+    if not options.is_live:
+        until = f"for {options.duration:g} s" if options.duration else "until Ctrl-C"
+        output.talk(f"listening to {', '.join(curves)} {until}")
+    try:
+        async with asyncio.timeout(options.duration):
+            while True:
+                await node.clock.sleep(EVERY)
+                if options.is_live:
+                    _show(curves, node.clock.monotonic_ns() / 1e9 - zero, options.seconds)
+    except (TimeoutError, asyncio.CancelledError):  # the time is over, or Ctrl-C
+        return exits.OK if options.is_live else _finished(curves, options)
+
+
+def _show(curves: Mapping[str, list[Curve]], now: float, seconds: float) -> None:
+    for curve in _all(curves):
+        curve.forget(now - seconds)
+    colours = () if "NO_COLOR" in os.environ else COLOURS
+    columns, rows = shutil.get_terminal_size()
+    picture = chart(_all(curves), (columns, rows - 1), span=(now - seconds, now), colours=colours)
+    output.screen(picture or _nothing(curves))
+
+
+def _finished(curves: Mapping[str, list[Curve]], options: PlotOptions) -> int:
+    """Give out the picture of all that came."""
+    every = _all(curves)
+    title = next(iter(curves)) if len(curves) == 1 else ""
+    if all(curve.is_empty for curve in every):
+        output.error(_nothing(curves))
+        return exits.FAILED
+    if options.as_csv:
+        output.lines(_csv(every))
+    for kind, file in (("svg", options.svg), ("png", options.png)):
+        if file is not None:
+            try:
+                _draw(every, title, file, kind)
+            except OSError as error:
+                output.error(f"{file}: {error.strerror or error}")
+                return exits.FAILED
+            output.data(file)
+    if not (options.as_csv or options.svg or options.png):
+        output.lines(chart(every, (shutil.get_terminal_size().columns, HEIGHT)).splitlines())
+    return exits.OK
+
+
+def _nothing(curves: Mapping[str, list[Curve]]) -> str:
+    """Why there is no picture."""
+    came = {topic: len(some[0].values) for topic, some in curves.items() if some[0].values}
+    if not came:
+        return f"no message of {', '.join(curves)} has come"
+    return "; ".join(
+        f"{count} messages of {topic} came, and none had {' or '.join(curve.label for curve in curves[topic])}"
+        for topic, count in came.items()
+    )
+
+
+def _csv(curves: Sequence[Curve]) -> Iterator[str]:
+    yield "seconds,name,value"
+    for curve in curves:
+        for at, value in zip(curve.times, curve.values, strict=True):
+            yield f"{at:.6f},{curve.label},{value!r}"
+
+
+def _draw(curves: Sequence[Curve], title: str, file: str, kind: str) -> None:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 5), layout="constrained")
+    axes = figure.add_subplot()
+    for i, curve in enumerate(curves):
+        axes.plot(curve.times, curve.values, label=curve.label, color=COLOURS[i % len(COLOURS)], linewidth=1.2)
+    axes.set(xlabel="seconds", title=title)
+    axes.grid(visible=True, alpha=0.3)
+    axes.legend()
+    figure.savefig(file, format=kind, dpi=DOTS)
+
+
+def _all(curves: Mapping[str, list[Curve]]) -> list[Curve]:
+    return [curve for some in curves.values() for curve in some]

@@ -1,0 +1,107 @@
+"""What `action send_goal` does once it has a goal."""
+
+from __future__ import annotations
+
+import asyncio
+from asyncio import CancelledError
+from textwrap import indent
+from typing import Any, NamedTuple
+
+from graphflow.cli import exits, output
+from graphflow.cli.temporary_node import visit
+from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected, ServiceUnavailable
+from graphflow.introspect.echo import block, plain
+from graphflow.msgs.base import Message
+from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.node import Node
+
+STRAGGLERS = 0.1
+"""Seconds in which feedback may still arrive after the goal has ended."""
+
+
+class _Words(NamedTuple):
+    """How it is told what becomes of a goal."""
+
+    as_json: bool
+
+    def tell(self, text: str, event: str = "", **more: Any) -> None:
+        """Print a text or, for programs, an event; a text without one is not for them."""
+        if not self.as_json:
+            output.data(text)
+        elif event:
+            output.as_json({"event": event, **more})
+
+
+def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float, as_json: bool = False) -> int:
+    """Send a goal and follow it to its end; returns the exit code."""
+    words = _Words(as_json)
+
+    async def work(node: Node) -> int:
+        client = node.create_action_client(type_, name)
+        words.tell("Waiting for an action server to become available...")
+        try:
+            await client.expect_ready(timeout)
+        except ServiceUnavailable as error:
+            output.error(str(error))
+            return exits.TIMEOUT
+        words.tell(f"Sending goal:\n{_shown(goal)}")
+        try:
+            return await _follow(client.send(goal, timeout=timeout), show_feedback, words)
+        except GoalRejected as error:
+            words.tell("Goal was rejected.", "rejected")
+            output.talk(str(error))
+            return exits.FAILED
+
+    return visit(work)
+
+
+async def _follow(sending: Any, show_feedback: bool, words: _Words) -> int:
+    sent: ClientGoalHandle[Any, Any, Any] | None = None
+    try:
+        async with sending as sent:
+            assert sent is not None
+            words.tell(f"Goal accepted with ID: {sent.goal_id.hex()}\n", "accepted", goal_id=sent.goal_id.hex())
+            try:
+                if show_feedback:
+                    await _show_feedback(sent, words)
+                    # The result takes another path through the network than feedback and may overtake the last of it.
+                    await asyncio.sleep(STRAGGLERS)
+                    await _show_feedback(sent, words)
+                return await _result(sent, words)
+            except CancelledError:
+                words.tell("Canceling goal...", "canceling")
+                raise
+    except CancelledError:
+        if sent is not None:
+            is_canceled = sent.status.name == "CANCELED"
+            words.tell(
+                "Goal canceled." if is_canceled else f"Goal is {sent.status.name}.", "end", status=sent.status.name
+            )
+            return exits.OK if is_canceled else exits.FAILED
+        words.tell("Goal withdrawn before it was accepted.", "withdrawn")
+        raise
+
+
+async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> None:
+    async for feedback in sent.feedback():
+        words.tell(f"Feedback:\n{_shown(feedback)}", "feedback", feedback=plain(feedback))
+
+
+async def _result(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> int:
+    code = exits.FAILED
+    try:
+        result = await sent.result()
+        code = exits.OK
+    except (GoalAborted, GoalCanceled) as error:
+        output.talk(str(error))
+        result = error.result
+    except GoalLost as error:
+        output.error(str(error))
+        return exits.FAILED
+    words.tell(f"Result:\n{_shown(result)}", "result", result=plain(result))
+    words.tell(f"Goal finished with status: {sent.status.name}", "end", status=sent.status.name)
+    return code
+
+
+def _shown(message: Any) -> str:
+    return indent(block(plain(message)).rstrip("\n"), "    ") + "\n"

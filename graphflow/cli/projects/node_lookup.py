@@ -1,0 +1,219 @@
+"""Which node class `graphflow run` means: MODULE:CLASS, a file, a module, a bundled node's name, or ROS's PKG EXE."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from inspect import getfile
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from graphflow.cli import output
+from graphflow.errors import GraphflowError, NoModule, RunsWhenImported, UsageFault
+from graphflow.graph.model import class_meant
+from graphflow.names import did_you_mean, nearest
+from graphflow.supervisor.launching.classes import (
+    add_root,
+    import_class,
+    import_module_of,
+    nearest_module,
+    node_classes,
+)
+from graphflow.workspace.executables import SLIP, find, project_nodes, with_graphflow
+from graphflow.workspace.installed import installed, package_of, packages_with
+from graphflow.workspace.packages import find_workspace
+from graphflow.workspace.project import demos_root, project_root
+from graphflow.workspace.unfound import owners, why_no_package
+
+FOLDERS = 1000
+"""Folders in which a file is looked for that is not where it was said to be."""
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+
+def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
+    """The class that is meant, and the words that are left for the node.
+
+    Raises:
+        UsageFault: There is none, or several; the text says which there are.
+        RunsWhenImported: The file is a program, which runs nodes by itself.
+    """
+    _refuse_turned(what, words)
+    if what.endswith((".yaml", ".yml")):
+        raise UsageFault(f"{what} is a graph file: graphflow up {what}")
+    named, _, class_name = what.rpartition(":")
+    file = Path(named if named.endswith(".py") else what)
+    root = project_root(file) if file.suffix == ".py" and file.is_file() else project_root(Path.cwd())
+    add_root(str(root))
+    rest = list(words)
+    try:
+        if named.endswith(".py"):
+            cls = import_class(f"{_module_of(file, root)}:{class_name}")
+        elif ":" in what:
+            if "-" in named:  # as in a graph file
+                way = f"; or run its file: graphflow run {named.replace('.', '/')}.py"
+                raise UsageFault(f"{what!r} is not a class; {class_meant(what)}{way}")
+            cls = import_class(what)
+        elif what.endswith(".py"):
+            cls = _only(_module_of(file, root))
+        elif rest[:1] and (found := find(what, rest[0].removesuffix(".py"), root)) is not None:
+            cls = import_class(found.class_path)
+            rest = rest[1:]
+        elif (known := _executables_of(what)) and rest[:1] and not rest[0].startswith("-"):
+            raise UsageFault(f"package {what!r} has no executable {rest[0]!r} here{did_you_mean(rest[0], known)}")
+        elif what.rpartition(".")[2][:1].isupper():
+            module, _, name = what.rpartition(".")
+            meant = nearest_module(module or name.lower(), str(root)) or module or f"nodes.{name.lower()}"
+            raise UsageFault(f"{what!r}: write MODULE:CLASS, {meant}:{name}")
+        else:
+            cls = _dotted(what) if "." in what else _named(what, root, words)
+    except GraphflowError as error:
+        if what.endswith(".py") and isinstance(error.__cause__, RunsWhenImported):
+            raise error.__cause__ from None
+        raise UsageFault(f"{error}{_source_line(error.__cause__)}") from None
+    if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
+        output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")
+    return cls, rest
+
+
+def _source_line(error: BaseException | None) -> str:
+    """The line that is no Python, with the caret below its fault, as Python shows it; empty for other errors."""
+    if not isinstance(error, SyntaxError):
+        return ""
+    lines = traceback.format_exception_only(error)[1:-1]
+    return "".join(["\n", *lines]).rstrip()
+
+
+def _refuse_turned(executable: str, words: Sequence[str]) -> None:
+    """See that an executable does not stand before its package.
+
+    Raises:
+        UsageFault: It does.
+    """
+    if not words or words[0].startswith("-"):
+        return
+    package = find_workspace(Path.cwd()).packages.get(words[0])
+    if executable in _executables_of(words[0]) or (package is not None and package.known_as(executable)):
+        what = f"{executable!r} is an executable of the package {words[0]!r}, which stands before it"
+        raise UsageFault(f"{what}: graphflow run {words[0]} {executable}")
+
+
+def _dotted(what: str) -> type[Node]:
+    """The node of a module, which may be meant as an executable of a package."""
+    try:
+        return _only(what)
+    except NoModule:
+        package, _, executable = what.partition(".")
+        own = find_workspace(Path.cwd()).packages.get(package)
+        known = {*(own.executables if own is not None else []), *_executables_of(package)}
+        if not known:
+            raise
+        meant = nearest(executable, known) or "|".join(sorted(known))
+        raise UsageFault(f"{what!r}: {package} is a package: graphflow run {package} {meant}") from None
+
+
+def _executables_of(package: str) -> list[str]:
+    """The executables of a package that come with graphflow or are installed."""
+    own = package_of(package)
+    names = [name for known, name in with_graphflow() if known == package]
+    return names + (own.executables if own is not None else [])
+
+
+def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
+    """The node of a module in `nodes/` of the project, of an installed distribution, or of graphflow."""
+    own = project_nodes(root)
+    if what in own:
+        return import_class(own[what])
+    having = [one for one in packages_with(what) if what in one.nodes]
+    if having and not (root / "nodes" / f"{what}.py").is_file():
+        if len(having) > 1:
+            choices = ", ".join(f"{one.name} {what}" for one in having)
+            raise UsageFault(f"several packages have a node {what!r}; run one of {choices}")
+        return import_class(having[0].nodes[what])
+    try:
+        return _only(f"nodes.{what}")
+    except NoModule:
+        raise UsageFault(_why_none(what, root, words)) from None
+
+
+def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
+    """The error text where there is neither a node nor a package of that name."""
+    workspace = find_workspace(Path.cwd())
+    packages = workspace.packages
+    if what in packages and not packages[what].executables:
+        compiled = sorted(packages[what].compiled)
+        verb = "is" if len(compiled) == 1 else "are"
+        why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
+        why += packages[what].why_no_executable
+        return f"the package {what!r} has no executable that graphflow can run{why}"
+    if what == root.name and (own := project_nodes(root)):
+        meant = nearest(words[0], own) if words else None
+        return f"{what!r} is the project that you are in: graphflow run {meant or min(own)}"
+    why_none = why_no_package(what, workspace)
+    if why_none is not None:
+        return why_none
+    package, slash, name = what.partition("/")
+    if slash and (name in _executables_of(package) or (package in packages and packages[package].known_as(name))):
+        return f"{what!r} is no node; write a space: graphflow run {package} {name}"
+    if slash and Path(f"{what}.py").is_file():
+        return f"there is no node {what!r}; did you mean '{what}.py'?"
+    has = owners(what, workspace)
+    if has:
+        return f"{what!r} is an executable of {' and of '.join(has)}: graphflow run {has[0]} {what}"
+    known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")} | {
+        *project_nodes(root)
+    }
+    if words and not words[0].startswith("-"):  # ROS's PKG EXE
+        near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
+        meant = f"; did you mean {near!r}?" if near is not None else ""
+        there = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
+        return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or there}"
+    known |= {*(package for package, _ in with_graphflow()), *packages, *installed()}
+    known |= {name for one in installed().values() for name in one.nodes}
+    return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
+
+
+def _module_of(file: Path, root: Path) -> str:
+    """The name by which a file is imported from its project."""
+    if not file.is_file():
+        raise UsageFault(f"{file}: there is no such file{_instead_of(file)}")
+    name = ".".join(file.resolve().relative_to(root).with_suffix("").parts)
+    if name in sys.stdlib_module_names or _is_loaded_from_elsewhere(name, file):
+        owner = f"Python's module {name}" if name in sys.stdlib_module_names else f"the package {name}"
+        raise UsageFault(f"{file}: a file of this name hides {owner}, or is hidden by it; rename it: my_{file.name}")
+    return name
+
+
+def _is_loaded_from_elsewhere(name: str, file: Path) -> bool:
+    """Whether a name is that of a module which graphflow has imported, so that it stands for no file of a project."""
+    loaded = getattr(sys.modules.get(name), "__file__", None) if "." not in name else None
+    return loaded is not None and Path(loaded).resolve() != file.resolve()
+
+
+def _instead_of(file: Path) -> str:
+    """The file that may have been meant: of its name further down, or with graphflow, or of a near name."""
+    above = file.parent if file.parent.is_dir() else Path()
+    for at, folders, names in islice(os.walk(above), FOLDERS):
+        folders[:] = sorted(folder for folder in folders if not folder.startswith((".", "venv")))
+        if file.name in names and "launch" in file.name:
+            return f"; to start it: graphflow launch {Path(at, file.name)}"
+        if file.name in names:
+            return f"; did you mean {str(Path(at, file.name))!r}?"
+    if file.parent.name in ("", "nodes") and (demos_root() / "nodes" / file.name).is_file():
+        return f"; {file.name} comes with graphflow: graphflow run {file.stem}"
+    return did_you_mean(str(file), [str(found) for found in above.glob("*.py")])
+
+
+def _only(module: str) -> type[Node]:
+    """The one node class of a module."""
+    found = node_classes(import_module_of(module))
+    if not found:
+        raise UsageFault(f"{module} has no node class: a class that derives from graphflow.Node")
+    if len(found) > 1:
+        choices = ", ".join(f"{module}:{name}" for name in found)
+        raise UsageFault(f"{module} has several node classes; run one of {choices}")
+    return next(iter(found.values()))

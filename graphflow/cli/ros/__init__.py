@@ -1,0 +1,1 @@
+"""The verbs that ROS 2 has, one module each."""

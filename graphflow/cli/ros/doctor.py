@@ -1,0 +1,220 @@
+"""`graphflow doctor`: what is wrong, and what to do about it; `doctor hello`: who hears whom."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from importlib import metadata
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.ros.supervised import supervised
+from graphflow.cli.verbs import Verbs
+from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError
+from graphflow.introspect import concurrency, installation
+from graphflow.introspect.health import Look, examine, needs_second
+from graphflow.introspect.view import View
+from graphflow.machines.matching import complaints
+from graphflow.names import is_hidden
+from graphflow.rclpy import enabling
+from graphflow.wire.process import NUMBERS, WAITS, answer_key, stopped
+
+ANSWER_LIMIT = 1.0
+"""Seconds that the processes of a graph have to answer."""
+BETWEEN_LOOKS = 0.5
+"""Seconds between two looks at what nodes have counted."""
+
+Findings = dict[str, list[str]]
+"""What was found, by the name of the check."""
+
+
+@click.group(cls=Verbs, invoke_without_command=True, subcommand_metavar="[hello]")
+@click.option("-r", "--report", is_flag=True, help="Print all that is known of this system and the graph.")
+@click.option("-rf", "--report-failed", is_flag=True, help="The same, only where a check has failed.")
+@click.option("-iw", "--include-warnings", is_flag=True, help="Hints count as faults.")
+@click.option("-ep", "--exclude-packages", is_flag=True, hidden=True, help="For ROS 2's commands: none are checked.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: bool, **_: bool) -> int:
+    """Check the running graph for problems: deadlocks, groups held for long, processes that do not answer, event loops
+    that are blocked or were late, endpoints that do not match, nodes of one name, nodes that hear themselves, lost
+    messages, floods in logs, topics that nobody publishes, remaps that match nothing, clocks that differ. And what is
+    here without it: what is installed, graphs that were killed, a ROS 2 in this shell that would not see the graph.
+
+    Exit code 1 when there is one; late loops alone do not count, nor does what may be meant so.
+    """
+    if click.get_current_context().invoked_subcommand is not None:
+        return exits.OK
+    try:
+        view = View(domain_id())
+    except SupervisorError as error:
+        if error.exit_code != exits.NOT_RUNNING:
+            raise
+        here, remarks = _here()
+        if report:
+            from graphflow.cli.ros.report import installed
+
+            output.lines(installed())
+        if as_json:
+            output.as_json({**here, **remarks})
+        elif not report:
+            output.lines(text for texts in [*here.values(), *remarks.values()] for text in texts)
+        if any(here.values()) or not report:
+            raise
+        return exits.OK
+    with view:
+        first = _look(view)
+        here, remarks = _here()  # a second look, if one is needed, comes a while later
+        faults, notes, count = _graph(view, first)
+    faults |= here
+    notes |= remarks
+    failed = [name for name, texts in faults.items() if texts]
+    if as_json:
+        output.as_json({**faults, **notes})
+    elif not report:
+        _print(faults, notes, count)
+    if (report or report_failed) and not as_json:
+        from graphflow.cli.ros.report import sections
+
+        output.lines(sections(None if report else failed))
+    is_well = not failed and not (include_warnings and notes["hints"])
+    return exits.OK if is_well else exits.FAILED
+
+
+def _here() -> tuple[Findings, Findings]:
+    """What is wrong without a graph, and what is only to be noted."""
+    faults = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
+    notes = {
+        "rclpy": list(_whose_rclpy()),
+        "starts": list(installation.compiled_anew(installation, writes=not sys.dont_write_bytecode)),
+    }
+    return faults, notes
+
+
+def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
+    """What is wrong with the graph, what is only to be noted, and the number of its nodes."""
+    read = concurrency.read(view.reports(answer_key(view.domain, WAITS), ANSWER_LIMIT))
+    second = first
+    if needs_second(view, first):
+        time.sleep(max(0.0, first.at + BETWEEN_LOOKS - time.monotonic()))
+        second = _look(view)
+    health = examine(view, first, second)
+    ours = view.processes()
+    profiles = [f"{p}: nodes beyond it can be listed, and nothing else is known of them" for p in view.profiles()]
+    others = [
+        name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
+    ]
+    managed = supervised(view.cache.nodes())
+    silent = concurrency.unresponsive(read, view)
+    told = " ".join([*silent, *managed.faults])
+    silent += [text for pid, text in stopped().items() if not re.search(rf"\b{pid}\b", told)]
+    faults = {
+        "deadlocks": read.reports,
+        "stalls": read.stalls,
+        "unresponsive": silent,
+        "supervised": [text for text in managed.faults if not _is_told(text, silent)],
+        "blocked": [
+            f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log" for who, seconds in read.blocked
+        ],
+        "misfits": list(complaints(view.cache)),
+        "health": health.faults,
+    }
+    unseen = managed.unseen
+    late = [
+        f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
+        for who, n, most in read.late
+    ]
+    unread = (
+        [f"processes running another version of graphflow, not understood: {read.unreadable}"]
+        if read.unreadable
+        else []
+    )
+    notes = {
+        "late": late,
+        "hints": health.hints,
+        "silent": others,
+        "unreadable": unread,
+        "unseen": unseen,
+        "kept_back": profiles,
+    }
+    return faults, notes, sum(not is_hidden(name) for name in read.nodes)
+
+
+def _look(view: View) -> Look:
+    at, began_ns = time.monotonic(), time.time_ns()
+    return Look(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), began_ns, time.time_ns(), at)
+
+
+def _print(faults: Findings, notes: Findings, count: int) -> None:
+    output.lines(f"{text}\n" for name in ("deadlocks", "stalls") for text in faults[name])
+    output.lines(t for name, texts in faults.items() if name not in ("deadlocks", "stalls") for t in texts)
+    output.lines([*notes["late"], *notes["hints"], *notes["rclpy"], *notes["starts"]])
+    if notes["silent"]:
+        beyond = ", or beyond a net profile" if notes["kept_back"] else ""
+        output.data(f"not graphflow nodes{beyond}, so their handlers are unknown: {', '.join(notes['silent'])}")
+    output.lines([*notes["kept_back"], *notes["unreadable"], *notes["unseen"]])
+    if not any(faults.values()) and not notes["late"]:
+        output.data(f"{count} node{'s' if count != 1 else ''}, {_verdict(notes)}")
+
+
+def _verdict(notes: Findings) -> str:
+    """The last line, where there is no fault: nothing is certain of what was not seen."""
+    if any(notes[kind] for kind in ("silent", "unreadable", "unseen", "kept_back")):
+        return "nothing wrong in what could be seen; the lines above say what could not"
+    return "no fault; the lines above may be meant so" if notes["hints"] else "nothing wrong"
+
+
+def _is_told(text: str, silent: list[str]) -> bool:
+    """Whether a node that its supervisor speaks of is among those that did not answer."""
+    node = text.partition(" ")[0]
+    return any(node in told.split() for told in silent)
+
+
+def _environment() -> Mapping[str, str]:
+    """The environment as it was before this command's own options."""
+    found: Mapping[str, str] = click.get_current_context().find_root().obj or os.environ
+    return found
+
+
+def _version(name: str) -> str | None:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _whose_rclpy() -> Iterator[str]:
+    """Which rclpy is imported, where there are two."""
+    other = enabling.elsewhere()
+    if other is not None:
+        yield f"import rclpy is that of the ROS 2 in this shell, {other}; graphflow's comes where none is sourced"
+
+
+def _left_over() -> Iterator[str]:
+    from graphflow.supervisor.rundir import left_over, running
+
+    for folder, run in left_over():
+        yield (
+            f"graph {run.graph} (domain {run.domain}) was killed and has left {folder}: start it again, "
+            "which clears up, or delete that folder"
+        )
+    for run in running():
+        if run.unguarded:
+            yield f"graph {run.graph} (domain {run.domain}): {run.guard_again}"
+
+
+@doctor.command()
+@click.option("-t", "--topic", default="/canyouhearme", show_default=True, help="Topic to speak and listen on.")
+@click.option("-ep", "--emit-period", type=click.FloatRange(0.01), default=0.1, help="Seconds between two words. [0.1]")
+@click.option("-pp", "--print-period", type=click.FloatRange(0.1), default=1.0, help="Seconds between tables. [1.0]")
+@click.option("-1", "--once", is_flag=True, help="End after the first table.")
+@click.option("--ttl", type=int, hidden=True, help="For ROS 2's commands: nothing is sent by multicast.")
+def hello(topic: str, emit_period: float, print_period: float, once: bool, ttl: int | None) -> int:  # noqa: ARG001
+    """Find out which machines hear each other: run it on each of them. Ctrl-C ends it."""
+    from graphflow.cli.ros.hello import greet
+
+    return greet(topic, emit_period, print_period, once=once)

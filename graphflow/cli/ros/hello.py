@@ -1,0 +1,69 @@
+"""What `doctor hello` does: speaks, listens, and counts who was heard."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections import Counter
+
+from graphflow.cli import exits, output
+from graphflow.cli.temporary_node import visit
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.names import expand
+from graphflow.runtime.node import Node
+
+HELLO = "hello, it's me "
+"""What ROS 2's `doctor hello` says, before the name of the machine."""
+HOSTS_BOUND = 200
+"""Machines that are counted."""
+NAME_BOUND = 255
+
+
+def greet(topic: str, emit_period: float, print_period: float, *, once: bool) -> int:
+    """Speak and listen until Ctrl-C, or until the first table; returns the exit code."""
+    full = expand(topic, "/", "cli")
+
+    async def work(node: Node) -> int:
+        return await _greet(node, full, emit_period, print_period, once=once)
+
+    return visit(work)
+
+
+async def _greet(node: Node, topic: str, emit_period: float, print_period: float, *, once: bool) -> int:
+    publisher = node.create_publisher(String, topic, 10)
+    heard: Counter[str] = Counter()
+
+    def listen(message: String) -> None:
+        host = message.data.removeprefix(HELLO)[:NAME_BOUND]
+        if host in heard or len(heard) < HOSTS_BOUND:
+            heard[host] += 1
+
+    node.create_subscription(String, topic, listen, 10, ignore_local=True)
+    said = 0
+
+    async def speak() -> None:
+        nonlocal said
+        while True:
+            publisher.publish(String(data=f"{HELLO}{socket.gethostname()}"))
+            said += 1
+            await asyncio.sleep(emit_period)
+
+    speaking = asyncio.ensure_future(speak())
+    try:
+        while True:
+            await asyncio.sleep(print_period)
+            _tell(topic, said, heard, print_period)
+            if once:
+                return exits.OK
+            heard.clear()
+            said = 0
+    finally:
+        speaking.cancel()
+
+
+def _tell(topic: str, said: int, heard: Counter[str], print_period: float) -> None:
+    output.data("MULTIMACHINE COMMUNICATION SUMMARY")
+    output.data(f"Topic: {topic}, Published Msg Count: {said}")
+    output.data("Subscribed from:" if heard else "Subscribed from: nobody")
+    output.lines(f"  {host:<30} {count} messages in {print_period:g} s" for host, count in sorted(heard.items()))
+    output.data("-" * 60)

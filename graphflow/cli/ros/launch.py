@@ -1,0 +1,217 @@
+"""`graphflow launch FILE`, and `launch convert`: ROS's launch files as graph files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.arguments import GraphCommand
+from graphflow.cli.verbs import Verbs
+from graphflow.errors import Problem, UsageFault
+from graphflow.names import did_you_mean
+from graphflow.workspace.packages import FOLDERS_BOUND
+
+if TYPE_CHECKING:
+    from graphflow.markup.tree import Item
+
+
+class _Verbs(Verbs):
+    """`launch convert FILE`, and `launch FILE` and `launch PACKAGE FILE` for `up`."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        is_verb = not args or args[0] in (*self.list_commands(ctx), "--help", "-h")
+        return super().parse_args(ctx, args if is_verb else ["start", *args])
+
+
+@click.group(cls=_Verbs, subcommand_metavar="[PACKAGE] FILE [NAME:=VALUE]... | convert FILE")
+def launch() -> None:
+    """Start a launch file as `up` does, or convert it.
+
+    \b
+    Before FILE may stand:
+      -s, --show-args                      show the file's arguments and start nothing
+      -p, --print                          show what would run and start nothing
+      -n, --noninteractive, --no-console   show logs instead of the console
+      --detach                             leave it running in the background
+      --json                               print what happens as JSON, a line each; without the console
+    """  # noqa: D301 - click wants the character
+
+
+@launch.command(cls=GraphCommand, hidden=True)
+@click.argument("words", nargs=-1, required=True, metavar="[PACKAGE] FILE [NAME:=VALUE]...")
+@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
+@click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run and start nothing.")
+@click.option("-n", "--noninteractive", "--no-console", is_flag=True, help="Show logs instead of the console.")
+@click.option("--detach", is_flag=True, help="Leave it running in the background, as `up -d` does.")
+@click.option("--json", is_flag=True, help="Print what happens as JSON, a line each, as `up --json` does.")
+@click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands: there is no more to show.")
+@click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="For ROS 2's commands: it is shown.")
+def start(words: tuple[str, ...], **options: bool) -> int:
+    """Start a file, of a package if one is named."""
+    from graphflow.cli.graphs.files import plan
+    from graphflow.cli.graphs.graphs import up
+
+    file, given = _file_of(words)
+    is_shown = options["is_shown"]
+    if options["debug"]:
+        output.talk("note: -d is ROS's --debug, which shows no more here; --detach leaves the graph in the background")
+    shared = {"--json": options["json"]}
+    flags = (
+        shared
+        if is_shown
+        else shared
+        | {
+            "--show-args": options["show_args"],
+            "--no-console": options["noninteractive"],
+            "--detach": options["detach"],
+        }
+    )
+    verb, top = plan if is_shown else up, click.get_current_context().find_root()
+    code = verb.main(
+        [*(flag for flag, is_on in flags.items() if is_on), file, *given],
+        prog_name=verb.name,
+        standalone_mode=False,
+        parent=top,
+    )
+    return code if isinstance(code, int) else exits.OK
+
+
+def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
+    """The file that is meant, and the arguments behind it.
+
+    Raises:
+        UsageFault: A package is named that has no such file.
+    """
+    from graphflow.workspace.executables import of_ros, package_share
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.project import demos_root, project_root
+    from graphflow.workspace.unfound import why_no_package
+
+    first, *rest = words
+    if not rest or ":=" in rest[0] or Path(first).is_file():
+        _refuse_package(first)
+        return first, rest
+    folder = package_share(first, project_root(Path.cwd()), os.environ)
+    if folder is None:
+        if first.endswith(_ENDINGS) and package_share(rest[0], project_root(Path.cwd()), os.environ) is not None:
+            raise UsageFault(f"the package stands first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}")
+        why = why_no_package(first, find_workspace(Path.cwd()))
+        if why is None and first in of_ros():
+            graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
+            way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
+            raise UsageFault(f"the package {first!r} that comes with graphflow has no launch files{way}")
+        raise UsageFault(
+            f"Package {first!r} not found{f': {why}' if why else '; to start a file: graphflow launch FILE'}"
+        )
+    files = sorted(_files_below(folder))
+    found = [file for file in files if file.match(rest[0])]
+    if not found:
+        there = _launch_files(files)
+        raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
+    return str(found[0]), rest[1:]
+
+
+_ENDINGS = (".py", ".xml", ".yaml", ".launch")
+"""Of launch files."""
+
+
+def _refuse_package(word: str) -> None:
+    """See that a word alone is not the name of a package that has launch files.
+
+    Raises:
+        UsageFault: It is; the text has its launch files.
+    """
+    from graphflow.workspace.executables import package_share
+    from graphflow.workspace.project import project_root
+
+    if Path(word).exists() or not word.isidentifier():
+        return
+    folder = package_share(word, project_root(Path.cwd()), os.environ)
+    there = _launch_files(_files_below(folder)) if folder is not None else []
+    if there:  # one without may have the name of a graph
+        raise UsageFault(f"{word!r} is a package; write graphflow launch {word} FILE; it has {', '.join(there)}")
+
+
+def _launch_files(files: Iterable[Path]) -> list[str]:
+    """The names of those that are launch files by their names."""
+    return sorted({file.name for file in files if "launch" in file.name})
+
+
+def _files_below(folder: Path) -> Iterator[Path]:
+    """The files below a folder, also behind links to folders; each folder once, and a bounded number."""
+    seen: set[str] = set()
+    for at, folders, names in os.walk(folder, followlinks=True):
+        folders[:] = [one for one in folders if os.path.realpath(os.path.join(at, one)) not in seen]
+        seen.update(os.path.realpath(os.path.join(at, one)) for one in folders)
+        if len(seen) > FOLDERS_BOUND:
+            return
+        yield from (Path(at, name) for name in names)
+
+
+@launch.command()
+@click.argument("file", metavar="FILE", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "-o", "--output", "target", metavar="GRAPH.yaml", type=click.Path(path_type=Path), help="Write to a file."
+)
+def convert(file: Path, target: Path | None) -> int:
+    """Write a launch file in Python, XML or YAML as a graph file.
+
+    What a graph file has no words for is listed with its line. One in Python is run, in a process of its own, against
+    stand-ins for ROS's launch packages; so do not convert what you do not trust.
+
+    Exit code 0: all of it is there; 1: something is not.
+    """
+    from graphflow.launchfiles.conversion import FROM_LAUNCH
+    from graphflow.launchfiles.reading import read
+    from graphflow.supervisor.launching.launch_python import described
+    from graphflow.workspace.project import shown
+
+    problems: list[Problem] = []
+
+    def complain(place: Any, message: str) -> None:
+        problems.append(Problem(place, message))
+
+    if target is not None and target.exists():
+        raise UsageFault(f"{target} is there already; remove it, or name another file")
+    top = read(file, shown(file), complain, complain, described, remark=complain, leave_out=complain)
+    text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top.without(FROM_LAUNCH))}"
+    if target is None:
+        output.lines(text.rstrip("\n").split("\n"))
+    else:
+        target.write_text(text, encoding="utf-8")
+        output.talk(f"{target}: written; try it with: graphflow check {target}")
+    for problem in sorted(set(problems)):
+        output.talk(str(problem))
+    return exits.FAILED if problems else exits.OK
+
+
+def _yaml(top: Item) -> str:
+    """A tree as YAML that reads back as the same."""
+    import yaml
+
+    from graphflow.markup.source import scalar
+    from graphflow.markup.substitutions import Written
+
+    class Dumper(yaml.SafeDumper):
+        """Quotes every text that YAML 1.2 reads as something else."""
+
+        def ignore_aliases(self, data: Any) -> bool:
+            return True
+
+    def text(dumper: yaml.SafeDumper, value: str) -> yaml.ScalarNode:
+        try:
+            is_text = isinstance(scalar(value), str)
+        except ValueError:
+            is_text = False
+        return dumper.represent_scalar("tag:yaml.org,2002:str", value, style=None if is_text else "'")
+
+    Dumper.add_representer(str, text)
+    Dumper.add_representer(Written, lambda dumper, value: dumper.represent_data(value.value))
+    return yaml.dump(
+        top.plain(), Dumper=Dumper, sort_keys=False, default_flow_style=None, width=110, allow_unicode=True
+    )

@@ -1,0 +1,129 @@
+"""`graphflow pkg list`, `executables`, `prefix`, `xml` and `create`: ROS 2's words for what a project has."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.messages.types import use_project
+from graphflow.cli.projects.creating import create
+from graphflow.cli.verbs import Verbs
+from graphflow.errors import UsageFault
+from graphflow.names import did_you_mean
+from graphflow.reading import found_text
+
+
+@click.group(cls=Verbs)
+def pkg() -> None:
+    """List packages and what is in them, or make one."""
+
+
+def _root() -> Path:
+    from graphflow.workspace.project import project_root
+
+    return project_root(Path.cwd())
+
+
+def _known() -> list[str]:
+    """Packages of nodes that come with graphflow, of the project, and those that have types."""
+    from graphflow.msgs import registry
+    from graphflow.workspace.executables import project_packages, with_graphflow
+    from graphflow.workspace.installed import installed
+
+    use_project()
+    return sorted(
+        {package for package, _ in with_graphflow()} | {*project_packages(_root()), *installed(), *registry.packages()}
+    )
+
+
+def _hint(package: str) -> str:
+    """Why there is no package of a name: the state of the folder that has it, or else the name that is meant."""
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.unfound import why_no_package
+
+    known = _known()
+    why = None if package in known else why_no_package(package, find_workspace(Path.cwd()))
+    return did_you_mean(package, known) if why is None else f": {why}"
+
+
+@pkg.command("list")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def list_(as_json: bool) -> None:
+    """List the packages that are known here."""
+    output.listing(_known(), json=as_json)
+
+
+@pkg.command()
+@click.argument("package", default="")
+@click.option("--full-path", is_flag=True, help="Where each is.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def executables(package: str, full_path: bool, as_json: bool) -> int:
+    """List what `graphflow run PACKAGE EXECUTABLE` can start."""
+    from graphflow.workspace.executables import all_executables
+    from graphflow.workspace.packages import find_workspace
+
+    rows = [row for row in all_executables(_root()) if package in ("", row.package)]
+    own = find_workspace(Path.cwd()).packages.get(package)
+    for fault in own.faults if own is not None else ():
+        output.error(fault)
+    if not rows and package in _known():
+        output.talk(f"the package {package!r} has no executable that graphflow can run")
+        return exits.OK
+    if not rows:
+        output.error(f"Package '{package}' not found{_hint(package)}")
+        return exits.FAILED
+    if as_json:
+        output.as_json([{"package": r.package, "name": r.name, "class": r.class_path} for r in rows])
+        return exits.OK
+    for row in rows:
+        where = row.class_path.partition(":")[0].replace(".", "/")
+        output.data(f"{where}.py" if full_path else f"{row.package} {row.name}")
+    return exits.OK
+
+
+@pkg.command()
+@click.argument("package")
+@click.option("--share", is_flag=True, help="The folder of its files.")
+def prefix(package: str, share: bool) -> int:
+    """Print where a package is."""
+    from graphflow.workspace.executables import EXECUTABLES, package_prefix, package_share
+    from graphflow.workspace.project import demos_root
+
+    found = (package_share if share else package_prefix)(package, _root(), os.environ)
+    if found is None and any(package == known for known, _ in EXECUTABLES):
+        found = demos_root()
+    if found is None:
+        output.error(f"Package not found{_hint(package)}")
+        return exits.FAILED
+    output.data(str(found))
+    return exits.OK
+
+
+@pkg.command()
+@click.argument("package")
+@click.option("-t", "--tag", help="Only what this tag has.")
+def xml(package: str, tag: str | None) -> int:
+    """Print a package's package.xml."""
+    from graphflow.workspace.executables import package_share
+
+    folder = package_share(package, _root(), os.environ)
+    file = folder / "package.xml" if folder is not None else None
+    if file is None or not file.is_file():
+        output.error(f"{package}: no package.xml was found{_hint(package)}")
+        return exits.FAILED
+    text = found_text(file, "replace")
+    if tag is None:
+        output.data(text.rstrip("\n"))
+        return exits.OK
+    found = re.findall(rf"<{re.escape(tag)}(?:\s[^>]*)?>(.*?)</{re.escape(tag)}>", text, re.DOTALL)
+    if not found:
+        raise UsageFault(f"{file} has no tag {tag!r}")
+    output.lines(word.strip() for word in found)
+    return exits.OK
+
+
+pkg.add_command(create)

@@ -1,0 +1,71 @@
+"""Node states from the supervisors of the graphs here, for `graphflow doctor`: more than the network shows."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any, NamedTuple
+
+from graphflow.errors import SupervisorError
+from graphflow.supervisor import rundir
+from graphflow.supervisor.control.client import ControlClient
+from graphflow.wire.process import is_stopped
+
+LIMIT = 1.0
+"""Seconds that a supervisor has to answer."""
+_UNWELL = {
+    "unresponsive": "is unresponsive",
+    "failed": "has failed",
+    "given_up": "has failed",
+    "waiting": "has failed",
+}
+"""Faults, by the states of `ps`."""
+
+
+class Supervised(NamedTuple):
+    """Faults and notes."""
+
+    faults: list[str]
+    unseen: list[str]
+    """Nodes that run and cannot be seen on the network from here."""
+
+
+def supervised(seen: Collection[str]) -> Supervised:
+    """Faults that supervisors report.
+
+    Args:
+        seen: Nodes that the network shows.
+    """
+    found = Supervised([], [])
+    for run in rundir.running():
+        if not run.is_here:
+            continue
+        try:
+            with ControlClient(run.socket) as client:
+                client.send(do="ps")
+                rows = (next(client.receive(LIMIT), None) or {}).get("nodes", [])
+        except SupervisorError:
+            resume = f"; it is stopped: kill -CONT {run.pid}" if is_stopped(run.pid) else ""
+            found.faults.append(f"the supervisor of graph {run.graph} (process {run.pid}) does not answer{resume}")
+            continue
+        found.faults.extend(faults(rows))
+        found.unseen.extend(unseen(rows, seen))
+    return found
+
+
+def faults(rows: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Nodes that have ended badly, say nothing, or are stopped."""
+    found = []
+    for row in rows:
+        pid = row["pid"]
+        if pid and is_stopped(pid):
+            found.append(f"{row['node']} (process {pid}) is stopped: kill -CONT {pid}")
+        elif row["state"] in _UNWELL:
+            why = row["detail"] or "its log says why"
+            found.append(f"{row['node']} {_UNWELL[row['state']]}: {why}: graphflow logs {row['node']}")
+    return found
+
+
+def unseen(rows: Iterable[Mapping[str, Any]], seen: Collection[str]) -> list[str]:
+    """Nodes that run well for their supervisor, and which the network does not show."""
+    lost = [r["node"] for r in rows if r["is_named"] and r["state"] == "ready" and r["node"] not in seen]
+    return [f"not seen on the network, though their supervisor has them as ready: {', '.join(lost)}"] if lost else []

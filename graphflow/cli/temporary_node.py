@@ -1,0 +1,70 @@
+"""Commands that take part in the graph for a while: a hidden node, until Ctrl-C or until its work is done."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
+
+from graphflow.cli import output
+from graphflow.runtime.context import Context
+from graphflow.runtime.ending import catch_signals
+from graphflow.runtime.node import Node
+from graphflow.runtime.node_core import core_of
+from graphflow.transport import loop
+
+
+def visit(
+    work: Callable[[Node], Awaitable[int]],
+    name: str | None = None,
+    *,
+    has_services: bool = False,
+    parameters: Mapping[str, Any] | None = None,
+) -> int:
+    """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0.
+
+    Args:
+        name: Of the node, which is not hidden then.
+        parameters: Values for its parameters.
+        has_services: Whether it has the services of any node, such as those for parameters and definitions.
+    """
+    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services, parameters or {}))
+
+
+class _Talk(logging.Handler):
+    """Tells what goes wrong in the words of a command; they may come from other processes."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        output.talk(self.format(record))
+
+
+async def _visit(
+    work: Callable[[Node], Awaitable[int]], name: str, has_services: bool, parameters: Mapping[str, Any]
+) -> int:
+    stop = asyncio.Event()
+    catch_signals(stop)
+    context = await Context.open()
+    context.unmatched.close()  # verbs tell it themselves
+    context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
+    talk = _Talk(logging.WARNING)
+    logging.getLogger("graphflow").addHandler(talk)
+    node: Node | None = None
+    try:
+        node = Node(name, start_parameter_services=has_services, enable_rosout=False, **parameters)
+        await core_of(node).start(context)
+        task = asyncio.ensure_future(work(node))
+        stopped = asyncio.ensure_future(stop.wait())
+        await asyncio.wait([task, stopped], return_when=asyncio.FIRST_COMPLETED)
+        stopped.cancel()
+        if task.done():
+            return task.result()
+        task.cancel()
+        await asyncio.wait([task])
+        return 0 if task.cancelled() else task.result()
+    finally:
+        if node is not None:
+            await core_of(node).stop()
+        await context.close()
+        logging.getLogger("graphflow").removeHandler(talk)

@@ -1,0 +1,1 @@
+"""Mistakes in graph files: keys and types (`validation`), order, loose ends, and what classes lack (`check`)."""

@@ -1,0 +1,142 @@
+"""Loose ends of a plan: names with no counterpart in the graph, and classes that an included file may not mean.
+
+Each may be meant so, and none is a mistake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from graphflow.errors import Place, Problem
+from graphflow.graph.checks.check import Interfaces, remarks_on_programs, resolver
+from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep
+from graphflow.interface import EndpointKind, Interface, may_make
+from graphflow.names import Kind, nearest
+from graphflow.workspace.project import project_root, shown
+
+_OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
+    "publisher": ("subscription", "subscribes to"),
+    "subscription": ("publisher", "publishes"),
+    "client": ("service", "offers the service"),
+    "service": ("client", "calls"),
+    "action client": ("action", "offers the action"),
+    "action": ("action client", "sends goals to"),
+}
+_NEEDS_ONE = ("subscription", "client", "action client")
+"""Endpoints that do nothing without a counterpart; the others may serve something outside of the graph."""
+_STEPS: Mapping[Deed, EndpointKind] = {"call": "client", "goal": "action client"}
+_EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
+"""Topics that tools and every node use."""
+
+
+class _End(NamedTuple):
+    """One use of a name by a node."""
+
+    kind: EndpointKind
+    name: str
+    type: str
+    remapped_at: Place | None
+    place: Place
+
+
+def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
+    """Names that nothing in the graph answers to, of steps, of remaps, and of endpoints that have a near namesake; and
+    classes of included files whose own project has another of that name, and words that are a shell's.
+
+    No names are told of a graph with programs, or with classes that cannot be imported: their names are unknown.
+    """
+    classes = [*_of_classes(plan, interfaces), *remarks_on_programs(plan)]
+    known = [found for found in interfaces.values() if isinstance(found, Interface)]
+    if len(known) < len(interfaces) or any(node.command for node in plan.nodes):
+        return classes
+    ends = [end for node in plan.nodes for end in _ends(node, interfaces)]
+    made = [interface.dynamic_names for interface in known]
+    found = [*_of_steps(plan, ends), *_of_nodes(ends)]
+    return classes + [problem for name, problem in found if not any(may_make(names, name) for names in made)]
+
+
+def _of_classes(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """Classes that come from this graph's project, though the project of the file that names them has its own."""
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if not isinstance(interface, Interface) or not node.class_place.file:
+            continue
+        root = project_root(Path(node.class_place.file))
+        stem = root.joinpath(*node.class_path.partition(":")[0].split("."))
+        own = next((file for file in (stem.with_suffix(".py"), stem / "__init__.py") if file.is_file()), None)
+        taken = Path(interface.place.file)
+        if own is not None and str(root) != plan.root and not own.samefile(taken):
+            text = (
+                f"{node.class_path} is that of {shown(taken)}, not that of this file's project, {shown(own)}: "
+                "graphs cannot mix modules of one name; give one of the two packages another name"
+            )
+            yield Problem(node.class_place, text)
+
+
+def _ends(node: PlannedNode, interfaces: Interfaces) -> Iterator[_End]:
+    interface = interfaces[node.class_path]
+    assert isinstance(interface, Interface)
+    names = resolver(node)
+    for endpoint in interface.endpoints:
+        kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
+        name, full = names.resolve(endpoint.name, kind), names.full(endpoint.name)
+        rules = (rule.place for rule in node.remaps if name != full and names.pattern(rule.match).fullmatch(full))
+        yield _End(endpoint.kind, name, endpoint.type, next(rules, None), endpoint.place)
+
+
+def _of_steps(plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:
+    for step in plan.steps:
+        kind = _STEPS.get(step.do)
+        if step.do == "wait":
+            yield from _of_wait(step, plan, ends)
+        elif kind is not None and not any(step.target.startswith(f"{node.name}/") for node in plan.nodes):
+            # A step that gives the type may mean one outside the graph; one without was checked.
+            end = _End(kind, step.target, "", None, step.target_place)
+            if near := _nearest(step.target, _others(end, ends)):
+                yield step.target, Problem(step.target_place, _text(end, near))
+
+
+def _of_wait(step: PlannedStep, plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:
+    known = {node.name for node in plan.nodes} | {end.name for end in ends}
+    if step.target not in (*known, *_EVERYWHERE):
+        hint = _hint(_nearest(step.target, known))
+        yield step.target, Problem(step.target_place, f"nothing in this graph is called {step.target}{hint}")
+
+
+def _of_nodes(ends: list[_End]) -> Iterator[tuple[str, Problem]]:
+    """Remapped names without a counterpart, and other names where one is spelt almost so; a pair is told once."""
+    told: set[str] = set()
+    for end in sorted(ends, key=lambda end: (end.remapped_at is None, end.kind not in _NEEDS_ONE)):
+        others = _others(end, ends)
+        if end.name in others or end.name in _EVERYWHERE:
+            continue
+        near = _nearest(end.name, others - {same.name for same in ends if same.kind == end.kind})
+        if near not in told if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
+            told.add(end.name)
+            yield end.name, Problem(end.remapped_at or end.place, _text(end, near))
+
+
+def _others(end: _End, ends: list[_End]) -> set[str]:
+    """The names under which there is a counterpart of that type."""
+    other, _ = _OTHER_END[end.kind]
+    return {known.name for known in ends if known.kind == other and (not end.type or known.type in ("", end.type))}
+
+
+def _text(end: _End, near: str) -> str:
+    return f"no node of this graph {_OTHER_END[end.kind][1]} {end.name}{_hint(near)}"
+
+
+def _hint(near: str) -> str:
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def _nearest(name: str, known: set[str]) -> str:
+    """The name that another is a misspelling of; empty if there is none, or if only numbers tell them apart."""
+    found = "" if name in known else nearest(name, known, cutoff=0.8) or ""
+    return "" if _without_digits(found) == _without_digits(name) else found
+
+
+def _without_digits(name: str) -> str:
+    return "".join(letter for letter in name if not letter.isdigit())

@@ -1,0 +1,135 @@
+"""Values of a graph file in the shape that other tools have for them, written anew: a list of pairs, a line of a shell.
+
+params: [{rate: 2.0}]                    ->   params: {rate: 2.0}          (launch files in Python)
+env: [DISPLAY=:0]                        ->   env: {DISPLAY: ":0"}         (docker-compose)
+remap: [{from: chatter, to: news}]       ->   remap: {chatter: news}       (launch files in XML and YAML)
+command: cd /tmp && ls                   ->   command: [sh, -c, cd /tmp && ls]
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import yaml
+
+MAX_SHOWN = 120
+"""Characters of a line that is shown; longer ones would hide the sentence around them."""
+_MAPPINGS = ("params", "remap", "env", "args", "request")
+_PAIR = re.compile(r"([^\s=:]+)(?::=|=|: *| *-> *)(.*)", re.DOTALL)
+"""A name and its value in one word."""
+_NAMES = ("name", "from", "key")
+_VALUES = ("value", "to", "default")
+_SHELL_WORDS = frozenset(("&&", "||", "|", ">", ">>", "<", "2>", "2>&1", ";", "&"))
+"""Words that only a shell understands."""
+_OF_THEIR_OWN = frozenset(("expr", "test", "[", "find", "xargs", "jq", "awk", "sed", "grep"))
+"""Programs that take such words themselves."""
+_BUILT_IN = frozenset(("cd", "source", ".", "export", "alias", "ulimit", "unset"))
+"""Commands of a shell that are no programs."""
+_IN_A_LINE = re.compile(r"&&|\|\||[|<>;]|\s&\s*$")
+
+
+def line_for(key: str, value: object) -> str:
+    """The line to write for a value; empty where that is not known, or too long to show.
+
+    Args:
+        key: The key that it stands under.
+    """
+    made: Any = None
+    if key in _MAPPINGS:
+        made = _mapping(value)
+    elif key == "nodes" and isinstance(value, list):
+        made = _by_name(value)
+    elif key == "command" and isinstance(value, str):
+        return f"command: {command_of(value)}"
+    elif key in ("wait", "goal", "call") and isinstance(value, dict) and value:
+        key, made = "request", value
+    elif key == "wait" and isinstance(value, (int, float)) and not isinstance(value, bool):
+        return f"delay: {value}"
+    if not made:
+        return ""
+    line = f"{key}: {flow(made)}"
+    if len(line) > MAX_SHOWN and len(made) > 1:
+        line = f"{key}: {flow(dict([next(iter(made.items()))]))[:-1]}, ...}}"
+    return line if len(line) <= MAX_SHOWN else ""
+
+
+def flow(value: object) -> str:
+    """A mapping or list as YAML on one line."""
+    return str(yaml.safe_dump(value, default_flow_style=True, width=10**6, sort_keys=False, allow_unicode=True)).strip()
+
+
+def command_of(line: str) -> str:
+    """A command line as a list in YAML, for a shell where only that understands it."""
+    try:
+        words = shlex.split(line)
+    except ValueError:  # a quote that is not closed
+        words = line.split()
+    needs_shell = words[:1] and (words[0] in _BUILT_IN or _IN_A_LINE.search(line))
+    return flow(["sh", "-c", line] if needs_shell else words)
+
+
+def shell_word(words: Sequence[object]) -> str:
+    """The first word of a command that only a shell understands; empty if there is none, or if the program may."""
+    program = str(words[0]).rpartition("/")[2] if words else ""
+    if program in _OF_THEIR_OWN:
+        return ""
+    return program if program in _BUILT_IN else next((str(word) for word in words if word in _SHELL_WORDS), "")
+
+
+def in_shell(words: Sequence[object]) -> str:
+    """The command of a shell that understands all words of a command."""
+    texts = [str(word) if word in _SHELL_WORDS else shlex.quote(str(word)) for word in words]
+    return flow(["sh", "-c", " ".join(texts)])
+
+
+def _mapping(value: object) -> dict[str, Any] | None:
+    """The mapping that a list of pairs is; None for anything else."""
+    found: dict[str, Any] = {}
+    for one in value if isinstance(value, list) else [value]:
+        pairs = list(_pairs(one))
+        if not pairs:
+            return None
+        found.update(pairs)
+    return found
+
+
+def _pairs(one: object) -> Iterator[tuple[str, Any]]:
+    match one:
+        case str() if (pair := _PAIR.fullmatch(one)) is not None:
+            yield pair[1], _plain(pair[2])
+        case [str() as name, str() | int() | float() as value]:
+            yield name, value
+        case dict():
+            named = next((key for key in _NAMES if isinstance(one.get(key), str)), None)
+            key = next((key for key in _VALUES if key in one), None)
+            if named is not None and key is not None:
+                yield one[named], one[key]
+            elif not one.keys() & {*_NAMES, *_VALUES}:
+                yield from one.items()
+
+
+def _plain(text: str) -> Any:
+    """The value of a text, where that is a scalar."""
+    from graphflow.markup.source import scalar
+
+    try:
+        return scalar(text)
+    except ValueError:
+        return text
+
+
+def _by_name(nodes: list[Any]) -> dict[str, Any] | None:
+    """Nodes by their names, which stand in each of them."""
+    found: dict[str, Any] = {}
+    for node in nodes:
+        match node:
+            case {"name": str() as name, **others}:
+                found[f"/{name.lstrip('/')}"] = others
+            case dict() if len(node) == 1 and isinstance(next(iter(node.values())), dict):
+                found |= node
+            case _:
+                return None
+    return found

@@ -1,0 +1,289 @@
+"""What the model finds wrong in a graph file, in words: unknown and missing keys, wrong types, what was meant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, TypeVar, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.graph.checks import foreign_keys, rewritten
+from graphflow.graph.model import BLOCKS, GroupBlock, NodeSpec, keys_of
+from graphflow.markup import source
+from graphflow.markup.source import Source
+from graphflow.names import did_you_mean, nearest
+from graphflow.typographic import is_quoted
+
+M = TypeVar("M", bound=BaseModel)
+
+
+class Problems(list[Problem]):
+    """The mistakes found so far; a place that is known to be wrong is reported once."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._unknown: set[Place] = set()
+        self._of_nodes: dict[str, list[Problem]] = {}
+        self.launch_files: set[str] = set()
+        """Files of ROS's, whose users expect that what ROS lets pass is let pass."""
+        self.remarks: list[Problem] = []
+        """What was let pass."""
+        self.left_out: list[Problem] = []
+        """Programs that launch files start and nobody here has."""
+
+    def add(self, place: Place, message: str) -> None:
+        """Add a problem."""
+        problem = Problem(place, f"{message}{_of_quotes(message)}")
+        if place not in self._unknown and problem not in self:  # each round of a loop has the same
+            self.append(problem)
+
+    def add_unless_ros(self, place: Place, message: str) -> bool:
+        """Add what ROS lets pass: a remark in a launch file of ROS's, else a problem. Whether it is let pass."""
+        passes = place.file in self.launch_files
+        if not passes:
+            self.add(place, message)
+        else:
+            self.remark(place, message)
+        return passes
+
+    def remark(self, place: Place, message: str) -> None:
+        """Add what is let pass."""
+        if Problem(place, message) not in self.remarks:
+            self.remarks.append(Problem(place, message))
+
+    def leave_out(self, place: Place, message: str) -> None:
+        """Add what nobody here has: a remark if anything else is started, else a problem."""
+        if Problem(place, message) not in self.left_out:
+            self.left_out.append(Problem(place, message))
+
+    def add_unknown(self, place: Place, message: str) -> None:
+        """Add a problem that leaves the value unknown: further reports about it would only confuse."""
+        self.add(place, message)
+        self._unknown.add(place)
+
+    @contextmanager
+    def of_node(self, name: str) -> Iterator[None]:
+        """What is added within belongs to a node."""
+        known = len(self)
+        yield
+        self._of_nodes[name] = self[known:]
+
+    def excuse(self, names: Iterable[str]) -> None:
+        """Forget what belongs to nodes that are left out."""
+        forgotten = [fault for name in names for fault in self._of_nodes.get(name, ())]
+        self[:] = [problem for problem in self if problem not in forgotten]
+
+    def raise_any(self) -> None:
+        """Raise GraphFileError if there are any."""
+        if self:
+            raise GraphFileError(self)
+
+
+def validated(model: type[M], src: Source, problems: Problems) -> M | None:
+    """The model of a file or block; None, with problems added, where its keys or types are wrong."""
+    try:
+        return model.model_validate(src.data)
+    except ValidationError as error:
+        faults = [(_written_path(src, fault), fault) for fault in error.errors()]
+    wanted: dict[source.Path, list[str]] = {}
+    strays = {path[:2]: str(path[1]).lstrip("/") for path, fault in faults if _is_stray(path, fault)}
+    for path, key in strays.items():
+        problems.add(src.key_place(path), _belongs_to_a_node(key))
+    faults = [(path, fault) for path, fault in faults if path[:2] not in strays]
+    paths = [path for path, _ in faults]
+    for path, fault in faults:
+        # Alternatives of a union report once each; the one that got furthest was meant.
+        if not any(other[: len(path)] == path and other != path for other in paths):
+            wanted.setdefault(path, []).append(_wanted(fault))
+    for path, fault in faults:
+        if fault["type"] == "missing":
+            if not _misspelt(model, str(path[-1]), path[:-1], faults):
+                others = "; a program has pkg: and exec:, or command:" if path[-1] == "class" else ""
+                problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing{others}")
+        elif fault["type"] == "extra_forbidden":
+            problems.add(src.key_place(path), unknown_key(str(path[-1]), _known_keys(model, path), fault["input"]))
+        elif fault["type"] == "value_error":
+            problems.add(src.place(path), str(fault["ctx"]["error"]))
+        elif path in wanted:
+            problems.add(src.place(path), _wrong_type(model, path, wanted.pop(path), fault["input"]))
+    return None
+
+
+def _written_path(src: Source, fault: Any) -> source.Path:
+    """Where in the file a fault is, without the parts that name an alternative of a union."""
+    path: source.Path = ()
+    for part in fault["loc"]:
+        if (*path, part) in src.places or (*path, part) in src.keys:
+            path = (*path, part)
+    return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
+
+
+def _is_stray(path: source.Path, fault: Any) -> bool:
+    """Whether what stands among the nodes is a key of a node: one of its name, and without a class."""
+    if len(path) < 2 or path[0] != "nodes" or str(path[1]).lstrip("/") not in keys_of(NodeSpec):
+        return False
+    return len(path) == 2 or (len(path) == 3 and path[2] == "class" and fault["type"] == "missing")
+
+
+def _belongs_to_a_node(key: str) -> str:
+    several = ", or for several nodes into a group: with its nodes:" if key in keys_of(GroupBlock) else ""
+    return f"{key}: belongs to a node; indent it below the node's name, beside class:{several}"
+
+
+def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
+    """Whether a missing key is in fact there, with a typo that is reported anyway."""
+    unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
+    of_ros = key == "class" and not {"package", "executable"}.isdisjoint(unknown)
+    of_ros = of_ros or any(foreign_keys.meant(word, [key]) for word in unknown)
+    return of_ros or any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
+
+
+def _known_keys(model: type[BaseModel], path: source.Path) -> list[str]:
+    """The keys of the model that a path leads to, without its last part."""
+    found: Any = model
+    for part in path[:-1]:
+        if _is_model(found):
+            fields = {field.alias or name: field.annotation for name, field in found.model_fields.items()}
+            found = fields.get(str(part))
+        else:  # a mapping or a list: what it holds
+            found = get_args(found)[-1] if get_args(found) else None
+        if get_origin(found) not in (dict, list):
+            found = next(filter(_is_model, get_args(found)), found)
+    return keys_of(found) if _is_model(found) else []
+
+
+def _is_model(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, BaseModel)
+
+
+def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
+    """The error text for an unknown key, with the key that was probably meant.
+
+    Args:
+        value: What is written under it.
+    """
+    head = key.partition(":")[0]
+    if "nodes" in known and isinstance(value, dict) and "ros__parameters" in value:
+        return (
+            f"unknown key {key!r}; this is a file of parameters: a node of a graph file has params_file: FILE, and run "
+            "takes --params-file FILE"
+        )
+    if "nodes" in known and _is_node(key, value):
+        return f"unknown key {key!r}; nodes are written under nodes:, indented"
+    if instead := foreign_keys.meant(key, known):
+        return f"unknown key {key!r}; {instead}"
+    if "for" in known and (loop := _LOOP.match(key)):
+        return f"unknown key {key!r}; write for: {{var: {loop[1]}, in: {loop[2]}, nodes: ...}}"
+    if "namespace" in known and isinstance(value, dict) and not value.keys().isdisjoint(BLOCKS):
+        return f"unknown key {key!r}; a group is named by its namespace: group: {{namespace: {key}, nodes: ...}}"
+    if "call" in known and key.startswith("pub"):
+        return f"unknown key {key!r}; no step publishes: let a node do it, or graphflow topic pub"
+    if "call" in known and key in _REQUESTS:
+        return f"unknown key {key!r}; the values of a call or a goal are written under request:"
+    if "nodes" in known and key in keys_of(NodeSpec):
+        return _belongs_to_a_node(key)
+    if head in known and head != key:
+        return f"unknown key {key!r}; write a space after '{head}:'"
+    if "params" in known and isinstance(value, (bool, int, float)) and nearest(key, known, cutoff=0.75) is None:
+        return (
+            f"unknown key {key!r}; a parameter is written under params:, as in params: {{{key}: {str(value).lower()}}}"
+        )
+    listed = did_you_mean(key, known) or "; there is " + ", ".join(sorted(known))
+    return f"unknown key {key!r}{listed}"
+
+
+def colon_fault(key: str) -> str:
+    """The fault of the colon that should end a node's name; empty for none."""
+    if ":" in key:
+        return f"the name {key!r} has a colon in it; write a space after the colon that ends a key"
+    name, brace, _ = key.partition("{")
+    return f"a colon is missing after {name.rstrip()!r}" if brace else ""
+
+
+def _is_node(key: str, value: object) -> bool:
+    return key.startswith("/") or (isinstance(value, dict) and not {"class", "exec", "command"}.isdisjoint(value))
+
+
+_REQUESTS = ("args", "arguments", "data", "fields", "values")
+_LOOP = re.compile(r"for +(\w+) +in +(.+)")
+
+
+def _wanted(fault: Any) -> str:
+    limits = fault.get("ctx", {})
+    words = {
+        "dict_type": "a mapping",
+        "model_type": "a mapping",
+        "string_type": "text",
+        "list_type": "a list",
+        "int_type": "a whole number",
+        "float_type": "a number",
+        "bool_type": "true or false",
+        "greater_than": f"more than {limits.get('gt', 0):g}",
+        "greater_than_equal": f"{limits.get('ge', 0):g} or more",
+        "finite_number": "a finite number",
+    }
+    return words.get(fault["type"], str(fault["msg"]))
+
+
+def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], value: Any) -> str:
+    if "a number" in wanted:
+        wanted = [w for w in wanted if w != "a whole number"]
+    parts = path[2:] if path[0] in ("nodes", "steps") and len(path) > 2 else path[-1:] if path[0] == "nodes" else path
+    where = ".".join(str(p) for p in parts)
+    text = " or ".join(dict.fromkeys(wanted))
+    head = str(value).partition(":")[0]
+    if isinstance(value, str) and head in _known_keys(model, (*path, head)):
+        return f"{where}: write a space after '{head}:'"
+    if line := rewritten.line_for(str(path[-1]), value):
+        return f"{where}: expected {text}; write {line}"
+    if len(path) == 2 and path[0] == "args" and not isinstance(value, (dict, list)):
+        return f"{where}: expected {text}; write {path[1]}: {rewritten.flow({'default': value})}"
+    got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
+    return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
+
+
+_SHOWN = {None: "nothing", True: "true", False: "false"}
+_EXAMPLES: dict[source.Path, str] = {
+    ("args",): "args: {rate: {default: 1.0}}",
+    ("args", ""): "{default: 1.0}",
+    ("nodes",): "nodes: {/talker: {class: nodes.talker:Talker}}",
+    ("nodes", ""): "{class: nodes.talker:Talker}",
+    ("nodes", "", "params"): "params: {rate: 2.0}",
+    ("nodes", "", "params_file"): "params_file: params.yaml",
+    ("nodes", "", "remap"): "remap: {goal: /turtle1/pose}",
+    ("nodes", "", "env"): "env: {LANG: C}",
+    ("nodes", "", "after"): "after: /talker",
+    ("nodes", "", "concurrency"): "concurrency: {motion: [control]}",
+    ("nodes", "", "concurrency", ""): "motion: [control], or motion: {handlers: [control], limit: 2}",
+    ("nodes", "", "command"): "command: [rviz2, -d, robot.rviz]",
+    ("nodes", "", "args"): "args: [--fast, 3]",
+    ("nodes", "", "restart"): "restart: on_failure, or restart: {policy: always, delay: 1.0}",
+    ("group",): "group: {namespace: robot1, nodes: {talker: {class: nodes.talker:Talker}}}",
+    ("for",): "for: {var: i, in: 1..3, nodes: {/talker$(var i): {class: nodes.talker:Talker}}}",
+    ("include",): "include: base.yaml, or include: {file: base.yaml, args: {rate: 2.0}}",
+    ("steps",): "steps: {spawn: {call: /spawn}}",
+    ("steps", ""): "{call: /spawn}",
+    ("steps", "", "request"): "request: {x: 1.0}",
+}
+
+
+def example(*path: str | int) -> str:
+    """An example of what may stand at a path, to end a report with; empty if there is none."""
+    shape = tuple("" if i in (1, 3) else part for i, part in enumerate(path))
+    return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
+
+
+_TEXT = re.compile(r"'([^']*)'")
+
+
+def _of_quotes(message: str) -> str:
+    """The end of a message about a text in quotes, or with a space, that YAML does not take for any."""
+    if "\\xa0" in message:
+        return " (\\xa0 is a no-break space, which is none in YAML)"
+    for found in _TEXT.findall(message):
+        if is_quoted(text := found.strip("/: ")):
+            return f" ({text[0]} and {text[-1]} are no quotes in YAML, which has ' and \")"
+    return ""

@@ -1,0 +1,194 @@
+"""Uses of substitutions in launch files before they have a value: `if LaunchConfiguration('sim'):` is always true.
+
+They have none while the description is made, and ROS 2 says nothing: a test is true as of any object, a comparison with
+a text false, and `str` makes the name of an object.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+
+from graphflow.launchfiles.python.names import NAMES
+
+_CONDITIONS = NAMES["launch.conditions"].split()
+_SUBSTITUTIONS = (NAMES["launch.substitutions"] + " " + NAMES["launch_ros.substitutions"]).split()
+_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+
+
+def early_uses(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """The lines of such uses, each with what to write."""
+    yield from _of_scope(tree, {})
+
+
+def _of_scope(scope: ast.AST, outer: dict[str, ast.Call]) -> Iterator[tuple[int, str]]:
+    """Those of a module or function, and of the functions in it.
+
+    Args:
+        outer: Names of the scope around it that are substitutions, with the calls that make them.
+    """
+    nodes = list(_own(scope))
+    known = {name: call for name, call in outer.items() if name not in _bound(scope, nodes)} | _made(scope, nodes)
+    performs = isinstance(scope, _SCOPES) and any(arg.arg == "context" for arg in scope.args.args)
+    seen: set[ast.AST] = set()  # what has been told of with what is around it
+    for node in nodes:
+        match node:
+            case ast.If(test=test) | ast.IfExp(test=test) | ast.While(test=test):
+                for part in _parts(test):
+                    seen |= {*ast.walk(part)}
+                    if text := _of_test(part, known, performs):
+                        yield part.lineno, text
+            case (
+                ast.Call(args=[argument], keywords=[])
+                | ast.Call(args=[], keywords=[ast.keyword(arg="predicate_expression", value=argument)])
+            ) if _name(node) in ("IfCondition", "UnlessCondition"):
+                way = None if _value(argument, known) else _way(argument, known)
+                if way is not None:
+                    seen |= {*ast.walk(argument)}
+                    shown = ast.unparse(argument)
+                    yield node.lineno, f"{shown} is decided before the launch has values: write {_name(node)}({way})"
+            case ast.Compare() if node not in seen and (way := _way(node, known)) is not None:
+                seen |= {*ast.walk(node)}
+                yield node.lineno, _compared(node, known, performs, way)
+            case ast.Call(func=ast.Name(id="str"), args=[argument], keywords=[]) if node not in seen and (
+                call := _value(argument, known)
+            ):
+                shown = ast.unparse(call)
+                way = f"{shown}.perform(context)" if performs else f"{shown} alone"
+                yield node.lineno, f"{shown} has no value yet, and str() makes the name of an object: write {way}"
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.Lambda():
+                yield from _of_scope(node, known)
+
+
+def _own(scope: ast.AST) -> Iterator[ast.AST]:
+    """What is in a scope; of functions in it, only themselves."""
+    todo = list(ast.iter_child_nodes(scope))
+    while todo:
+        node = todo.pop(0)
+        yield node
+        if not isinstance(node, _SCOPES):
+            todo += ast.iter_child_nodes(node)
+
+
+def _bound(scope: ast.AST, nodes: list[ast.AST]) -> set[str]:
+    """The names that a scope binds."""
+    arguments = scope.args if isinstance(scope, _SCOPES) else None
+    taken = {arg.arg for arg in ast.walk(arguments) if isinstance(arg, ast.arg)} if arguments is not None else set()
+    return taken | {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+
+
+def _made(scope: ast.AST, nodes: list[ast.AST]) -> dict[str, ast.Call]:
+    """The names that are bound once in a scope, and to a substitution."""
+    stores = [node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+    found: dict[str, ast.Call] = {}
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value) if stores.count(name) == 1:
+                if (call := _substitution(value)) is not None:
+                    found[name] = call
+    arguments = _bound(scope, [])
+    return {name: call for name, call in found.items() if name not in arguments}
+
+
+def _name(call: ast.Call) -> str:
+    """The name of what is called, without its modules."""
+    match call.func:
+        case ast.Name(id=name) | ast.Attribute(attr=name):
+            return name
+    return ""
+
+
+def _substitution(value: ast.expr) -> ast.Call | None:
+    """A call that makes a substitution or a condition."""
+    return value if isinstance(value, ast.Call) and _name(value) in (*_SUBSTITUTIONS, *_CONDITIONS) else None
+
+
+def _value(value: ast.expr, known: Mapping[str, ast.Call]) -> ast.Call | None:
+    """The call that makes a substitution or a condition, of an expression which is one."""
+    return known.get(value.id) if isinstance(value, ast.Name) else _substitution(value)
+
+
+def _as_text(value: ast.expr) -> ast.expr:
+    """What `str(...)` or an f-string around it makes a text of."""
+    match value:
+        case ast.Call(func=ast.Name(id="str"), args=[inner]):
+            return inner
+        case ast.JoinedStr(values=[ast.FormattedValue(value=inner)]):
+            return inner
+    return value
+
+
+def _parts(test: ast.expr) -> Iterator[ast.expr]:
+    """What a test asks."""
+    match test:
+        case ast.BoolOp(values=values):
+            for value in values:
+                yield from _parts(value)
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            yield from _parts(operand)
+        case _:
+            yield test
+
+
+def _way(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
+    """The substitution that does what is asked of substitutions; None where it is asked of anything else."""
+    match value:
+        case ast.BoolOp(op=op, values=values):
+            ways = [_way(part, known) for part in values]
+            kind = "And" if isinstance(op, ast.And) else "Or"
+            kind = (
+                f"{kind}Substitution" if len(ways) == 2 else {"And": "AllSubstitution", "Or": "AnySubstitution"}[kind]
+            )
+            return None if None in ways else f"{kind}({', '.join(map(str, ways))})"
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            way = _way(operand, known)
+            return None if way is None else f"NotSubstitution({way})"
+        case ast.Compare(left=left, ops=[ast.Eq() | ast.NotEq() as op], comparators=[right]):
+            sides = [_side(_as_text(side), known) for side in (left, right)]
+            is_of_one = any(_value(_as_text(side), known) for side in (left, right))
+            kind = "Equals" if isinstance(op, ast.Eq) else "NotEquals"
+            return f"{kind}Substitution({', '.join(map(str, sides))})" if is_of_one and None not in sides else None
+        case ast.Compare(
+            left=left, ops=[ast.In() | ast.NotIn() as op], comparators=[ast.Tuple() | ast.List() as among]
+        ):
+            shown, sides = _value(_as_text(left), known), [_side(side, known) for side in among.elts]
+            if shown is None or None in sides or not sides:
+                return None
+            way = f"AnySubstitution({', '.join(f'EqualsSubstitution({ast.unparse(shown)}, {side})' for side in sides)})"
+            return way if isinstance(op, ast.In) else f"NotSubstitution({way})"
+    return _side(value, known) if _value(value, known) is not None else None
+
+
+def _side(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
+    """A substitution or a literal, as substitutions take it."""
+    if isinstance(value, ast.Constant) and isinstance(value.value, (str, int, float)):
+        return repr(str(value.value).lower() if isinstance(value.value, bool) else str(value.value))
+    call = _value(value, known)
+    return None if call is None else ast.unparse(call)
+
+
+def _of_test(part: ast.expr, known: Mapping[str, ast.Call], performs: bool) -> str:
+    """What to say of a part of a test; empty for one whose outcome is not fixed."""
+    if isinstance(part, ast.Compare):
+        way = _way(part, known)
+        return "" if way is None else _compared(part, known, performs, f"condition=IfCondition({way}) at the action")
+    call = _value(part, known)
+    if call is None:
+        return ""
+    shown = ast.unparse(call)
+    way = f"condition={shown}" if _name(call) in _CONDITIONS else f"condition=IfCondition({shown})"
+    return f"{shown} has no value yet and is true in any test: write {way} at the action"
+
+
+def _compared(comparison: ast.Compare, known: Mapping[str, ast.Call], performs: bool, way: str) -> str:
+    """What to say of a comparison of a substitution.
+
+    Args:
+        performs: Whether it stands in a function that is given the context.
+    """
+    sides = [_as_text(side) for side in (comparison.left, comparison.comparators[0])]
+    call = next(call for side in sides if (call := _value(side, known)) is not None)
+    shown = ast.unparse(call)
+    if performs:
+        return f"{shown} is an object and equals no text: write {shown}.perform(context)"
+    return f"{shown} has no value yet and equals no text: write {way}"

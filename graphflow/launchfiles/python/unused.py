@@ -1,0 +1,49 @@
+"""Actions that a launch file makes and uses nowhere: `node = Node(...)`, and no `node` in the description."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from graphflow.launchfiles.python.names import NAMES
+
+_ACTIONS = {name for module in ("launch.actions", "launch_ros.actions") for name in NAMES[module].split()}
+
+
+class Unused(NamedTuple):
+    """One of them."""
+
+    line: int
+    message: str
+    argument: str
+    """The name of the argument that it declares; empty for other actions."""
+
+
+def unused_actions(tree: ast.Module) -> Iterator[Unused]:
+    """Those that are given a name which nothing in the file reads."""
+    read = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
+    if "locals" in read or "globals" in read:
+        return
+    for function in ast.walk(tree):
+        if not isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            continue
+        shared = {
+            name for node in ast.walk(function) if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names
+        }
+        for node in ast.walk(function):
+            match node:
+                case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=func) as call) if (
+                    name not in read | shared and ast.unparse(func).rpartition(".")[2] in _ACTIONS
+                ):
+                    kind = ast.unparse(func).rpartition(".")[2]
+                    text = f"{name} is in no description: write LaunchDescription([..., {name}])"
+                    yield Unused(node.lineno, text, _argument(call) if kind == "DeclareLaunchArgument" else "")
+
+
+def _argument(call: ast.Call) -> str:
+    named = [keyword.value for keyword in call.keywords if keyword.arg == "name"]
+    match [*call.args[:1], *named]:
+        case [ast.Constant(value=str(name))]:
+            return name
+    return ""

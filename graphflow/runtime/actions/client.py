@@ -1,0 +1,496 @@
+"""The client's side of actions: goals that are sent, followed, and cancelled when their block is left."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from asyncio import CancelledError, Future
+from collections import deque
+from collections.abc import AsyncIterator, Coroutine
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Generic
+
+from graphflow.errors import (
+    CallError,
+    CallTimeout,
+    ClosedError,
+    DecodeError,
+    EncodeError,
+    GoalAborted,
+    GoalCanceled,
+    GoalError,
+    GoalLost,
+    GoalRejected,
+    ServerBusy,
+    ServerLost,
+    ServiceUnavailable,
+)
+from graphflow.executor.ledger import PendingGoal
+from graphflow.interface import CALL_TIMEOUT
+from graphflow.machines.goal import CancelCode, GoalStatus
+from graphflow.msgs import registry
+from graphflow.msgs.base import Action, Feedback, Goal, Result
+from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.endpoints.serialized import RawSubscription
+from graphflow.runtime.endpoints.service_client import DISCOVERY_GRACE, ServiceClient
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.mistakes.network.other_domains import alone_here
+from graphflow.runtime.mistakes.network.unserved import Unserved, nobody_acts
+from graphflow.runtime.mistakes.unentered import Unentered
+from graphflow.runtime.part import Host, Part
+from graphflow.runtime.rclpy_words import MadeByNodes, SpeaksRos
+from graphflow.times import to_ns
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.goal_status import states_in
+from graphflow.wire.liveliness import Kind
+
+CANCEL_TIMEOUT = 2.0
+"""Seconds that leaving a goal's block waits for the goal's end."""
+_STATES = frozenset(state for state in GoalStatus if state >= 0)
+"""The states of ROS 2."""
+LOST_GRACE = 1.0
+"""Seconds in which a lost server may prove to be alive, and feedback may come after the result."""
+RESULT_PATIENCE, RESULT_LONGEST = 10.0, 600.0
+"""Seconds until a result is requested again: at first, and at most."""
+FEEDBACK_KEPT = 100
+"""Feedback messages kept for a slow reader; the oldest go first."""
+
+
+class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
+    """A goal at its client."""
+
+    def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
+        self.request = request
+        self.goal_id = os.urandom(16)
+        self.status = GoalStatus.UNKNOWN
+        """The goal's status as known here; `LOST` when the server has gone."""
+        self.latest: Feedback | None = None
+        """The last feedback."""
+        self.is_asked_again = False
+        self.dropped = 0
+        """Feedback messages that were not read in time."""
+        loop = client.host.context.loop
+        self.ended: Future[Result] = loop.create_future()
+        self._client = client
+        self._readers: list[tuple[deque[Feedback], list[Future[None]]]] = []
+        """For each iteration of the feedback: what it has not read, and what it waits for."""
+        self._unread: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
+        """Feedback that came before any iteration."""
+        self.action = client.name
+        self.began_ns = client.host.context.clock.monotonic_ns()
+
+    def __repr__(self) -> str:
+        return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
+
+    def _hint(self, name: str) -> str:
+        action: Any = self._client.type
+        if name in action.Result.__struct_fields__:
+            return f"that is the goal; its result is (await goal.result()).{name}"
+        is_told = name in action.Feedback.__struct_fields__
+        return "that is the goal; its feedback is read: async for feedback in goal.feedback():" if is_told else ""
+
+    @property
+    def done(self) -> bool:
+        """Whether the goal has ended."""
+        return self.status.is_terminal
+
+    async def feedback(self) -> AsyncIterator[Feedback]:
+        """Every feedback, until the goal ends; the first iteration begins with what has come before it."""
+        ledger, loop = self._client.host.context.ledger, self._client.host.context.loop
+        queue: deque[Feedback] = deque(self._unread, FEEDBACK_KEPT)
+        self._unread.clear()
+        reader: tuple[deque[Feedback], list[Future[None]]] = (queue, [])
+        self._readers.append(reader)
+        try:
+            while True:
+                while queue:
+                    yield queue.popleft()
+                if self.done:
+                    return
+                reader[1][:] = [news := loop.create_future()]
+                with ledger.goal(news, self):
+                    await news
+        finally:
+            self._readers.remove(reader)
+
+    async def result(self, *, timeout: float | None = None) -> Result:
+        """Wait for the result of a goal that succeeds.
+
+        Args:
+            timeout: Seconds; None to wait as long as it takes.
+
+        Raises:
+            GoalAborted, GoalCanceled: The goal ended so; the error's `result` is what the server sent with it.
+            GoalLost: The server has gone.
+            DeadlockError: The goal cannot end: the server waits for the caller, and the graph's policy is `break`.
+            TimeoutError: The goal has not ended in time, and goes on.
+        """
+        if timeout is not None:
+            async with self._client.host.clock.timeout(timeout):
+                return await self.result()
+        with self._client.host.context.ledger.goal(ended := asyncio.shield(self.ended), self):
+            return await ended
+
+    async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
+        """Ask the server to cancel the goal; returns whether it agrees. The goal ends later, perhaps another way.
+
+        Raises:
+            CallError: The server did not answer.
+        """
+        return await self._client.cancel(self, timeout=timeout)
+
+    def heard(self, feedback: Feedback) -> None:
+        """Feedback has come. Called by the client."""
+        self.latest = feedback
+        for queue in [queue for queue, _ in self._readers] or [self._unread]:
+            self.dropped += len(queue) == FEEDBACK_KEPT
+            queue.append(feedback)
+        self._wake()
+
+    def end(self, status: GoalStatus, result: Any, error: GoalError | None) -> None:
+        """The goal has ended. Called by the client."""
+        if self.done:
+            return
+        self.status = status
+        if not self.ended.done():
+            if error is None:
+                self.ended.set_result(result)
+            else:
+                self.ended.set_exception(error)
+                self.ended.exception()  # a caller that does not ask for the result does not get its error either
+        self._wake()
+
+    def _wake(self) -> None:
+        for _, waiting in self._readers:
+            for news in waiting:
+                if not news.done():
+                    news.set_result(None)
+
+
+class Sending(Unentered["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goal, Result, Feedback]):
+    """A goal for the length of a block; see `GoalClient.send`."""
+
+    def __init__(
+        self, client: GoalClient[Goal, Result, Feedback], goal: Goal, timeout: float | None, *, detach: bool
+    ) -> None:
+        super().__init__("`async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`")
+        self._client, self._goal, self._timeout, self._detach = client, goal, timeout, detach
+        self._sent: ClientGoalHandle[Goal, Result, Feedback] | None = None
+
+    async def __aenter__(self) -> ClientGoalHandle[Goal, Result, Feedback]:
+        self._is_known = True
+        self._sent = await self._client.send_goal(self._goal, timeout=self._timeout)
+        return self._sent
+
+    async def __aexit__(self, *_: object) -> None:
+        assert self._sent is not None
+        if not self._detach and not self._sent.done:
+            await self._client.leave(self._sent)
+
+    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
+
+        def __getattr__(self, name: str) -> object:
+            """Raise AttributeError: the goal is not sent yet."""
+            self._is_known = True
+            text = f"the goal is not sent yet, and has no {name!r}: write `async with client.send(goal) as sent:`"
+            raise AttributeError(text, name=name, obj=self)
+
+
+class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
+    """A client of an action, as it runs."""
+
+    MAKER = 'create_action_client(Type, "name")'
+
+    def __init__(self, host: Host, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
+        self.host, self.type, self.name = host, type_, name
+        self._goal_class: type[Any] = registry.interface_class(f"{type_.NAME}_Goal")
+        self._goals: dict[bytes, ClientGoalHandle[Goal, Result, Feedback]] = {}
+        self._running = set[bytes]()
+        """The ids of goals that have not ended, and of some that have since the last status message."""
+        self._followers: set[asyncio.Task[None]] = set()
+        self._unserved = Unserved(host, self._nobody)
+        self._send: ServiceClient[Any, Any] = self._service("send_goal", f"{type_.NAME}_SendGoal")
+        self._cancel: ServiceClient[Any, Any] = self._service("cancel_goal", "action_msgs/srv/CancelGoal")
+        self._get: ServiceClient[Any, Any] = self._service("get_result", f"{type_.NAME}_GetResult")
+        feedback: Any = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
+        at = f"{name}/_action"
+        self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._heard)
+        self._feedback.in_order = True
+        status = "action_msgs/msg/GoalStatusArray"
+        self._status = RawSubscription(host, status, f"{at}/status", ACTION_STATUS, self._told)
+
+    def __repr__(self) -> str:
+        return f"<GoalClient {self.name} [{self.type.NAME}]>"
+
+    def _service(self, part: str, type_name: str) -> ServiceClient[Any, Any]:
+        type_: Any = registry.interface_class(type_name)
+        return ServiceClient(self.host, type_, f"{self.name}/_action/{part}", SERVICES)
+
+    @property
+    def endpoints(self) -> tuple[RawSubscription | TopicSubscription[Any] | ServiceClient[Any, Any], ...]:
+        return (self._feedback, self._status, self._get, self._cancel, self._send)
+
+    def open(self) -> None:
+        for endpoint in self.endpoints:
+            endpoint.open()
+
+    def close(self) -> None:
+        """Withdraw the client. Goals go on at their server; their end is not reported here."""
+        for task in self._followers:
+            task.cancel()
+        for goal in list(self._goals.values()):
+            goal.end(GoalStatus.LOST, None, GoalLost(f"the client of {self.name} was closed before the goal ended"))
+        for endpoint in reversed(self.endpoints):
+            endpoint.close()
+        self.host.forget(self)
+
+    def server_is_ready(self) -> bool:
+        """Whether an action server of this name and type is in the graph, with all five of its parts."""
+        services = (self._send, self._cancel, self._get)
+        return all(s.service_is_ready() for s in services) and bool(self._feedback.matched and self._status.matched)
+
+    async def wait_ready(self, timeout: float | None = None) -> bool:
+        """Wait until there is a server; returns whether there is one.
+
+        Args:
+            timeout: Seconds; None to wait as long as it takes.
+        """
+        return await self._wait_ready(timeout)
+
+    async def _wait_ready(self, timeout: float | None, *, raises: bool = False) -> bool:
+        if self.server_is_ready():
+            return True
+        try:
+            async with self.host.clock.timeout(timeout if timeout is not None else 1e9):
+                with self._unserved.waiting(raises=raises):
+                    await self._all_ready()
+        except TimeoutError:
+            return False
+        return True
+
+    async def _all_ready(self) -> None:
+        for service in (self._send, self._cancel, self._get):
+            await service.wait_ready()
+        for topic in (self._feedback, self._status):
+            await topic.wait_matched()
+
+    async def expect_ready(self, timeout: float | None) -> None:
+        """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
+        if not await self._wait_ready(timeout, raises=True):
+            alone = await alone_here(self.host.context, self.host.full_name)
+            raise ServiceUnavailable(f"{await self._nobody()}{alone}")
+
+    async def _nobody(self) -> str:
+        cache = self.host.context.cache
+        if any(server.type == self._send.type_name for server in cache.endpoints(Kind.SERVICE, self._send.name)):
+            return await self._send.nobody()
+        return nobody_acts(cache, self.name, self.type.NAME)
+
+    def send(
+        self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
+    ) -> Sending[Goal, Result, Feedback]:
+        """Send a goal for the length of a block: leaving it before the goal has ended cancels the goal.
+
+            async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal:
+                async for feedback in goal.feedback():
+                    ...
+                result = await goal.result()
+
+        Args:
+            timeout: Seconds until the server must have accepted.
+            detach: Let the goal go on when the block is left.
+
+        Raises:
+            GoalRejected: The server does not accept the goal.
+            CallError: The server did not answer, or there is none.
+            EncodeError: The goal does not fit its type.
+        """
+        return Sending(self, goal, timeout, detach=detach)
+
+    async def send_goal(
+        self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT
+    ) -> ClientGoalHandle[Goal, Result, Feedback]:
+        """Send a goal that goes on whatever becomes of the caller. Arguments and errors as for `send`."""
+        if goal.__class__ is not self._goal_class:
+            wanted = self._goal_class.__qualname__
+            raise EncodeError(f"{self.name} takes {wanted}, not {goal!r}; write {wanted.replace('_', '.')}(...)")
+        self.host.context.refuse_other_threads(
+            f"send of {self.name}", "node.spawn(fn, ...) runs a coroutine function there"
+        )
+        sent = ClientGoalHandle(self, goal)
+        self._running.add(sent.goal_id)
+        self._goals[sent.goal_id] = sent  # before it is sent: news about it may come before the response
+        request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
+        may_be_there = False
+        try:
+            if not self.server_is_ready():
+                await self.expect_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+            may_be_there = True
+            answer = await self._send.call(request, timeout=timeout)
+        except (CancelledError, CallTimeout) as error:
+            self._forget(sent)
+            if may_be_there and self._cancel.is_open:
+                withdrawing = self._in_background(self._withdraw(sent))
+                if isinstance(error, CancelledError):  # a cancelled caller may end the node next
+                    await _seen_through(withdrawing)
+            raise
+        except BaseException:  # whatever it is, there is no goal to follow
+            self._forget(sent)
+            raise
+        if not answer.accepted:
+            self._forget(sent)
+            reason = await self._why(sent)
+            raise GoalRejected(f"{self.name} rejected the goal{reason and f': {reason}'}")
+        if sent.status is GoalStatus.UNKNOWN:
+            sent.status = GoalStatus.ACCEPTED
+        self._in_background(self._follow(sent))
+        return sent
+
+    async def cancel(
+        self, goal: ClientGoalHandle[Goal, Result, Feedback], *, timeout: float | None = CALL_TIMEOUT
+    ) -> bool:
+        """The same as `ClientGoalHandle.cancel`."""
+        answer = await self._cancel.call(self._cancel_request(goal), timeout=timeout)
+        granted = [bytes(info.goal_id.uuid) for info in answer.goals_canceling]
+        # rclpy's servers answer ERROR_NONE with an empty list when they refuse.
+        return answer.return_code == CancelCode.NONE and goal.goal_id in granted
+
+    def _cancel_request(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
+        return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
+
+    async def leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        """Cancel a goal whose block is left, and wait a little for its end, even if leaving is cancelled."""
+        await _seen_through(self._in_background(self._cancel_and_wait(goal)))
+
+    async def _cancel_and_wait(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        try:
+            async with self.host.clock.timeout(CANCEL_TIMEOUT):
+                answer = await self._cancel.call(self._cancel_request(goal), timeout=None)
+                if answer.return_code == CancelCode.REJECTED:
+                    self.host.log.warning("%s: the server refuses to cancel %r, which goes on", self.name, goal)
+                    return
+                with suppress(GoalError):  # only its end is waited for
+                    await asyncio.shield(goal.ended)
+        except TimeoutError:
+            self.host.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
+        except (CallError, ClosedError) as error:
+            if not goal.status.is_terminal:  # its end was reported, and its server has gone since
+                self.host.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
+
+    async def _withdraw(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        with suppress(CallError, ClosedError):  # its outcome is not waited for
+            await self._cancel.call(self._cancel_request(goal), timeout=CANCEL_TIMEOUT)
+
+    async def _follow(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        """Wait for a goal's end."""
+        context = self.host.context
+        try:
+            with context.ledger.goal(goal.ended, goal):
+                answer = await self._result_of(goal)
+            await self._take(goal, answer)
+        except (CallError, ClosedError, ValueError) as error:
+            known = f"last known as {goal.status.name}"
+            if isinstance(error, (ServerLost, ServiceUnavailable, ClosedError)):
+                lost = f"{self.name}: the server has gone, and with it the goal, {known}"
+            else:
+                lost = f"{self.name}: the goal's result is not available, {known}: {error}"
+            goal.end(GoalStatus.LOST, None, GoalLost(lost))
+        finally:
+            clock = context.clock
+            clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
+
+    async def _take(self, goal: ClientGoalHandle[Goal, Result, Feedback], answer: Any) -> None:
+        """A goal has ended."""
+        status = GoalStatus(answer.status)
+        self._end(goal, status, answer.result, await self._why(goal) if status is GoalStatus.ABORTED else "")
+
+    async def _why(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> str:
+        """Why the server has rejected or aborted a goal; empty if it does not say."""
+        for server in list(self._send.matched.values()):
+            if reason := await self.host.context.reasons.ask(server.zid, goal.goal_id):
+                return reason
+        return "" if self._send.matched else "its server has gone"
+
+    async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
+        """The response that reports a goal's end, however long that takes."""
+        request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+        patience = RESULT_PATIENCE
+        while True:
+            try:
+                return await self._get.call(request, timeout=patience)
+            except ServerBusy:
+                await self.host.context.clock.sleep(RESULT_PATIENCE)
+            except CallTimeout:  # it takes long, or the network has lost the request or the response
+                patience = min(2 * patience, RESULT_LONGEST)
+            except ServerLost:
+                # Only the connection may have been lost; then the server still knows the goal.
+                await self._get.expect_ready(LOST_GRACE)
+
+    def _forget(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        self._goals.pop(goal.goal_id, None)
+        self._running.discard(goal.goal_id)
+
+    def _end(
+        self, goal: ClientGoalHandle[Goal, Result, Feedback], status: GoalStatus, result: Any, reason: str
+    ) -> None:
+        error: GoalError | None = None
+        if goal.done:
+            return
+        if status is GoalStatus.ABORTED:
+            error = GoalAborted(f"{self.name} aborted the goal{f': {reason}' if reason else ''}", result)
+        elif status is GoalStatus.CANCELED:
+            error = GoalCanceled(f"the goal of {self.name} was cancelled", result)
+        elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name does not know it
+            status, error = GoalStatus.LOST, GoalLost(f"{self.name} does not know the goal: its server was replaced")
+        goal.end(status, result, error)
+
+    def _heard(self, message: Any) -> None:
+        goal = self._goals.get(bytes(message.goal_id.uuid))
+        if goal is not None:
+            goal.heard(message.feedback)
+
+    def _told(self, payload: bytes, _: MessageInfo) -> None:
+        try:
+            self._running = {goal_id for goal_id in self._running if not self._goals[goal_id].done}
+            states = states_in(payload, self._running)
+        except DecodeError as error:
+            self._status.count_malformed(error)
+            return
+        for goal_id, number in states.items():
+            goal = self._goals[goal_id]
+            if number not in _STATES:
+                continue
+            state = GoalStatus(number)
+            if not state.is_terminal:
+                goal.status = max(goal.status, state)  # an earlier report may come later
+            elif not goal.is_asked_again and self.host.is_running:
+                # The end arrives with the result, which may have been lost.
+                goal.is_asked_again = True
+                self._in_background(self._ask_again(goal))
+
+    async def _ask_again(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        """Request the result of a goal that has ended, if it does not come by itself."""
+        await self.host.clock.sleep(LOST_GRACE)
+        if not goal.done:
+            with suppress(CallError, ClosedError):  # the task that follows the goal keeps asking
+                request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+                await self._take(goal, await self._get.call(request))
+
+    def _in_background(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+        task = self.host.context.loop.create_task(work, name=f"{self.host.full_name}: {self.name}")
+        self._followers.add(task)
+        task.add_done_callback(self._followers.discard)
+        return task
+
+
+async def _seen_through(task: asyncio.Task[None]) -> None:
+    """Wait for a task to end, even if the waiting is cancelled meanwhile."""
+    cancelled: CancelledError | None = None
+    while not task.done():
+        try:
+            await asyncio.shield(task)
+        except CancelledError as error:
+            if not task.cancelled():  # which happens when the client is closed
+                cancelled = error
+    if cancelled is not None:
+        raise cancelled

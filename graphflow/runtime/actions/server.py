@@ -1,0 +1,499 @@
+"""The server's side of actions: goals that are accepted, run under a group, cancelled and remembered.
+
+On the network an action is five ordinary entities: the services send_goal, cancel_goal and get_result and the topics
+feedback and status. The services are the control lane: they never wait for a group of the user's, so that a goal can
+be cancelled, and asked for, whatever its group is doing. Only the goal's body takes a slot.
+
+What becomes of a goal is decided by the table in `machines.goal`; `ActionServer` feeds it events and does what
+it says.
+
+Source: rcl_action, for the wire.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from asyncio import CancelledError, Future
+from collections import deque
+from collections.abc import Awaitable, Callable
+from functools import partial
+from inspect import isawaitable
+from typing import Any, Generic
+
+from graphflow.analysis.swallowed import where_caught
+from graphflow.errors import Abort, EncodeError
+from graphflow.executor.clock import Clock
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.runner import Runner, RunnerSpec, title_of
+from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
+from graphflow.msgs import registry
+from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, made_as, name_of
+from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.endpoints.publishers import TopicPublisher
+from graphflow.runtime.endpoints.serialized import RawPublisher
+from graphflow.runtime.endpoints.services import ServiceServer
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.part import Host, Part
+from graphflow.runtime.rclpy_words import MadeByNodes, SpeaksRos
+from graphflow.times import NANOSECONDS, to_ns
+from graphflow.wire import attachment
+from graphflow.wire.goal_status import GoalStates
+from graphflow.wire.liveliness import Entity
+
+RESULT_KEPT = 900.0
+"""Seconds that a result can be requested after the goal's end."""
+STATUS_KEPT = 10.0
+"""Seconds that an ended goal stays in the status list, as in ROS 2."""
+RESULTS_KEPT = 1_000
+_RETURNED_ALL_THE_SAME = (
+    "%s: %r was cancelled, and its handler returned a result all the same: the goal succeeds. To end it as cancelled, "
+    "set goal.partial and let CancelledError pass%s"
+)
+_WHY = {GoalEvent.NEWER: "a newer goal has come"}
+
+
+class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
+    """A goal at its server: what the action's handler gets."""
+
+    def __init__(
+        self, server: ActionServer[Goal, Result, Feedback], goal_id: bytes, request: Goal, record: GoalRecord
+    ) -> None:
+        self.request = request
+        self.partial: Result = server.result_class()
+        self.record = record
+        self.result: Result | None = None
+        """The result with which the goal ended."""
+        self.reason = ""
+        """Why the goal was aborted."""
+        self.waiters: list[Future[None]] = []
+        """What waits for the goal's end."""
+        self.decided = asyncio.Event()
+        """Set when it is decided whether the goal is accepted."""
+        self._server, self._id = server, goal_id
+
+    def __repr__(self) -> str:
+        return f"<goal {self._id.hex()[:8]} of {self._server.name}: {self.status.name}>"
+
+    def _hint(self, name: str) -> str:
+        return f"the client's wish is goal.request.{name}" if name in type(self.request).__struct_fields__ else ""
+
+    @property
+    def goal_id(self) -> bytes:
+        return self._id
+
+    @property
+    def status(self) -> GoalStatus:
+        return self.record.status
+
+    @property
+    def is_preempted(self) -> bool:
+        return self.record.is_preempted
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        return self.is_preempted or self.record.phase is Phase.CANCELING or self.is_over
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the goal has ended, however long ago."""
+        return self.record.phase.is_over
+
+    def feedback(self, feedback: Feedback) -> None:
+        self._server.send_feedback(self._id, feedback)
+
+
+class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
+    """A running action server.
+
+    Args:
+        callback: The handler: takes the `ServerGoalHandle`, returns the result.
+        accept: Called with the goal's message before it is accepted; False rejects it, and so does a text that says
+            why. May be `async def`.
+        cancellable: Whether cancel requests are granted; or a function of the `ServerGoalHandle` that decides.
+    """
+
+    MAKER = 'create_action_server(Type, "name", self.execute), or declare @action(Type, "name") on the method'
+
+    def __init__(
+        self,
+        host: Host,
+        type_: type[Action[Goal, Result, Feedback]],
+        name: str,
+        callback: Callable[[Any], Any],
+        label: str,
+        group: HandlerGroup | None = None,
+        *,
+        rules: GoalRules | None = None,
+        accept: Callable[[Any], bool | Awaitable[bool]] | None = None,
+        cancellable: bool | Callable[[Any], bool] = True,
+    ) -> None:
+        self.host, self.type, self.name = host, type_, name
+        self.rules = GoalRules() if rules is None else rules
+        self.result_class: type[Any] = registry.interface_class(f"{type_.NAME}_Result")
+        self._results = registry.codec(f"{type_.NAME}_Result")
+        self.book = GoalBook(self.rules, to_ns(RESULT_KEPT), to_ns(STATUS_KEPT), RESULTS_KEPT)
+        self.goals: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
+        """Accepted goals, by id."""
+        self.runner: Runner | None = None
+        self.is_degraded = False
+        """Whether a body has outstayed its cancellation."""
+        self._callback, self._label, self._group = callback, label, group
+        self._accept, self._cancellable = accept, cancellable
+        self._waiting: deque[Any] = deque()
+        self._deciding: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
+        """Goals whose acceptance is being decided, by id."""
+        self._clock: Clock
+        """Used even when the node has stopped and a body has not."""
+        self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
+        self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
+        send: Any = registry.interface_class(f"{type_.NAME}_SendGoal")
+        get: Any = registry.interface_class(f"{type_.NAME}_GetResult")
+        cancel: Any = registry.interface_class("action_msgs/srv/CancelGoal")
+        self._send_response, self._get_response = send.Response, get.Response
+        self._cancel_response = cancel.Response
+        self._states = GoalStates()
+        self._status = RawPublisher(host, "action_msgs/msg/GoalStatusArray", f"{name}/_action/status", ACTION_STATUS)
+        self._feedback: TopicPublisher[Any] = self._topic("feedback", f"{type_.NAME}_FeedbackMessage", Qos())
+        # The last to be seen is the first to be used: a client that can send a goal can do everything else.
+        self._send_service = _GoalService(self, send, "send_goal", self._send_goal)
+        self._services = (
+            _GoalService(self, get, "get_result", self._get_result),
+            _GoalService(self, cancel, "cancel_goal", self._cancel_goal),
+            self._send_service,
+        )
+
+    def __repr__(self) -> str:
+        return f"<ActionServer {self.name} [{self.type.NAME}]>"
+
+    def _topic(self, part: str, type_name: str, qos: Qos) -> TopicPublisher[Any]:
+        message: Any = registry.interface_class(type_name)
+        return TopicPublisher(self.host, message, f"{self.name}/_action/{part}", qos)
+
+    @property
+    def handler_title(self) -> str:
+        return title_of("action", self._label)
+
+    @property
+    def title(self) -> str:
+        return f"action {self.name}"
+
+    @property
+    def endpoints(self) -> tuple[RawPublisher | TopicPublisher[Any] | ServiceServer[Any, Any], ...]:
+        return (self._status, self._feedback, *self._services)
+
+    def statistics(self) -> dict[str, Any]:
+        """Goals begun, failed, active and waiting for their turn."""
+        runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
+        return {"runs": runs, "errors": errors, "active": self.book.active(), "waiting": len(self._waiting)}
+
+    def open(self) -> None:
+        self._clock = self.host.clock
+        self.host.context.reasons.open()  # before a client can send a goal
+        tell = (self._run, self._finished, self.host.full_name)
+        is_serial = self.rules.policy != "parallel"
+        spec = RunnerSpec(self._label, *tell, "action", self._refused, is_serial=is_serial)
+        self.runner = self.host.runner(spec, self._waiting, self._group)
+        for endpoint in self.endpoints:
+            endpoint.open()
+        self._tell_states()
+
+    def begin_to_stop(self) -> Runner | None:
+        """Goals that wait for their turn will not get it."""
+        for goal in [*self._deciding.values(), *self.goals.values()]:
+            self._step(goal, GoalEvent.STOPPING)
+        return self.runner
+
+    def pause(self, why: str) -> Runner | None:
+        """Reject goals; those under way are aborted."""
+        super().pause(why)
+        return self.begin_to_stop()
+
+    def resume(self) -> Runner | None:
+        super().resume()
+        if self.runner is not None:
+            self.runner.reopen()
+        return self.runner
+
+    def close(self) -> None:
+        """Withdraw the server; goals under way are cancelled."""
+        self.begin_to_stop()
+        if self.runner is not None:
+            self.runner.cancel()
+        for endpoint in reversed(self.endpoints):
+            endpoint.close()
+        self.host.forget(self)
+
+    # what clients ask
+
+    async def _send_goal(self, request: Any, client: bytes) -> Any:
+        goal_id = bytes(request.goal_id.uuid)
+        if goal_id in self._deciding:  # asked twice, by a client that has not received the response
+            await self._deciding[goal_id].decided.wait()
+        elif goal_id not in self.book.goals:
+            reason = self._why_full() or await self._decide(goal_id, request.goal, client)
+            if reason:
+                self.host.context.reasons.note(goal_id, reason)
+                self.host.log.info("%s: goal %s is rejected: %s", self._label, goal_id.hex()[:8], reason)
+        known = self.book.goals.get(goal_id)
+        if known is None:
+            return self._send_response(accepted=False)
+        return self._send_response(accepted=True, stamp=_stamp(known.accepted_ns))
+
+    def _why_full(self) -> str:
+        """Why no goal can be taken now; empty if one can."""
+        if self.idle_because:
+            return self.idle_because
+        if self.runner is None or self.runner.closed:
+            return "the server stops"
+        if self.book.has_room():
+            return ""
+        if self.rules.policy == "queue":
+            return f"{self.rules.queue_depth} goals wait for their turn already"
+        return "another goal is under way, and policy='reject' allows one at a time; others: queue, preempt, parallel"
+
+    async def _decide(self, goal_id: bytes, request: Goal, client: bytes) -> str:
+        """Find out whether a goal is accepted; returns why not, empty if it is."""
+        goal = ServedGoal(self, goal_id, request, self.book.ask(goal_id, client))
+        self._deciding[goal_id] = goal
+        reason = "the server stops"
+        try:
+            reason = await self._why_unwanted(request) or self._why_full()
+        finally:
+            del self._deciding[goal_id]
+            self._step(goal, GoalEvent.REFUSED if reason else GoalEvent.ACCEPTED)
+            goal.decided.set()
+        if not goal.is_over:
+            self._forget_old()
+            # Its response goes out first.
+            self.host.context.loop.call_soon(self._step, goal, GoalEvent.ANSWERED)
+        return reason
+
+    async def _why_unwanted(self, goal: Goal) -> str:
+        """What `accept` has against a goal; empty for nothing."""
+        if self._accept is None:
+            return ""
+        limit = self.rules.accept_limit
+        name = getattr(self._accept, "__name__", "accept")
+        try:
+            async with asyncio.timeout(limit):
+                answer = self._accept(goal)
+                answer = await answer if isawaitable(answer) else answer
+        except TimeoutError:
+            return f"{name} took more than {limit:g} s to decide"
+        except Abort as error:
+            return str(error) or f"{name} refused it"
+        except Exception as error:
+            self.host.report_error(f"{self._label}: {name}", error)
+            return f"{name} failed: {type(error).__name__}: {error}"
+        if isinstance(answer, str):
+            return answer
+        if answer is None:
+            return f"{name} returned None: it has to return True, or False, or the reason why not"
+        return "" if answer else f"{name} returned {answer!r}"
+
+    def _cancel_goal(self, request: Any, client: bytes) -> Any:
+        info = request.goal_info
+        stamp = info.stamp.sec * NANOSECONDS + info.stamp.nanosec
+        asked = bytes(info.goal_id.uuid)
+        if asked in self._deciding:
+            self._step(self._deciding[asked], GoalEvent.CANCEL)
+        code, meant = self.book.to_cancel(asked, stamp)
+        granted = [self.goals[goal_id] for goal_id in meant if self._grants_cancel(self.goals[goal_id])]
+        if meant and not granted:
+            code = CancelCode.REJECTED
+        for goal in granted:
+            self._step(goal, GoalEvent.CANCEL)
+        return self._cancel_response(return_code=int(code), goals_canceling=[_info(goal) for goal in granted])
+
+    def _grants_cancel(self, goal: ServedGoal[Goal, Result, Feedback]) -> bool:
+        if not callable(self._cancellable):
+            return self._cancellable
+        try:
+            return bool(self._cancellable(goal))
+        except Exception as error:
+            self.host.report_error(f"{self._label}: cancellable", error)
+            return False
+
+    async def _get_result(self, request: Any, client: bytes) -> Any:
+        goal = self.goals.get(bytes(request.goal_id.uuid))
+        if goal is None:
+            return self._get_response(status=int(GoalStatus.UNKNOWN))
+        if not goal.is_over:
+            goal.waiters.append(ended := self.host.context.loop.create_future())
+            with self.host.context.ledger.serving(ended, goal.goal_id):
+                await ended
+        return self._get_response(status=int(goal.status), result=goal.result)
+
+    def client_gone(self, client: bytes) -> None:
+        """A client's token is gone; it may come back."""
+        for goal in [*self._deciding.values(), *self.goals.values()]:
+            if goal.record.client == client:
+                self._step(goal, GoalEvent.CLIENT_LOST)
+
+    # what becomes of a goal
+
+    def _step(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any = None) -> None:
+        """Do what follows from an event of a goal.
+
+        Args:
+            result: What the goal ends with, if it ends; otherwise what it has so far.
+        """
+        if goal.is_over:
+            return
+        now_ns = self._clock.time_ns() if event is GoalEvent.ACCEPTED else self._clock.monotonic_ns()
+        outcome = self.book.step(goal.goal_id, event, now_ns)
+        if event is GoalEvent.ACCEPTED:
+            self._states.add(goal.goal_id, goal.record.accepted_ns)
+            self.goals[goal.goal_id] = goal
+        if goal.is_over and goal.goal_id in self.goals:
+            goal.result = self._fit_result(goal, event, goal.partial if result is None else result)
+        for status in outcome.told:
+            self._states.put(goal.goal_id, int(status))
+            self._tell_states()
+        for do in outcome.do:
+            self._carry_out(do, goal, event)
+        if goal.is_over:
+            for waiter in goal.waiters:
+                if not waiter.done():
+                    waiter.set_result(None)
+            goal.waiters.clear()
+
+    def _carry_out(self, do: Do, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent) -> None:
+        assert self.runner is not None
+        match do:
+            case Do.PREEMPT_OTHERS:
+                for other in [other for other in self.goals.values() if other is not goal and not other.is_over]:
+                    self._step(other, GoalEvent.NEWER)
+            case Do.ENQUEUE:
+                self._waiting.append(goal)
+                self.runner.wake()
+            case Do.DEQUEUE:
+                self._waiting.remove(goal)
+            case Do.CANCEL_BODY:
+                for run in [run for run in self.runner.active if run.item is goal]:
+                    run.cancel(_WHY.get(event, "cancel requested"))
+            case Do.LIMIT_CLEANUP:
+                self._later(self.rules.cleanup_timeout, partial(self._step, goal, GoalEvent.OUTSTAYED))
+            case Do.AWAIT_CLIENT:
+                self._later(self.rules.client_grace, partial(self._look_for_client, goal))
+            case Do.DEGRADE:
+                self.is_degraded = True
+                self.host.log.error(
+                    "%s is still running %g s after it was cancelled; its goal is aborted, and it keeps its slot%s",
+                    *(self._label, self.rules.cleanup_timeout, where_caught(self._callback)),
+                )
+
+    def _later(self, seconds: float, callback: Callable[[], None]) -> None:
+        self._clock.call_at(self._clock.monotonic_ns() + to_ns(seconds), callback)
+
+    def _look_for_client(self, goal: ServedGoal[Goal, Result, Feedback]) -> None:
+        """A goal's client went some time ago: if it has not come back, it counts as lost."""
+        clients = self._send_service.matched.values()
+        if self._send_service.is_open and not any(e.gid == goal.record.client for e in clients):
+            if goal.status.is_cancelable:
+                self.host.log.warning("%s: its client has gone; %r is cancelled", self._label, goal)
+            self._step(goal, GoalEvent.CLIENT_AWAY)
+
+    def _run(self, goal: ServedGoal[Goal, Result, Feedback]) -> Any:
+        self._step(goal, GoalEvent.BEGUN)
+        return self._callback(goal)
+
+    def _refused(self, goal: ServedGoal[Goal, Result, Feedback]) -> None:
+        self._step(goal, GoalEvent.DROPPED)
+
+    def _finished(self, goal: ServedGoal[Goal, Result, Feedback], result: Any, error: BaseException | None) -> None:
+        if goal.is_over:  # it had outstayed its cancellation
+            return
+        if error is None:
+            if result is None and not self.result_class.SCHEMA.fields:
+                result = self.result_class()
+            error = self._why_no_result(result)
+        if error is None:
+            if goal.record.phase is Phase.CANCELING:
+                self.host.log.warning(_RETURNED_ALL_THE_SAME, self._label, goal, where_caught(self._callback))
+            self._step(goal, GoalEvent.RETURNED, result)
+        elif isinstance(error, CancelledError):
+            self._step(goal, GoalEvent.UNWOUND)
+        else:
+            explain(error)
+            given = error.result if isinstance(error, Abort) else None
+            goal.reason = str(error) if isinstance(error, Abort) else f"{type(error).__name__}: {error}"
+            if goal.reason:
+                self.host.context.reasons.note(goal.goal_id, goal.reason)
+            if not isinstance(error, Abort):
+                self.host.report_error(self._label, error)
+            elif goal.reason:
+                self.host.log.warning("%s: aborted: %s", self._label, goal.reason)
+            self._step(goal, GoalEvent.FAILED, given if given.__class__ is self.result_class else None)
+
+    def _why_no_result(self, returned: Any) -> Exception | None:
+        """Why what the handler has returned cannot be sent as its result."""
+        if returned.__class__ is not self.result_class:
+            return TypeError(f"it returned {returned!r}, not {name_of(self.result_class)}(...)")
+        return self._why_unfit(returned)
+
+    def _why_unfit(self, result: Any) -> Exception | None:
+        try:
+            self._results.encode(result)
+        except (EncodeError, AttributeError) as error:
+            return error
+        return None
+
+    def _fit_result(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any) -> Any:
+        """The result that a goal ends with: an empty one where what it has so far cannot be sent."""
+        if event is GoalEvent.RETURNED or (wrong := self._why_unfit(result)) is None:
+            return result
+        self.host.report_error(f"{self._label}, its partial result", wrong)
+        return self.result_class()
+
+    def _forget_old(self) -> None:
+        for goal_id in self.book.expire(self._clock.monotonic_ns()):
+            del self.goals[goal_id]
+
+    # what clients hear
+
+    def send_feedback(self, goal_id: bytes, feedback: Any) -> None:
+        """Tell the clients how a goal is progressing.
+
+        Raises:
+            TypeError: The message is not a feedback of this action.
+        """
+        if feedback.__class__ is not self._feedback_class:
+            raise TypeError(f"{self.name} sends feedback as {made_as(self._feedback_class)}, not {feedback!r}")
+        self._feedback.publish(self._feedback_message(goal_id={"uuid": list(goal_id)}, feedback=feedback))
+
+    def _tell_states(self) -> None:
+        """Publish the goals' states."""
+        for goal_id in self.book.hide(self._clock.monotonic_ns()):
+            self._states.remove(goal_id)
+        if self._status.is_open:
+            self._status.publish(self._states.to_bytes())
+
+
+class _GoalService(ServiceServer[Any, Any]):
+    """One of an action's services; its callback also gets the client that asks."""
+
+    def __init__(self, server: ActionServer[Any, Any, Any], type_: Any, part: str, callback: Any) -> None:
+        name = f"{server.name}/_action/{part}"
+        lane = HandlerGroup(None, part)
+        label = f"{server._label} {part}"
+        super().__init__(server.host, type_, name, SERVICES, callback, label, lane, is_inner=True)
+        self._server = server
+
+    def _invoke(self, request: Any) -> Any:
+        asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
+        return self._callback(self._requests.decode(request.payload), asked.gid)
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        super()._matched(other, alive)
+        if not alive:
+            self._server.client_gone(other.gid)
+
+
+def _info(goal: ServedGoal[Any, Any, Any]) -> dict[str, Any]:
+    """The fields of an `action_msgs/msg/GoalInfo`."""
+    return {"goal_id": {"uuid": list(goal.goal_id)}, "stamp": _stamp(goal.record.accepted_ns)}
+
+
+def _stamp(ns: int) -> dict[str, int]:
+    return {"sec": ns // NANOSECONDS, "nanosec": ns % NANOSECONDS}

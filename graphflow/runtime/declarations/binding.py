@@ -1,0 +1,231 @@
+"""A class's declarations applied to one node: endpoints made, handlers attached, parameters followed."""
+
+from __future__ import annotations
+
+import inspect
+from collections import deque
+from collections.abc import Callable, Mapping
+from contextvars import ContextVar
+from dataclasses import dataclass
+from types import MethodType
+from typing import Any, Protocol
+
+from graphflow.errors import ParameterError
+from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.interface import COMMON_PARAMETERS
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import ActionClient, Client, Held, Param, Publisher, Subscription
+from graphflow.runtime.declarations.handlers import Handler, Rate
+from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.parameters.params import ParameterChange, Parameters
+from graphflow.runtime.part import Host
+from graphflow.times import to_ns
+
+CHAIN = 100
+"""Changes in a second, each made by a method that follows the one before, after which no further one is followed."""
+
+
+class Creator(Protocol):
+    """The methods of a node that create what is declared."""
+
+    @property
+    def create_publisher(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_subscription(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_service(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_client(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_action_server(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_action_client(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_timer(self) -> Callable[..., Any]: ...
+
+
+class Binding:
+    """What the declarations of a node's class have become.
+
+    Attributes:
+        held: What the node holds, by attribute.
+    """
+
+    def __init__(self, node: Creator, host: Host, parameters: Parameters) -> None:
+        self.held: dict[str, Any] = {}
+        self._node, self._host, self._parameters = node, host, parameters
+        self._class = type(node)
+        self._timers: list[tuple[Rate, Timer]] = []
+        self._hooks = declared.param_hooks(self._class)
+        self._followers: dict[str, _Follower] = {}
+
+    def bind_parameters(self) -> None:
+        """Declare the parameters: names and periods of everything else may come from them."""
+        for parameter in COMMON_PARAMETERS.values():
+            self._parameters.declare(parameter)
+        for attribute, item in declared.held(self._class).items():
+            if isinstance(item, Param):
+                self.held[attribute] = self._parameters.declare(item.parameter)
+        self._parameters.check(self._check)
+        self._parameters.observe(self._changed)
+
+    def bind(self) -> None:
+        """Make endpoints, handlers and timers."""
+        for attribute, item in declared.held(self._class).items():
+            if not isinstance(item, Param):
+                self.held[attribute] = self._made(item)
+        for attribute, handler in declared.handlers(self._class).items():
+            self._bind_handler(getattr(self._node, attribute), handler)
+
+    def _made(self, item: Held) -> Any:
+        node = self._node
+        match item:
+            case Publisher():
+                return node.create_publisher(item.type, item.name, item.qos, on_event=self._method(item.on_event))
+            case Subscription():
+                options = {"ignore_local": item.ignore_local, "on_event": self._method(item.on_event)}
+                return node.create_subscription(item.type, item.name, None, item.qos, **options)
+            case Client():
+                return node.create_client(item.type, item.name, introspection=item.introspection, group=item.group)
+            case ActionClient():
+                return node.create_action_client(item.type, item.name)
+        raise TypeError(f"{item!r} cannot be made")
+
+    def _method(self, fn: Any) -> Any:
+        """A function of the class body, as a method of the node; a child class may have overridden it.
+
+        One that the class does not have by its name, such as a lambda, is bound as it is.
+        """
+        if not inspect.isfunction(fn):
+            return fn
+        return getattr(self._node, fn.__name__) if hasattr(self._class, fn.__name__) else MethodType(fn, self._node)
+
+    def _bind_handler(self, method: Callable[..., Any], handler: Handler) -> None:
+        node = self._node
+        options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
+        if handler.kind == "subscription":
+            options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
+            options |= {"on_event": self._method(handler.on_event), "on_error": handler.on_error}
+            node.create_subscription(handler.type, handler.name, method, handler.qos, **options)
+        elif handler.kind == "service":
+            node.create_service(handler.type, handler.name, method, introspection=handler.introspection, **options)
+        elif handler.action is not None:
+            options |= {"accept": self._method(handler.action.accept), "policy": handler.action.policy}
+            options["cancellable"] = self._method(handler.action.cancellable)
+            options["on_client_loss"] = handler.action.on_client_loss
+            options["cleanup_timeout"] = handler.action.cleanup_timeout
+            node.create_action_server(handler.type, handler.name, method, **options)
+        elif handler.rate is not None:
+            period = self._period_ns(handler.rate, {}) / 1e9
+            options |= {"takes_info": handler.takes_info, "on_error": handler.on_error}
+            timer = node.create_timer(period, method, **options)
+            self._timers.append((handler.rate, timer))
+
+    def _period_ns(self, rate: Rate, values: Mapping[str, Any]) -> int:
+        get = self._parameters.get
+        used = {name: values[name] if name in values else get(name) for name in rate.parameters()}
+        try:
+            return rate.period_ns(used)
+        except ValueError as error:
+            given = ", ".join(f"{name!r} = {value!r}" for name, value in used.items())
+            raise ParameterError(f"parameter {given}: {error}") from None
+
+    def _check(self, values: Mapping[str, Any]) -> None:
+        """Refuse values that a timer or a check of the class does not accept."""
+        for rate, _ in self._timers:
+            if values.keys() & rate.parameters():
+                self._period_ns(rate, values)
+        for attribute, hook in self._hooks.items():
+            name = hook.param.parameter.name
+            if hook.kind == "check" and name in values:
+                try:
+                    answer = getattr(self._node, attribute)(values[name])
+                except ValueError as error:
+                    raise ParameterError(f"parameter {name!r} = {values[name]!r}: {error}") from None
+                if answer is not None and answer is not True:
+                    text = "a check refuses by raising ValueError(why), and accepts by returning nothing"
+                    raise ParameterError(f"parameter {name!r} is not set: {attribute} returned {answer!r}; {text}")
+
+    def _changed(self, changes: Mapping[str, ParameterChange]) -> None:
+        for rate, timer in self._timers:
+            if changes.keys() & rate.parameters():
+                timer.period = self._period_ns(rate, {}) / 1e9
+        for attribute, hook in self._hooks.items():
+            change = changes.get(hook.param.parameter.name)
+            if hook.kind == "on_change" and change is not None and self._host.is_running:
+                if attribute not in self._followers:
+                    name = hook.param.parameter.name
+                    self._followers[attribute] = _Follower(self._host, getattr(self._node, attribute), name)
+                self._followers[attribute].follow(change)
+
+    def runners(self) -> list[Runner]:
+        """The runners of methods that follow parameters, for the node to end."""
+        return [follower.runner for follower in self._followers.values()]
+
+
+@dataclass(slots=True)
+class _Turn:
+    """A call of a method that follows a parameter.
+
+    Attributes:
+        length: How many calls led to it, each by setting a parameter itself.
+        began_ns: When the first of them was due.
+    """
+
+    change: ParameterChange
+    length: int
+    began_ns: int
+    is_over: bool = False
+
+
+_turn: ContextVar[_Turn | None] = ContextVar("turn", default=None)
+"""The call of a method that follows a parameter in which this code runs."""
+
+
+class _Follower:
+    """Calls a method with the changes of a parameter, one at a time."""
+
+    def __init__(self, host: Host, method: Callable[[Any, Any], Any], parameter: str) -> None:
+        self._host, self._method, self._parameter = host, method, parameter
+        self._turns: deque[_Turn] = deque()
+        spec = RunnerSpec(method.__name__, self._invoke, self._finished, host.full_name)
+        self.runner = host.runner(spec, self._turns)
+
+    def follow(self, change: ParameterChange) -> None:
+        turn, now = _turn.get(), self._host.clock.monotonic_ns()
+        length, began_ns = (0, now) if turn is None or turn.is_over else (turn.length + 1, turn.began_ns)
+        if length >= CHAIN and now - began_ns < to_ns(1.0):
+            text = "%s follows %r, and each change of it makes another, %d in a row: no further one is followed; "
+            text += "set a parameter there only where it differs, as in `if new > 2.0: self.%s = 2.0`"
+            self._host.log.error(text, self._method.__name__, self._parameter, CHAIN, self._parameter)
+            return
+        self._turns.append(_Turn(change, length, began_ns))
+        if inspect.iscoroutinefunction(self._method):
+            # Its first step must not run inside the code that set the parameter, which may itself be a handler.
+            self._host.context.loop.call_soon(self.runner.wake)
+        else:
+            self.runner.wake()
+
+    def _invoke(self, turn: _Turn) -> Any:
+        if inspect.iscoroutinefunction(self._method):
+            return self._invoke_async(turn)
+        token = _turn.set(turn)
+        try:
+            return self._method(turn.change.old, turn.change.new)
+        finally:
+            _turn.reset(token)
+
+    async def _invoke_async(self, turn: _Turn) -> None:
+        _turn.set(turn)
+        await self._method(turn.change.old, turn.change.new)
+
+    def _finished(self, turn: _Turn, result: Any, error: BaseException | None) -> None:
+        turn.is_over = True  # what it has started goes on in a context that has the turn, too
+        if error is not None:
+            self._host.handler_failed(self._method.__name__, error)

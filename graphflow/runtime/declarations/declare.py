@@ -1,0 +1,356 @@
+"""What a node class declares that it holds: publishers, clients, parameters, groups. What it does is in `handlers`.
+
+A declaration is checked when the class is made and turned into data (`graphflow.interface`); nothing runs. When a
+node is made, each declaration becomes a call of the `create_*` method that the node could also have called itself.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Generic, Literal, NoReturn, Protocol, Self, TypeVar, get_args, overload
+
+from graphflow.errors import DeclarationError, GraphflowError, ParameterError, Place
+from graphflow.executor.groups import Groups, HandlerGroup
+from graphflow.interface import Parameter, WhenFull, type_of
+from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
+from graphflow.qos import Qos
+from graphflow.runtime.call_site import here
+from graphflow.runtime.declarations.checks import check_group, check_name, check_on_event, check_qos, check_type
+from graphflow.runtime.endpoints.service_events import Introspection
+from graphflow.runtime.parameters.params import Parameters
+from graphflow.runtime.rclpy_words import MadeByNodes, in_our_words
+
+if TYPE_CHECKING:
+    from graphflow.runtime.actions.client import GoalClient
+    from graphflow.runtime.endpoints.publishers import TopicPublisher
+    from graphflow.runtime.endpoints.service_client import ServiceClient
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+
+M = TypeVar("M", bound=Message)
+V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float], list[str])
+F = TypeVar("F", bound=Callable[..., Any])
+
+_NUMBERS = ("int", "float", "list[int]", "list[float]")
+
+
+class _Core(Protocol):
+    """What the declarations of a class have become on one node."""
+
+    @property
+    def held(self) -> Mapping[str, Any]:
+        """What the node holds, by attribute."""
+
+    @property
+    def parameters(self) -> Parameters: ...
+
+    @property
+    def groups(self) -> Groups: ...
+
+
+class Bound(Protocol):
+    """A node, as the declarations of its class see it."""
+
+    @property
+    def _core(self) -> _Core: ...
+
+
+class Group:
+    """A concurrency group: how many of its handlers' runs there may be at a time. On a node, a `HandlerGroup`.
+
+    Args:
+        limit: 1 for mutual exclusion (ROS 2's MutuallyExclusive), None for no limit (Reentrant).
+        when_full: What becomes of work that finds the group full: see `WhenFull`.
+        thread: Run its `def` handlers in threads, where a blocking one holds its slot but not the loop.
+        name: Its name, if not that of the attribute.
+    """
+
+    @in_our_words
+    def __init__(
+        self, limit: int | None = 1, when_full: WhenFull = "wait", *, thread: bool = False, name: str = ""
+    ) -> None:
+        if limit is not None and (not isinstance(limit, int) or isinstance(limit, bool) or limit < 1):
+            raise DeclarationError(f"{here()}: a group's limit must be 1 or more, or None for no limit, not {limit!r}")
+        if when_full not in get_args(WhenFull):
+            words = ", ".join(get_args(WhenFull))
+            raise DeclarationError(f"{here()}: when_full must be one of {words}, not {when_full!r}")
+        if limit is None and when_full != "wait":
+            raise DeclarationError(
+                f"{here()}: a group without a limit is never full; when_full={when_full!r} needs one"
+            )
+        self.limit, self.when_full, self.thread, self.name = limit, when_full, thread, name
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = self.name or name
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Bound, owner: type) -> HandlerGroup: ...
+    @overload
+    def __get__(self, node: object, owner: type) -> Self: ...
+    def __get__(self, node: Any, owner: type) -> Any:
+        return node._core.groups.at_work(self) if hasattr(node, "_core") else self
+
+    def __repr__(self) -> str:
+        return f"Group({self.name or 'unnamed'}, limit={self.limit})"
+
+
+class Held(MadeByNodes):
+    """A declaration that is an attribute of the class; on a node it gives what the node holds."""
+
+    attribute = ""
+    place: Place
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.attribute = name
+
+
+class Publisher(Held, Generic[M]):
+    """A topic the node publishes.
+
+    Args:
+        type: The message class.
+        name: The topic: relative, absolute or `~/private`.
+        qos: A profile, or a queue depth.
+        depth: The same as a number for `qos`.
+        on_event: A method defined above it, called with each `QosEvent`.
+    """
+
+    MAKER = 'create_publisher(Type, "topic", 10), or declare Publisher(Type, "topic") in the class'
+
+    @in_our_words
+    def __init__(
+        self,
+        type: type[M],  # noqa: A002
+        name: str,
+        qos: Qos | int = 10,
+        *,
+        depth: int | None = None,
+        on_event: Callable[..., Any] | None = None,
+    ) -> None:
+        self.place = here()
+        check_type(type, Message, "Publisher", self.place)
+        check_name(name, "Publisher", self.place)
+        check_on_event(on_event, "Publisher", self.place)
+        self.type, self.name, self.qos = type, name, check_qos(qos, depth, self.place)
+        self.on_event = on_event
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Bound, owner: type) -> TopicPublisher[M]: ...
+    def __get__(self, node: Bound | None, owner: type) -> Any:
+        return self if node is None else node._core.held[self.attribute]
+
+
+class Subscription(Held, Generic[M]):
+    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as for `Publisher`.
+
+    Args:
+        ignore_local: Leave out what this process publishes itself.
+    """
+
+    MAKER = 'create_subscription(Type, "topic", self.heard, 10), or declare @subscription(Type, "topic") on the method'
+
+    @in_our_words
+    def __init__(
+        self,
+        type: type[M],  # noqa: A002
+        name: str,
+        qos: Qos | int = 10,
+        *,
+        depth: int | None = None,
+        ignore_local: bool = False,
+        on_event: Callable[..., Any] | None = None,
+    ) -> None:
+        self.place = here()
+        check_type(type, Message, "Subscription", self.place)
+        check_name(name, "Subscription", self.place)
+        check_on_event(on_event, "Subscription", self.place)
+        self.type, self.name, self.qos = type, name, check_qos(qos, depth, self.place)
+        self.ignore_local, self.on_event = ignore_local, on_event
+
+    def __call__(self, method: object) -> NoReturn:
+        """Raise DeclarationError: the declaration was written as a decorator."""
+        raise DeclarationError(f"{here()}: on a method write @subscription(...), lower-case")
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Bound, owner: type) -> TopicSubscription[M]: ...
+    def __get__(self, node: Bound | None, owner: type) -> Any:
+        return self if node is None else node._core.held[self.attribute]
+
+
+class Client(Held, Generic[Request, Response]):
+    """A service the node calls: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`.
+
+    Args:
+        introspection: What is published of each call on `name`/_service_event.
+        group: Responses wait for a slot of it, as in ROS 2, where that is a way into a deadlock; without a group they
+            need none.
+    """
+
+    MAKER = 'create_client(Type, "name"), or declare Client(Type, "name") in the class'
+
+    @in_our_words
+    def __init__(
+        self,
+        type: type[Service[Request, Response]],  # noqa: A002
+        name: str,
+        *,
+        introspection: Introspection = "off",
+        group: Group | None = None,
+    ) -> None:
+        self.place = here()
+        check_group(group, Group, "Client", self.place)
+        check_type(type, Service, "Client", self.place)
+        check_name(name, "Client", self.place)
+        self.type, self.name, self.introspection, self.group = type, name, introspection, group
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Bound, owner: type) -> ServiceClient[Request, Response]: ...
+    def __get__(self, node: Bound | None, owner: type) -> Any:
+        return self if node is None else node._core.held[self.attribute]
+
+
+class ActionClient(Held, Generic[Goal, Result, Feedback]):
+    """An action whose goals the node sends: `async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal`."""
+
+    MAKER = 'create_action_client(Type, "name"), or declare ActionClient(Type, "name") in the class'
+
+    @in_our_words
+    def __init__(self, type: type[Action[Goal, Result, Feedback]], name: str) -> None:  # noqa: A002
+        self.place = here()
+        check_type(type, Action, "ActionClient", self.place)
+        check_name(name, "ActionClient", self.place)
+        self.type, self.name = type, name
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Bound, owner: type) -> GoalClient[Goal, Result, Feedback]: ...
+    def __get__(self, node: Bound | None, owner: type) -> Any:
+        return self if node is None else node._core.held[self.attribute]
+
+
+class Param(Held, Generic[V]):
+    """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` see and set it.
+
+    Args:
+        default: Its value until it is set; decides the type. A bool, int, float, str, bytes, or a list of one of them.
+        unit: For readers, such as `Hz` or `m/s`.
+        doc: One sentence.
+        ge, le, gt, lt: Limits: at least, at most, more than, less than.
+        read_only: Whether it can be set only from outside and at the start.
+        step: Distance between allowed values, counted from `ge`, or from 0.
+        choices: The values that are allowed; for a list, those of its elements.
+        name: Its name, if not that of the attribute.
+    """
+
+    @in_our_words
+    def __init__(
+        self,
+        default: V,
+        *,
+        unit: str = "",
+        doc: str = "",
+        ge: float | None = None,
+        le: float | None = None,
+        gt: float | None = None,
+        lt: float | None = None,
+        read_only: bool = False,
+        step: float = 0.0,
+        choices: Sequence[Any] = (),
+        name: str = "",
+    ) -> None:
+        self.place = here()
+        self._name = name
+        limits: dict[str, Any] = {"ge": ge, "le": le, "gt": gt, "lt": lt, "step": step}
+        try:
+            if isinstance(default, (list, tuple)) and not default:
+                raise ParameterError("an empty list has no type: give it an element, as in [0.0]")
+            self.parameter = Parameter(
+                name or "unnamed", type_of(default), default, self.place, unit, doc, read_only=read_only, **limits
+            )
+            if choices:
+                self.parameter = replace(self.parameter, choices=self._choices(choices))
+            if ge is not None and le is not None and ge > le:
+                raise ParameterError(f"ge={ge!r} is more than le={le!r}, so that no value fits")
+            self.parameter.fit(default)
+            if (self.parameter.range_text() or step) and self.parameter.type not in _NUMBERS:
+                raise ParameterError(f"limits are for numbers, and {default!r} is not a number")
+            if step < 0 or (step % 1 and self.parameter.type in ("int", "list[int]")):
+                raise ParameterError(f"a step cannot be {step}")
+        except GraphflowError as error:
+            text = str(error).replace("parameter 'unnamed'", "the default")
+            raise DeclarationError(f"{self.place}: {text}") from None
+
+    def _choices(self, choices: Sequence[Any]) -> tuple[Any, ...]:
+        """The choices, as the declared type. Raises ParameterError: One is of another type, or they are no list."""
+        if not isinstance(choices, (list, tuple)):
+            raise ParameterError(f"choices= takes a list of values, not {choices!r}")
+        is_list = self.parameter.type.startswith("list[")
+        return tuple(self.parameter.fit([value])[0] if is_list else self.parameter.fit(value) for value in choices)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        super().__set_name__(owner, name)
+        self.parameter = replace(self.parameter, name=self._name or name)
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Bound, owner: type) -> V: ...
+    def __get__(self, node: Bound | None, owner: type) -> Any:
+        return self if node is None else node._core.parameters.get(self.parameter.name)
+
+    def __set__(self, node: Bound, value: V) -> None:
+        node._core.parameters.set({self.parameter.name: value}, source="node")
+
+    def with_typing(self, *, dynamic: bool) -> Parameter:
+        """The parameter that is declared, which may take values of every type and be deleted."""
+        return replace(self.parameter, dynamic=dynamic)
+
+    def check(self, fn: F) -> F:
+        """Call the method with each new value before it is set; a ValueError that it raises refuses the value.
+
+        rclpy's add_on_set_parameters_callback.
+        """
+        if inspect.iscoroutinefunction(fn):
+            raise DeclarationError(f"{here()}: {fn.__name__}: a check must decide at once; make it a `def`")
+        return _mark_hook(fn, "check", self, ("self", "value"), here())
+
+    def on_change(self, fn: F) -> F:
+        """Call the method, `def` or `async def`, with the old and the new value after each change.
+
+        rclpy's add_post_set_parameters_callback.
+        """
+        return _mark_hook(fn, "on_change", self, ("self", "old", "new"), here())
+
+
+HookKind = Literal["check", "on_change"]
+
+
+@dataclass(frozen=True)
+class ParamHook:
+    """A method that follows a parameter."""
+
+    kind: HookKind
+    param: Param[Any]
+    place: Place
+
+
+HOOK_MARK = "__graphflow_hook__"
+
+
+def _mark_hook(fn: F, kind: HookKind, param: Param[Any], words: tuple[str, ...], place: Place) -> F:
+    if not inspect.isfunction(fn):
+        raise DeclarationError(f"{place}: .{kind} goes on a method, not on {fn!r}")
+    if len(inspect.signature(fn).parameters) != len(words):
+        raise DeclarationError(f"{place}: {fn.__name__} must take ({', '.join(words)})")
+    setattr(fn, HOOK_MARK, ParamHook(kind, param, place))
+    return fn

@@ -1,0 +1,172 @@
+"""Declarations that Python accepts and nothing reads: under another decorator, in a tuple, outside of the class."""
+
+from __future__ import annotations
+
+import ast
+import dis
+import functools
+import inspect
+import sys
+from collections.abc import Collection, Iterator, Mapping
+from types import CodeType
+from typing import Any
+
+from graphflow.errors import DeclarationError, Place
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import HOOK_MARK, Held, Param, ParamHook
+from graphflow.runtime.declarations.handlers import MARK, Handler
+
+
+def check_misplaced(cls: type) -> None:
+    """See that everything that is declared in the body of a class is found there.
+
+    Raises:
+        DeclarationError: Something is not; with its line, and how it is written.
+    """
+    known = {id(value) for parent in cls.__mro__ for value in vars(parent).values()}
+    for attribute, value in vars(cls).items():
+        for inner in _held_by(value):
+            if id(inner) not in known:
+                _refuse_wrapped(attribute, value, inner)
+        if isinstance(value, (tuple, list, set, dict)) and not attribute.startswith("__"):
+            _refuse_collected(attribute, value, known)
+    # Before Python 3.14, which makes them when they are asked for, annotations that are no text are objects here.
+    annotations = vars(cls).get("__annotations__", {})
+    for attribute, value in annotations.items() if isinstance(annotations, Mapping) else ():
+        if isinstance(value, Held):
+            raise DeclarationError(f"{value.place}: {attribute} is only annotated; write = in place of the colon")
+        if (inner := next(_handlers_in(value), None)) is not None:
+            raise DeclarationError(f"{inner.place}: @{inner.kind} goes above a method; {attribute} is only annotated")
+        if isinstance(value, str) and _declares(value, vars(sys.modules[cls.__module__])):
+            place = f"{declared.place_of(cls)}: {cls.__name__}.{attribute}"
+            raise DeclarationError(f"{place} is only annotated, as {value}; write = in place of the colon")
+
+
+def _declares(annotation: str, space: Mapping[str, Any]) -> bool:
+    """Whether the text of an annotation is a declaration, such as `Publisher(String, "chatter")`."""
+    try:
+        expression = ast.parse(annotation, mode="eval").body
+    except (SyntaxError, ValueError):
+        return False
+    function = expression.func if isinstance(expression, ast.Call) else None
+    if isinstance(function, ast.Attribute):
+        return isinstance(function.value, ast.Name) and function.value.id == "graphflow"
+    found = space.get(function.id) if isinstance(function, ast.Name) else None
+    return isinstance(found, type) and issubclass(found, Held)
+
+
+def _held_by(value: Any) -> Iterator[Any]:
+    """Functions that an attribute of a class holds in place of being one of them."""
+    if hasattr(value, MARK) or hasattr(value, HOOK_MARK) or isinstance(value, (Held, type)):
+        return
+    if isinstance(value, property):
+        inner = [value.fget, value.fset]
+    elif isinstance(value, (staticmethod, classmethod)):
+        inner = [value.__func__]
+    elif isinstance(value, (functools.partial, functools.partialmethod)):
+        inner = [value.func]
+    elif inspect.isfunction(value):
+        inner = [_content(cell) for cell in value.__closure__ or ()]
+    else:
+        inner = list(getattr(value, "__dict__", {}).values())
+    yield from (fn for fn in inner if inspect.isfunction(fn) and (hasattr(fn, MARK) or hasattr(fn, HOOK_MARK)))
+
+
+def _content(cell: Any) -> Any:
+    try:
+        return cell.cell_contents
+    except ValueError:  # nothing is in it yet
+        return None
+
+
+def _handlers_in(value: Any) -> Iterator[Handler]:
+    """The handler that a decorator such as `timer(1.0)` would mark a function as."""
+    for cell in getattr(value, "__closure__", None) or ():
+        if isinstance(found := _content(cell), Handler):
+            yield found
+
+
+def _refuse_wrapped(attribute: str, value: Any, inner: Any) -> None:
+    mark: Handler | ParamHook = getattr(inner, MARK, None) or getattr(inner, HOOK_MARK)
+    own = f"@{mark.kind}" if isinstance(mark, Handler) else f"@{mark.param.attribute}.{mark.kind}"
+    if isinstance(value, (property, staticmethod, classmethod)):
+        way = f"{own} goes on a plain method; leave out @{type(value).__name__}"
+    else:
+        name = getattr(value, "__qualname__", type(value).__qualname__).partition(".<locals>")[0].rpartition(".")[2]
+        way = f"{own} goes above @{name}, or functools.wraps(fn) into what that returns"
+    raise DeclarationError(f"{mark.place}: {attribute} would never run, as the decorator above hides it; {way}")
+
+
+def _refuse_collected(attribute: str, value: Any, known: Collection[int]) -> None:
+    for item in value.values() if isinstance(value, dict) else value:
+        if not isinstance(item, Held) or id(item) in known:
+            continue
+        kind = type(item).__name__
+        if isinstance(value, tuple) and len(value) == 1:
+            raise DeclarationError(
+                f"{item.place}: {attribute} is a tuple, by the comma behind {kind}(...); leave it out"
+            )
+        way = "give each an attribute of its own"
+        if not isinstance(item, Param):
+            maker = item.MAKER.partition("(")[0]
+            way += f", or make them in __init__: self.{attribute} = [self.{maker}(...), ...]"
+        raise DeclarationError(f"{item.place}: a {kind} in a {type(value).__name__} is not the node's; {way}")
+
+
+def check_made(node: object) -> None:
+    """See that the `__init__` of a node has not declared what belongs into the body of its class.
+
+    Raises:
+        DeclarationError: It has.
+    """
+    for attribute, value in vars(node).items():
+        if isinstance(value, Held) and not value.attribute:
+            kind = type(value).__name__
+            way = f"write {attribute} = {kind}(...) in the body of the class"
+            if not isinstance(value, Param):
+                way += f", or self.{attribute} = self.{value.MAKER.partition('(')[0]}(...) here"
+            raise DeclarationError(f"{value.place}: self.{attribute} is no {kind} of the node; {way}")
+
+
+def check_hooks(cls: type) -> None:
+    """See that methods that are awaited can be: an `async def`, or one that returns something; `__init__` is not.
+
+    Raises:
+        DeclarationError: One cannot.
+    """
+    if inspect.iscoroutinefunction(init := vars(cls).get("__init__")):
+        place = Place(init.__code__.co_filename, init.__code__.co_firstlineno)
+        way = "write def __init__, and await in async def on_start(self)"
+        raise DeclarationError(f"{place}: Python does not await {cls.__name__}.__init__; {way}")
+    for name in ("on_start", "on_shutdown"):
+        hook = vars(cls).get(name)
+        if inspect.isfunction(hook) and not inspect.iscoroutinefunction(hook) and _returns_nothing(hook.__code__):
+            place = Place(hook.__code__.co_filename, hook.__code__.co_firstlineno)
+            raise DeclarationError(f"{place}: {name} is awaited; write async def {name}(self)")
+
+
+def _returns_nothing(code: CodeType) -> bool:
+    before = None
+    for step in dis.get_instructions(code):
+        if step.opname == "RETURN_VALUE" and not (before and before.opname == "LOAD_CONST" and before.argval is None):
+            return False
+        if step.opname == "RETURN_CONST" and step.argval is not None:
+            return False
+        before = step
+    return True
+
+
+def check_module(cls: type) -> None:
+    """See that no handler stands beside the class, at the top of its module.
+
+    Raises:
+        DeclarationError: One does.
+    """
+    module = sys.modules.get(cls.__module__)
+    values = list(vars(module).values()) if module is not None else []
+    known = {id(value) for one in values if isinstance(one, type) for value in vars(one).values()}
+    for value in values:
+        mark = getattr(value, MARK, None) if inspect.isfunction(value) else None
+        if isinstance(mark, Handler) and value.__module__ == cls.__module__ and id(value) not in known:
+            text = f"@{mark.kind} goes on a method, and {value.__name__} stands outside of a class; indent it into one"
+            raise DeclarationError(f"{mark.place}: {text}")

@@ -1,0 +1,1 @@
+"""Publishers, subscriptions, services and clients as they run. Begin with `endpoint`, which they share."""

@@ -1,0 +1,495 @@
+"""Subscriptions."""
+
+from __future__ import annotations
+
+import asyncio
+import struct
+from asyncio import Future
+from collections.abc import AsyncIterator, Callable
+from inspect import iscoroutinefunction
+from typing import Any, Generic, TypeVar
+
+from graphflow.errors import ClosedError, DecodeError
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
+from graphflow.interface import OnError
+from graphflow.msgs import registry
+from graphflow.msgs.base import Message
+from graphflow.qos import DEFAULT, INFINITE_NS, Durability, Liveliness, Qos
+from graphflow.runtime.endpoints.endpoint import Endpoint
+from graphflow.runtime.endpoints.events import OnEvent, SilenceTimer
+from graphflow.runtime.endpoints.intra_process import Handed
+from graphflow.runtime.endpoints.publishers import alive_key
+from graphflow.runtime.endpoints.shared_memory import RingReading
+from graphflow.runtime.endpoints.sources import Source
+from graphflow.runtime.mistakes.echoes import Echo
+from graphflow.runtime.part import Host
+from graphflow.transport.base import BYTES_BOUND, DeepInbox, Inbox, open_inbox
+from graphflow.wire import attachment
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Entity, Kind
+
+M = TypeVar("M", bound=Message)
+
+LOSS_TOLD = 100
+"""Messages dropped from the queue from which on the loss of most is told."""
+SOURCES_BOUND = 4096
+"""Publishers that a subscription keeps track of."""
+
+
+_NO_INFO = (0, 0, bytes(16))
+"""Stands in for a missing attachment, or for one of another layout."""
+
+
+class TopicSubscription(Endpoint, Generic[M]):
+    """A subscription as it runs: with a callback, or to be iterated: `async for message in subscription`.
+
+    Args:
+        takes_info: Whether the callback is called with the message and its `MessageInfo`.
+        ignore_local: Leave out what this process publishes.
+    """
+
+    kind = Kind.SUBSCRIPTION
+    in_order = False
+    """Whether answers that are sent after a message must not overtake it."""
+
+    def __init__(
+        self,
+        host: Host,
+        type_: type[M],
+        name: str,
+        qos: Qos,
+        callback: Callable[..., Any] | None = None,
+        label: str = "",
+        group: HandlerGroup | None = None,
+        *,
+        takes_info: bool = False,
+        ignore_local: bool = False,
+        on_event: OnEvent | None = None,
+        on_error: OnError = "budget",
+    ) -> None:
+        super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
+        self.type = type_
+        self.expired = 0
+        """Messages dropped because they were older than the publisher's lifespan, or the subscription's."""
+        self._callback = callback
+        self._takes_info = takes_info
+        self._ignore_local = ignore_local
+        self._label = label or f"subscription {name}"
+        self._group = group
+        self._on_error = on_error
+        self._codec = registry.codec(self.type_name)
+        self._read: Callable[[Any], tuple[bytes, bytes | None]] = unreadable
+        self.runner: Runner | None = None
+        self._inbox: Inbox | None = None
+        self._taken = 0
+        self._waiters: set[Future[None]] = set()
+        self._sources: dict[bytes, Source] = {}
+        self._gaps = 0
+        self._has_told_loss = self._has_told_full = False
+        self._deadline: SilenceTimer | None = None
+        self._echo: Echo | None = None
+        self._rings: RingReading | None = None
+        self._wake: Callable[[], None] = _nothing
+        """What a message has called when the subscription is not paused."""
+
+    @property
+    def handler_title(self) -> str:
+        return title_of("subscription", self._label)
+
+    def _hint(self, name: str) -> str:
+        if name not in {field.name for field in self.type.SCHEMA.fields}:
+            return ""
+        return "a message has it: async for message in the subscription, or @subscription on a method that takes one"
+
+    def _open(self, key: str) -> None:
+        context = self.host.context
+        self._read = context.session.read
+        if self._callback is None:
+            self._inbox = self._new_inbox()
+        else:
+            self._inbox = open_inbox(self.qos, context.session.bell, _nothing)
+            tell = (self._invoker(), self._finished, self.host.full_name)
+            spec = RunnerSpec(
+                self._label,
+                *tell,
+                "subscription",
+                self._refused,
+                lambda: self.dropped,
+                wants_results=False,
+                begins_outside=iscoroutinefunction(self._callback),
+            )
+            self.runner = self.host.runner(spec, self._inbox.items, self._group)
+            self._inbox.ready = self.runner.wake
+        self._inbox.tell_losses(self._warn_of_losses, 1 if isinstance(self._inbox, DeepInbox) else LOSS_TOLD)
+        if self.qos.deadline_ns != INFINITE_NS:
+            self._watch_deadline(self._inbox)
+        # What nodes of this process publish comes by hand, unless it is wanted not at all.
+        ignore_local = self._ignore_local or self.qos.durability is Durability.VOLATILE
+        is_large = self.qos.durability is Durability.VOLATILE and registry.has_number_lists(self.type_name)
+        options = {"ignore_local": ignore_local, "in_order": self.in_order or is_large}
+        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, **options))
+        if is_large:
+            self._rings = context.readers.read(self._announced(), self._inbox)
+            self._declared += () if self._rings is None else (self._rings,)
+        if not self._ignore_local:
+            context.intra_process.join(key, self)
+
+    def _new_inbox(self) -> Inbox:
+        """Where messages wait for those who iterate."""
+        return open_inbox(self.qos, self.host.context.session.bell, self._arrived)
+
+    def hand(self, handed: Handed) -> None:
+        """Take a message of a publisher of this process."""
+        if self._inbox is not None:
+            self._inbox.put(handed)
+
+    def _watch_deadline(self, inbox: Inbox) -> None:
+        """Count a missed deadline for every period without a message, while there is a publisher to meet it."""
+        timer = SilenceTimer(self.host.clock, self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
+        ready = inbox.ready
+
+        def heard() -> None:
+            timer.touch()
+            ready()
+
+        inbox.ready, self._deadline = heard, timer
+
+    @property
+    def received(self) -> int:
+        """Messages that arrived since the start."""
+        if self._inbox is None:
+            return 0
+        taken = self._taken if self.runner is None else self.runner.runs
+        return taken + len(self._inbox.items) + self._inbox.dropped
+
+    @property
+    def dropped(self) -> int:
+        """Messages lost because the queue (`qos.depth`) was full."""
+        return self._inbox.dropped if self._inbox is not None else 0
+
+    @property
+    def lost(self) -> int:
+        """Messages that never arrived, counted by gaps in the publishers' sequence numbers."""
+        return self.event_total("message_lost")
+
+    def statistics(self) -> dict[str, Any]:
+        """Messages received, waiting, dropped, malformed and expired; runs and failed runs of the callback."""
+        waiting = 0 if self._inbox is None else len(self._inbox.items)
+        counts = {"received": self.received, "waiting": waiting, "dropped": self.dropped}
+        counts |= {"malformed": self.malformed, "expired": self.expired}
+        if self.runner is not None:
+            counts |= {"runs": self.runner.runs, "errors": self.runner.errors}
+        return {**counts, **super().statistics()}
+
+    def clock_changed(self) -> None:
+        leases = [source.lease for source in self._sources.values()]
+        for timer in (self._deadline, *leases):
+            if timer is not None:
+                timer.move(self.host.clock)
+
+    def get_publisher_count(self) -> int:
+        """Number of publishers in the graph whose messages arrive here."""
+        self._announced()
+        return len(self.matched)
+
+    # its publishers
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        if not alive:
+            source = self._sources.pop(other.gid, None)
+            was_alive = source is None or source.lease is None or source.lease.is_running
+            self._end(source)
+            if self._rings is not None:
+                self._rings.forget_ended()
+        else:
+            was_alive = False
+            source = self._sources.setdefault(other.gid, Source(INFINITE_NS))
+            source.expects(min(other.qos.lifespan_ns, self.qos.lifespan_ns))
+            if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.lease_ns != INFINITE_NS:
+                self._watch_lease(other, source)
+        if self._deadline is not None:
+            self._deadline.start() if self.matched else self._deadline.stop()
+        if alive or was_alive:
+            self._liveliness_changed(1 if alive else -1, other.node_name)
+        self._follow_echo()
+
+    def _follow_echo(self) -> None:
+        """Watch for a loop where the node's own publishers are the only ones."""
+        own = self._announced()
+        is_alone = bool(self.matched) and all((e.zid, e.nid) == (own.zid, own.nid) for e in self.matched.values())
+        if self._echo is None and is_alone and not self._ignore_local:
+            self._echo = Echo(self.host.context.clock, lambda: self.received, self._warn_of_echo)
+        if self._echo is not None:
+            self._echo.follow(is_alone=is_alone)
+
+    def _warn_of_echo(self, rate: int) -> None:
+        self.host.log.warning(
+            "this node hears what it publishes itself on %s, %d messages a second: if the handler publishes there, "
+            "that never ends; publish to another topic, or remap one of the two",
+            self.name,
+            rate,
+        )
+
+    def _watch_lease(self, other: Entity, source: Source) -> None:
+        def silent() -> None:
+            assert source.lease is not None
+            if any(_gid_of(arrival, read) == other.gid for arrival in waiting.items):
+                source.lease.touch()  # it has published: the handler is late, not the publisher
+                return
+            source.lease.stop()
+            self._liveliness_changed(-1, other.node_name)
+
+        assert self._inbox is not None
+        session, waiting = self.host.context.session, self._inbox
+        read = session.read
+        lease = SilenceTimer(self.host.clock, other.qos.lease_ns, silent)
+        source.expects(source.lifespan_ns, lease)
+        lease.start()
+        inbox = Inbox(session.bell, 1, lambda: self._revive(other.gid))
+        source.alive = session.open_receiver(alive_key(other), DEFAULT, inbox)
+
+    def _revive(self, gid: bytes) -> None:
+        """A publisher with manual liveliness was heard."""
+        source = self._sources.get(gid)
+        if source is None or source.lease is None:
+            return
+        source.lease.touch()
+        if not source.lease.is_running:
+            source.lease.start()
+            self._liveliness_changed(1, next((e.node_name for e in self.matched.values() if e.gid == gid), ""))
+
+    def _liveliness_changed(self, change: int, node: str) -> None:
+        silent = sum(1 for s in self._sources.values() if s.lease is not None and not s.lease.is_running)
+        self._tell("liveliness_changed", change=change, current=len(self.matched) - silent, detail=node)
+
+    @staticmethod
+    def _end(source: Source | None) -> None:
+        if source is not None and source.lease is not None and source.alive is not None:
+            source.lease.stop()
+            source.alive.close()
+
+    # taking messages
+
+    def _take(self, arrival: Any) -> tuple[M, tuple[int, int, bytes]] | None:
+        """The arrived message and the fields of its `MessageInfo`; None when it is too old or malformed."""
+        if arrival.__class__ is Handed:
+            if self._is_fresh(*arrival.fields):
+                return arrival.take(), arrival.fields
+            self.expired += 1
+            return None
+        payload, beside = self._read(arrival)
+        try:
+            fields = attachment.fields(beside or b"")
+        except DecodeError:  # peers that send none, or one of another layout, are heard anyway
+            fields = _NO_INFO
+        else:
+            if not self._is_fresh(*fields):
+                self.expired += 1
+                return None
+        try:
+            return self._codec.decode(payload), fields
+        except DecodeError as error:
+            self.count_malformed(error)
+            return None
+
+    def _is_fresh(self, sequence: int, source_ns: int, gid: bytes) -> bool:
+        """Note where a message stands among its publisher's; False when it has outlived its lifespan."""
+        source = self._sources.get(gid)
+        if source is None:
+            if len(self._sources) >= SOURCES_BOUND:  # invented senders must not fill the memory
+                return True
+            source = self._sources[gid] = Source(self.qos.lifespan_ns)
+        missing = sequence - source.sequence - 1
+        if missing > 0 and source.sequence:
+            self._count_missing(missing)
+        source.sequence = sequence
+        if source.lease is not None:
+            self._revive(gid)
+        if source.lifespan_ns == INFINITE_NS:
+            return True
+        return self.host.context.clock.time_ns() - source_ns <= source.lifespan_ns
+
+    def _count_missing(self, missing: int) -> None:
+        """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
+        self._gaps += missing
+        dropped = self.dropped
+        self._warn_of_losses()
+        lost = self._gaps - dropped - self.lost
+        if lost > 0:
+            self._tell("message_lost", lost)
+
+    def _warn_of_losses(self) -> None:
+        """Tell once that a deep queue was full, and that most messages are lost."""
+        dropped = self.dropped
+        if self._callback is None and not (self._taken or self._waiters):
+            if not self._has_told_loss and (dropped >= LOSS_TOLD or isinstance(self._inbox, DeepInbox)):
+                self._has_told_loss = True
+                text = "nothing has read %s yet, and its messages are lost, %d so far: write "
+                text += "`async for message in ...` in a @task, or put @subscription on a method"
+                self.host.log.warning(text, self.name, dropped)
+            return
+        is_busy = self.runner is not None and self.runner.active
+        where = "; graphflow waits says where it is now" if is_busy else ""
+        if dropped and not self._has_told_full and isinstance(self._inbox, DeepInbox):
+            self._has_told_full = True
+            self.host.log.warning(
+                "%s: its queue was full, and dropped the oldest messages, %d so far: it holds %d messages and %d MB; "
+                "do less in the handler, give it a group of its own, or have less sent%s",
+                self._label,
+                dropped,
+                self._inbox.items.maxlen,
+                BYTES_BOUND >> 20,
+                where,
+            )
+        elif not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
+            self._has_told_loss = True
+            self.host.log.warning(
+                "%s: most messages are lost, %d of %d so far: they come faster than they are handled. Do less in the "
+                "handler, give it a group of its own, or have less sent%s; graphflow doctor goes on counting",
+                self._label,
+                dropped,
+                self.received,
+                where,
+            )
+
+    def _invoker(self) -> Callable[[Any], Any]:
+        """`_invoke`, with the usual case written out in one function: the next message of a publisher that is known.
+
+        Whatever is unusual about an arrival goes the general way.
+        """
+        general, callback, takes_info = self._invoke, self._callback, self._takes_info
+        read, decode, sources = self._read, self._codec.decode, self._sources
+        unpack, new = attachment.LAYOUT.unpack, tuple.__new__
+        assert callback is not None
+
+        def invoke(arrival: Any) -> Any:
+            if arrival.__class__ is Handed:
+                return general(arrival)
+            payload, beside = read(arrival)
+            try:
+                sequence, source_ns, size, gid = unpack(beside or b"")
+                source = sources[gid]
+            except (struct.error, KeyError):
+                return general(arrival)
+            if size != 16 or sequence != source.sequence + 1 or source.needs_care:
+                return general(arrival)
+            source.sequence = sequence
+            try:
+                message = decode(payload)
+            except DecodeError as error:
+                self.count_malformed(error)
+                return None
+            return callback(message, new(MessageInfo, (sequence, source_ns, gid))) if takes_info else callback(message)
+
+        return invoke
+
+    def _invoke(self, arrival: Any) -> Any:
+        taken = self._take(arrival)
+        if taken is None:
+            return None
+        message, fields = taken
+        assert self._callback is not None
+        return self._callback(message, MessageInfo._make(fields)) if self._takes_info else self._callback(message)
+
+    def _finished(self, arrival: Any, result: Any, error: BaseException | None) -> None:
+        if error is not None:
+            self.host.handler_failed(self._label, error, self._on_error)
+
+    def _refused(self, arrival: Any) -> None:
+        assert self._inbox is not None
+        self._inbox.dropped += 1
+
+    # iteration
+
+    def _arrived(self) -> None:
+        for waiter in self._waiters:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    def __aiter__(self) -> AsyncIterator[M]:
+        if self._callback is not None:
+            raise ClosedError(f"{self.name}: this subscription has a callback; make another one to iterate over")
+        return self
+
+    async def __anext__(self) -> M:
+        return (await self.next_with_info())[0]
+
+    async def next_with_info(self) -> tuple[M, MessageInfo]:
+        """The next message and its `MessageInfo`. Ends the iteration when the subscription is closed."""
+        while True:
+            if self._inbox is None or self.entity is None:
+                raise StopAsyncIteration
+            while self._inbox.items:
+                if self._taken % BURST == BURST - 1:
+                    await asyncio.sleep(0)  # a sender that is faster than the reader must not hold the loop
+                    if not self._inbox.items:
+                        break
+                self._taken += 1
+                taken = self._take(self._inbox.items.popleft())
+                if taken is not None:
+                    message, fields = taken
+                    return message, MessageInfo._make(fields)
+            waiter: Future[None] = self.host.context.loop.create_future()
+            self._waiters.add(waiter)
+            try:
+                await waiter
+            finally:
+                self._waiters.discard(waiter)
+
+    def begin_to_stop(self) -> Runner | None:
+        return self.runner
+
+    def pause(self, why: str) -> Runner | None:
+        """Leave out what arrives."""
+        if self._inbox is not None and not self.idle_because:
+            self._wake, self._inbox.ready = self._inbox.ready, self._leave_out
+            self._leave_out()
+        super().pause(why)
+        return self.runner
+
+    def resume(self) -> Runner | None:
+        if self._inbox is not None and self.idle_because:
+            self._leave_out()
+            self._inbox.ready = self._wake
+        super().resume()
+        if self.runner is not None:
+            self.runner.reopen()
+        return self.runner
+
+    def _leave_out(self) -> None:
+        assert self._inbox is not None
+        self._inbox.items.clear()
+        if self._deadline is not None:
+            self._deadline.touch()  # the publisher has met it
+
+    def close(self) -> None:
+        if self.runner is not None:
+            self.runner.cancel()
+        if self.entity is not None:
+            self.host.context.intra_process.leave(self.entity.data_key, self)
+        if self._deadline is not None:
+            self._deadline.stop()
+        if self._echo is not None:
+            self._echo.stop()
+        for source in self._sources.values():
+            self._end(source)
+        self._sources.clear()
+        super().close()
+        self._arrived()
+
+
+def _gid_of(arrival: Any, read: Callable[[Any], tuple[bytes, bytes | None]]) -> bytes:
+    """The sender of what has arrived; empty if it is not told."""
+    if isinstance(arrival, Handed):
+        return arrival.fields[2]
+    beside = read(arrival)[1]
+    return beside[-16:] if beside is not None else b""
+
+
+def unreadable(arrival: Any) -> tuple[bytes, bytes | None]:
+    raise ClosedError(f"{arrival!r} arrived before the subscription was open")
+
+
+def _nothing() -> None:
+    """Nothing waits yet."""

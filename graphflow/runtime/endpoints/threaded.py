@@ -1,0 +1,357 @@
+"""Endpoints for threads: what they send may come from any thread, and what arrives waits until a thread takes it.
+
+Messages pass as CDR, with its header of four bytes: whoever takes them has classes of its own. Arrivals do not come by
+way of the loop: they ring a bell that is given, so that one change of threads lies between the network and the handler.
+Opening and closing are for the loop, as with all endpoints.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from graphflow.errors import CallError, ClosedError, DecodeError, ServerLost
+from graphflow.machines.waits.wait_graph import call_id
+from graphflow.msgs import registry
+from graphflow.qos import DEFAULT, Qos
+from graphflow.runtime.endpoints.direct_calls import unanswered, warn_of_refused
+from graphflow.runtime.endpoints.endpoint import Endpoint
+from graphflow.runtime.endpoints.events import OnEvent, QosEventKind
+from graphflow.runtime.endpoints.intra_process import Handed
+from graphflow.runtime.endpoints.publishers import TopicPublisher
+from graphflow.runtime.endpoints.service_client import error_of, sequence_of
+from graphflow.runtime.endpoints.service_events import Introspection, ServiceEvent, ServiceEvents
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.part import Host
+from graphflow.transport.base import (
+    REQUESTS_BOUND,
+    Answer,
+    Caller,
+    Inbox,
+    Request,
+    RequestInbox,
+    Rings,
+    open_inbox,
+    request_size,
+)
+from graphflow.wire import attachment
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Kind
+
+
+class ThreadedPublisher(TopicPublisher[Any]):
+    """A publisher of serialized messages, for any thread."""
+
+    unheard = 0
+    """The messages published so far that no subscription was there to get."""
+
+    def put(self, payload: bytes) -> None:
+        """Send a message. Never waits.
+
+        Raises:
+            DecodeError: Subscriptions of this process are to get it, and it is no message of the type.
+            ClosedError: The node is not running.
+        """
+        with self._order.lock:
+            sender, here = self._sender, tuple(self._here)
+            if not (here or sender.is_wanted):
+                self._announced()
+                self.unheard += 1
+            handed = self._codec.decode(payload) if here else None
+            self._order.number += 1
+            fields = (self.published, self._now_ns(), self._gid)
+            if here:
+                message = Handed(handed, fields, len(here), self._codec.clone)
+                for receiver in here:
+                    receiver.hand(message)
+            if sender.is_wanted:
+                try:
+                    sender.put(payload, attachment=attachment.pack(*fields))
+                except Exception as error:
+                    raise self._not_sent(error) from None
+        for timer in (self._deadline, self._lease):
+            if timer is not None:
+                timer.touch()
+
+
+class Taken(NamedTuple):
+    """A message that was taken from a subscription."""
+
+    payload: bytes
+    info: MessageInfo
+
+
+class ThreadedSubscription(TopicSubscription[Any]):
+    """A subscription whose messages threads take.
+
+    Args:
+        bell: Rung when a message has arrived.
+        ready: Called by whom the bell wakes.
+    """
+
+    def __init__(
+        self,
+        host: Host,
+        type_: Any,
+        name: str,
+        qos: Qos,
+        bell: Rings,
+        ready: Callable[[], None],
+        on_event: OnEvent | None = None,
+    ) -> None:
+        super().__init__(host, type_, name, qos, on_event=on_event)
+        self._codec = _AS_IT_IS
+        self._bell, self._ready = bell, ready
+
+    def _new_inbox(self) -> Inbox:
+        return open_inbox(self.qos, self._bell, self._ready)
+
+    @property
+    def waiting(self) -> int:
+        """Messages that have arrived and were not taken."""
+        return 0 if self._inbox is None else len(self._inbox.items)
+
+    def take(self) -> Taken | None:
+        """The oldest message that waits; None if there is none. Those that are too old are left out."""
+        inbox = self._inbox
+        while inbox is not None and self.entity is not None:
+            try:
+                arrival = inbox.items.popleft()
+            except IndexError:
+                return None
+            self._taken += 1
+            taken = self._take(arrival)
+            if taken is not None:
+                message, fields = taken
+                payload = message if isinstance(message, bytes) else message.to_bytes()
+                return Taken(payload, MessageInfo._make(fields))
+        return None
+
+    def _tell(
+        self, kind: QosEventKind, more: int = 1, change: int | None = None, current: int = 0, detail: str = ""
+    ) -> None:
+        context = self.host.context
+        if threading.get_ident() == context.ledger.thread:
+            super()._tell(kind, more, change, current, detail)
+        elif not context.loop.is_closed():
+            context.loop.call_soon_threadsafe(super()._tell, kind, more, change, current, detail)
+
+
+class _AsItIs:
+    """Stands for a codec where messages pass as they came."""
+
+    @staticmethod
+    def decode(payload: bytes) -> bytes:
+        return payload
+
+
+_AS_IT_IS: Any = _AsItIs()
+
+
+class Asked(NamedTuple):
+    """A request that was taken from a service."""
+
+    payload: bytes
+    sequence: int
+    gid: bytes
+    source_ns: int
+    request: Request
+
+    @property
+    def call(self) -> str:
+        """The id of the call in the wait-for graphs of all processes."""
+        return call_id(self.gid, self.sequence)
+
+
+class ThreadedService(Endpoint):
+    """A service whose requests threads take and answer.
+
+    Args:
+        type_: A class with `NAME`; its `Event` is one of graphflow's.
+        bell: Rung when a request has arrived.
+        ready: Called by whom the bell wakes.
+    """
+
+    kind = Kind.SERVICE
+
+    def __init__(self, host: Host, type_: Any, name: str, qos: Qos, bell: Rings, ready: Callable[[], None]) -> None:
+        super().__init__(host, type_.NAME, name, qos)
+        self.inbox = RequestInbox(bell, REQUESTS_BOUND, ready, request_size, unanswered)
+        self.inbox.tell_losses(lambda: warn_of_refused(self.inbox, f"{name} of {host.full_name}: requests"), 1)
+        self._service_events = ServiceEvents(host, type_, name)
+
+    def configure_introspection(self, level: Introspection, qos: Qos = DEFAULT) -> None:
+        """The same as `ServiceServer.configure_introspection`."""
+        self._service_events.configure(level, qos, is_open=self.is_open)
+
+    def _open(self, key: str) -> None:
+        self._declared.append(self.host.context.session.open_server(key, self.inbox))
+        self._service_events.open()
+
+    def take(self) -> Asked | None:
+        """The oldest request that waits; None if there is none."""
+        while True:
+            try:
+                request = self.inbox.items.popleft()
+            except IndexError:
+                return None
+            asked = read_request(request)
+            if asked is not None:
+                return asked
+
+    def answer(self, asked: Asked, payload: bytes) -> None:
+        """Send the response to a request, once."""
+        now_ns = self.host.context.clock.time_ns()
+        asked.request.reply(payload, attachment.pack(asked.sequence, now_ns, asked.gid))
+
+    def tell(self, event: ServiceEvent, asked: Asked, payload: bytes) -> None:
+        """Publish an event of a call, with the request or response that it is about, if introspection is on."""
+        if self._service_events.is_on:
+            tell_event(self.host, self._service_events, event, (asked.gid, asked.sequence), self.type_name, payload)
+
+    def close(self) -> None:
+        self._service_events.close()
+        super().close()
+
+
+def tell_event(
+    host: Host, events: ServiceEvents, event: ServiceEvent, call: tuple[bytes, int], service: str, payload: bytes
+) -> None:
+    """Have an event of a call published, from any thread.
+
+    Args:
+        call: The client's GID, and its number of the call.
+        payload: The request or response as CDR.
+    """
+    schema = registry.service_schema(service)
+    is_request = event in (ServiceEvent.REQUEST_SENT, ServiceEvent.REQUEST_RECEIVED)
+    part = schema.request if is_request else schema.response
+    message = registry.codec(part.name).decode(payload)
+    told = {"request" if is_request else "response": message}
+    host.context.loop.call_soon_threadsafe(lambda: events.tell(event, *call, **told))
+
+
+def read_request(request: Request) -> Asked | None:
+    """A request that has arrived; None if it does not say whose it is."""
+    try:
+        sequence, source_ns, gid = attachment.fields((request.attachment or b"")[: attachment.SIZE])
+    except DecodeError:
+        return None
+    return Asked(request.payload, sequence, gid, source_ns, request)
+
+
+class Answered(NamedTuple):
+    """The end of a call."""
+
+    sequence: int
+    payload: bytes = b""
+    error: CallError | None = None
+
+
+class ThreadedClient(Endpoint):
+    """A client whose calls and answers are threads' business.
+
+    Args:
+        type_: As for `ThreadedService`.
+        bell: Rung when an answer has arrived.
+        ready: Called by whom the bell wakes.
+        changed: Called on the loop when servers have come or gone.
+    """
+
+    kind = Kind.CLIENT
+
+    def __init__(
+        self,
+        host: Host,
+        type_: Any,
+        name: str,
+        qos: Qos,
+        bell: Rings,
+        ready: Callable[[], None],
+        changed: Callable[[], None],
+    ) -> None:
+        super().__init__(host, type_.NAME, name, qos)
+        self.inbox = Inbox(bell, None, ready)
+        self._service_events = ServiceEvents(host, type_, name)
+        self._caller: Caller | None = None
+        self._changed = changed
+        self.lost = 0
+        """Calls that no server answers any more: there was none, or it went away."""
+        self._sequence = 0
+        self._lock = threading.Lock()
+
+    def configure_introspection(self, level: Introspection, qos: Qos = DEFAULT) -> None:
+        """The same as `ServiceServer.configure_introspection`."""
+        self._service_events.configure(level, qos, is_open=self.is_open)
+
+    def _open(self, key: str) -> None:
+        self._caller = self.host.context.session.open_caller(key, self._changed)
+        self._declared.append(self._caller)
+        self._service_events.open()
+
+    def _matched(self, other: Any, alive: bool) -> None:
+        self._changed()
+
+    @property
+    def has_server(self) -> bool:
+        """Whether there is a server, and can be reached."""
+        return bool(self.matched) and self._caller is not None and self._caller.has_server
+
+    def send(self, payload: bytes) -> int:
+        """Send a request; returns its number, under which the answer comes.
+
+        Raises:
+            ClosedError: The node is not running.
+        """
+        caller, gid = self._caller, self._announced().gid
+        if caller is None:
+            raise ClosedError(f"the client of {self.name} is closed")
+        with self._lock:
+            self._sequence += 1
+            sequence = self._sequence
+        beside = attachment.pack(sequence, self.host.context.clock.time_ns(), gid)
+        is_over = False
+
+        def arrived(answer: Answer | None) -> None:
+            nonlocal is_over
+            is_over = is_over or self._arrived(sequence, answer)  # the end of the call comes after its answer
+
+        caller.call(payload, beside, arrived)
+        return sequence
+
+    def call_id(self, sequence: int) -> str:
+        """The id of a call in the wait-for graphs of all processes."""
+        return call_id(self._announced().gid, sequence)
+
+    def _arrived(self, sequence: int, answer: Answer | None) -> bool:
+        """Whether that is what the call has waited for."""
+        if answer is None:
+            self.lost += 1
+            self.inbox.put(Answered(sequence, error=ServerLost(f"the server of {self.name} did not answer")))
+        elif answer.is_error:
+            self.inbox.put(Answered(sequence, error=error_of(answer.payload, self.name)))
+        elif sequence_of(answer) == sequence:
+            self.inbox.put(Answered(sequence, answer.payload))
+        else:
+            return False
+        return True
+
+    def tell(self, event: ServiceEvent, sequence: int, payload: bytes) -> None:
+        """The same as `ThreadedService.tell`."""
+        if self._service_events.is_on and self.entity is not None:
+            call = (self.entity.gid, sequence)
+            tell_event(self.host, self._service_events, event, call, self.type_name, payload)
+
+    def take(self) -> Answered | None:
+        """The oldest answer that waits; None if there is none."""
+        try:
+            answered: Answered = self.inbox.items.popleft()
+        except IndexError:
+            return None
+        return answered
+
+    def close(self) -> None:
+        self._service_events.close()
+        self._caller = None
+        super().close()

@@ -1,0 +1,1 @@
+"""Errors that are completed, where they are reported, by what to write instead."""

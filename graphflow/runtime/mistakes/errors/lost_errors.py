@@ -1,0 +1,52 @@
+"""Errors in tasks and futures that nobody awaits, as `asyncio.create_task` leaves them: told like those of handlers."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import Counter
+from typing import Any
+
+from graphflow.analysis.user_code import place_in
+from graphflow.errors import ClosedError
+from graphflow.runtime.failures import report
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+
+PLACES_BOUND = 1000
+"""Kinds and places of errors that are counted."""
+logger = logging.getLogger("graphflow")
+
+
+def tell_lost_errors(loop: asyncio.AbstractEventLoop) -> None:
+    """Have errors that are lost on a loop told, unless the program has seen to that itself."""
+    if loop.get_exception_handler() is None:
+        loop.set_exception_handler(_LostErrors())
+
+
+class _LostErrors:
+    """An event loop's exception handler: tells an error at its first, tenth, hundredth time."""
+
+    def __init__(self) -> None:
+        self._times: Counter[tuple[str, str]] = Counter()
+
+    def __call__(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        error, future = context.get("exception"), context.get("future") or context.get("task")
+        if error is not None:
+            explain(error)
+        if error is None or future is None or "never retrieved" not in context.get("message", ""):
+            loop.default_exception_handler(context)
+            return
+        if isinstance(error, ClosedError):  # its node has stopped meanwhile
+            logger.debug("lost: %s", error)
+            return
+        coroutine = future.get_coro() if isinstance(future, asyncio.Task) else None
+        name = getattr(coroutine, "__qualname__", "") or "a future"
+        key = name, f"{type(error).__name__} {place_in(error)}"
+        if len(self._times) >= PLACES_BOUND:
+            self._times.clear()
+        self._times[key] += 1
+        times = self._times[key]
+        if str(times).strip("0") == "1":  # 1, 10, 100 and so on
+            again = f", {times} times by now" if times > 1 else ""
+            way = "await it, or start it by self.spawn(...), which ends the node by an error"
+            report(logger, f"{name} failed, and nothing awaits it{again} ({way})", error)

@@ -1,0 +1,219 @@
+"""Errors that Python raises where graphflow's API is used in the wrong way: a table of what to write instead."""
+
+from __future__ import annotations
+
+import linecache
+import re
+from typing import NamedTuple
+
+from graphflow.analysis.hiding import hidden
+from graphflow.analysis.user_code import place_in
+from graphflow.runtime.name_errors import owner_of
+from graphflow.runtime.rclpy_words import EXAMPLES
+from graphflow.runtime.text_numbers import text_for_number
+
+
+class Remark(NamedTuple):
+    """One row.
+
+    Attributes:
+        text: A pattern for the error's text.
+        line: A pattern for the line of the user's in which it happened.
+        remark: The advice, with groups of the two patterns by name.
+    """
+
+    text: str
+    line: str
+    remark: str
+
+
+_AWAITED = r"await\s+(?:[\w.]*\.)?(?P<name>\w+)"
+_COROUTINE = r"^'coroutine' object |: 'coroutine' and |: '\w+' and 'coroutine'$"
+_SEND = "write send in place of send_goal: async with client.send(goal) as sent:"
+_SECONDS = "(int|float)"
+_SPANS = "(Time|Duration)"
+REMARKS = (
+    # Python 3.14: "'NoneType' object can't be awaited"; before: "object NoneType can't be used in 'await' expression".
+    Remark(r"NoneType\b.* '?await", _AWAITED + r"\(", "{name} returns at once: leave out await"),
+    Remark(
+        r"^'NoneType' object has no attribute '(?P<attribute>\w+)'",
+        r"self\.(?P<name>\w+)\.\w",
+        "self.{name} is None until something sets it: write if self.{name} is None: return",
+    ),
+    Remark(r'can only concatenate str \(not "(int|float|bool)"\)', "", "make a text of it: str(value), or an f-string"),
+    Remark(r"\b(method|function)\b.* '?await", _AWAITED, "call it: await {name}()"),
+    Remark(
+        r"\bTopicSubscription\b.* '?await",
+        _AWAITED,
+        "messages come one by one: async for message in self.{name}",
+    ),
+    Remark("'(async_generator|TopicSubscription)' object is not iterable", r"\bfor\b", "write async for"),
+    Remark(
+        "'HandlerGroup' object does not support",
+        r"\bwith self\.(?P<name>\w+)",
+        "a group is given to the handlers that share it: @timer(1.0, group={name})",
+    ),
+    Remark(
+        "'coroutine' object does not support the asynchronous context",
+        r"\.send_goal\(",
+        _SEND,
+    ),
+    Remark("'ClientGoalHandle' object does not support the asynchronous context", "", _SEND),
+    Remark("object does not support the context manager", r"\bwith\b", "write async with"),
+    Remark(_COROUTINE, "", "that is a coroutine: write await before the call"),
+    Remark(
+        "a coroutine was expected, got <(bound method|function)", "", "call it, or let the node: self.spawn(self.work)"
+    ),
+    Remark(
+        r"asyncio\.run\(\) cannot be called|event loop is already running",
+        "",
+        "nodes run on an event loop: make the method `async def`, and write await",
+    ),
+    Remark(
+        r"^'(bool|int|float|str|bytes|list)' object has no attribute '(value|get_parameter_value)'",
+        r"self\.\w+(\(.*\))?\.(value|get_parameter_value)",
+        "a parameter reads as its value: leave out .value",
+    ),
+    Remark(
+        "'NodeLogger' object is not callable", "", 'the log has a method for each level: write self.log.info("...")'
+    ),
+    Remark("'TopicPublisher' object is not callable", r"self\.(?P<name>\w+)\(", "write self.{name}.publish(message)"),
+    Remark("'ServiceClient' object is not callable", r"self\.(?P<name>\w+)\(", "write await self.{name}.call(request)"),
+    Remark(
+        "'(bool|int|float|str)' object is not callable",
+        r"self\.(?P<name>\w+)\(",
+        "self.{name} is a value: leave out the parentheses",
+    ),
+    Remark(r"^'Parameters' object has no attribute '(?P<name>\w+)'", "", 'parameters.get("{name}") reads a value'),
+    Remark("^name 'self' is not defined", r"self\.(?P<name>\w+)", "the body of a class has no self: write {name}"),
+    Remark(
+        f"-: 'Time' and '{_SECONDS}'",
+        r"-\s*(?P<name>self\.\w+)",
+        "{name} is a number: begin with {name} = self.clock.now(); a span of seconds is Duration.of({name})",
+    ),
+    Remark(
+        f"'{_SPANS}' and '{_SECONDS}'|'{_SECONDS}' and '{_SPANS}'",
+        "",
+        "a span of seconds is written Duration.of(0.5), and .seconds makes a number of one",
+    ),
+    Remark("^'Time' object has no attribute 'to_msg'", "", "leave it out: a Time can be put into a message"),
+    Remark("Clock' object has no attribute 'create_rate'", "", "write async for n in self.clock.every(hz=10.0):"),
+    Remark("Clock' object has no attribute '(time|get_time)'", "", "write self.clock.now()"),
+    Remark(
+        "'async for' requires .* got method",
+        r"\bin self\.(?P<name>\w+):",
+        "messages are read from a Subscription(Type, topic) in the body of the class, not from their handler; an async "
+        "generator is called: self.{name}(...)",
+    ),
+    Remark(
+        r"'async for' requires .* got (builtin_function_or_)?(method|function)",
+        r"\bin (?P<call>[\w.]+):",
+        "call it: {call}(...)",
+    ),
+    Remark(r"\basync_generator\b.* '?await", _AWAITED, "they come one by one: async for one in ....{name}(...)"),
+    Remark(
+        "^'(function|method)' object has no attribute",
+        r"\b(?P<goal>\w+)\.result\.",
+        "wait for it first: result = await {goal}.result()",
+    ),
+    Remark(
+        "^'(function|method)' object has no attribute 'cancel'",
+        r"self\.(?P<name>\w+)\.cancel\(",
+        "a method has no handle; a timer that is cancelled is made in on_start: self.timer = "
+        "self.create_timer(period, self.{name}), and then self.timer.cancel()",
+    ),
+    Remark(
+        "^'numpy.ndarray' object has no attribute '(append|extend|insert)'",
+        "",
+        "an array does not grow: fill a list, and assign that: message.data = numbers",
+    ),
+    Remark("argument 'feedback_callback'", "", "feedback is read: async for feedback in sent.feedback():"),
+    Remark(
+        r"^a coroutine was expected, got (?!<)",
+        "",
+        "spawn takes an `async def`; call a `def` itself, or await self.offload(it)",
+    ),
+    Remark(r"^Node\.spawn\(\) got an unexpected keyword", "", "arguments go by position: self.spawn(self.work, 3)"),
+    Remark(
+        "^'(?P<kind>Publisher|Subscription|Client|ActionClient|Group)' object has no attribute",
+        r"self\.(?P<name>\w+)",
+        "a {kind} is declared in the body of the class: {name} = {kind}(...)",
+    ),
+    Remark("^descriptor '__init__' of 'super'", "", "write super().__init__(...), with parentheses behind super"),
+    Remark("expected string or bytes-like", r"super\(\)\.__init__\(self", "leave out self: super().__init__()"),
+    Remark("has no attribute 'node_name'", r"Node\.__init__\(", "write super().__init__(...)"),
+    Remark("'<' not supported between", r"throttle=['\"]", "throttle= is in seconds, without quotes"),
+    Remark(
+        "^'Param' object has no attribute 'setter'",
+        "",
+        "@rate.check goes above a method that may refuse a value, @rate.on_change above one that follows it",
+    ),
+    Remark(
+        r"Param\.(?P<name>check|on_change)\(\) missing 1 .* 'fn'",
+        "",
+        "write it behind the parameter, without parentheses: @rate.{name}",
+    ),
+    Remark(
+        r"^Qos\.__init__\(\) got an unexpected keyword argument '(?P<name>deadline|lifespan)'",
+        "",
+        "write {name}_ns=, in nanoseconds",
+    ),
+    Remark(
+        r"^Qos\.__init__\(\) got an unexpected keyword",
+        "",
+        "it takes depth, reliability, durability, history, deadline_ns, lifespan_ns, liveliness and lease_ns",
+    ),
+    Remark(
+        r"^object (?!coroutine)\w+ can't be used in 'await'|^'\w+' object can't be awaited",
+        _AWAITED + r"\(",
+        "{name} is no `async def`, and returns at once: leave out await",
+    ),
+    Remark(
+        r"^'(?!NoneType)[A-Z]\w*' object is not subscriptable",
+        r"\b(?P<name>\w+)\[['\"](?P<field>\w+)['\"]\]",
+        "the fields of a message are attributes: write {name}.{field}",
+    ),
+    Remark(r"unsupported operand .*'Param'", "", "a Param has its value on a node: @timer(hz=rate) reads it there"),
+)
+_CALL = re.compile(r"(?:(?P<owner>\w+)\.)?(?P<name>\w+)\(\) (got an unexpected|missing \d|takes )")
+_OURS = ("ServiceClient", "GoalClient", "TopicPublisher")
+
+
+OF_VALUES = (
+    Remark(
+        "^assignment destination is read-only",
+        "",
+        "arrays of a message that was received cannot be written to: change a copy, as in message.data.copy()",
+    ),
+    Remark(
+        "^The truth value of an array with more than one element is ambiguous",
+        "",
+        "whether there is anything in it says len(...) > 0",
+    ),
+)
+"""The same for ValueError, which most often has nothing to do with a node."""
+
+
+def remark_on(error: BaseException) -> str:
+    """Advise what to write instead of the line that raised an error; empty if that is not known."""
+    if isinstance(error, TimeoutError) and not str(error):
+        return "a time limit has passed; catch TimeoutError around the block that has it"
+    if type(error) not in (TypeError, AttributeError, NameError, RuntimeError, ValueError):
+        return ""
+    if hides := hidden(error):
+        return hides
+    text = str(error)
+    file, _, number = place_in(error).rpartition(":")
+    line = linecache.getline(file, int(number)) if number else ""
+    if isinstance(error, NameError) and (way := owner_of(error)):
+        return way
+    if isinstance(error, TypeError) and (way := text_for_number(error, line)):
+        return way
+    for row in OF_VALUES if isinstance(error, ValueError) else REMARKS:
+        found, written = re.search(row.text, text), re.search(row.line, line)
+        if found and written:
+            return row.remark.format(**{**found.groupdict(), **written.groupdict()})
+    call = _CALL.match(text)
+    if call and call["owner"] in _OURS and call["name"] in EXAMPLES:
+        return f"write {EXAMPLES[call['name']]}"
+    return ""

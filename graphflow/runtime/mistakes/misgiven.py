@@ -1,0 +1,186 @@
+"""Functions that are given to be called later, and then do not do what they were written for, read from the source.
+
+An `async def` that is given to a thread; `lambda message: self.heard`, which gives the method back in place of calling
+it; and `lambda: self.show(i)` made in a loop, which sees the last `i` of the loop in each of its callbacks.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, TypeAlias
+
+from graphflow.analysis.syntax import NESTED, FunctionNode, walk
+
+_TAKERS = {
+    *("create_subscription", "create_timer", "create_service", "create_action_server", "create_guard_condition"),
+    *("ActionServer", "add_done_callback", "registerCallback", "add_on_set_parameters_callback", "call_soon"),
+    "call_soon_threadsafe",
+}
+"""Functions and methods that take a callback and call it later."""
+_LATER = ("spin", "sleep", "wait", "result", "close", "cancel", "destroy", "remove", "join")
+"""Beginnings of names of calls after which a loop's former callbacks may have done what they were for."""
+
+_Made: TypeAlias = ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef
+
+
+class _Given(NamedTuple):
+    """A function that is written where it is given, or in the loop around that."""
+
+    made: _Made
+    parents: list[ast.AST]
+    """What encloses the call that it is given to."""
+
+
+def misgiven(code: ast.AST, starts: str = "self.spawn({})") -> Iterator[tuple[int, str]]:
+    """The lines of such callbacks, each with what to write.
+
+    Args:
+        starts: How a coroutine is started.
+    """
+    methods = _methods(code)
+    yield from _in_threads(code, methods, starts)
+    for given in sorted(_all_given(code), key=lambda given: given.made.lineno):
+        made = given.made
+        if isinstance(made, ast.Lambda) and (text := _given_back(made, methods)):
+            yield made.lineno, text
+        elif name := _of_loop(given):
+            if isinstance(made, ast.Lambda):
+                written = f"lambda {ast.unparse(_with_default(made.args, name))}: ..."
+                yield made.lineno, f"each lambda of this line sees the last {name} of the loop; write {written}"
+            else:
+                written = f"def {made.name}({ast.unparse(_with_default(made.args, name))}):"
+                yield made.lineno, f"each {made.name} of this loop sees the last {name}; write {written}"
+
+
+_THREADS = {"to_thread": 0, "run_in_executor": 1, "submit": 0, "Timer": 1, "Thread": None}
+"""Calls that have a thread call a function, and the position of that among their arguments."""
+
+
+def _in_threads(code: ast.AST, methods: dict[str, FunctionNode], starts: str) -> Iterator[tuple[int, str]]:
+    for node in ast.walk(code):
+        if not isinstance(node, ast.Call) or (word := _last_name(node.func)) not in _THREADS:
+            continue
+        at = _THREADS[word]
+        given = [*(node.args[at : at + 1] if at is not None else ())]
+        given += [keyword.value for keyword in node.keywords if keyword.arg in ("target", "function")]
+        for value in given:
+            name = value.attr if isinstance(value, ast.Attribute) and isinstance(value.value, ast.Name) else ""
+            if isinstance(methods.get(name), ast.AsyncFunctionDef):
+                shown = ast.unparse(value)
+                awaited = f"await {shown}(...)" if word in ("to_thread", "run_in_executor") else starts.format(shown)
+                yield node.lineno, f"{name} is an `async def`, which a thread does not run; write {awaited}"
+
+
+def _all_given(code: ast.AST) -> Iterator[_Given]:
+    for node, parents in walk(code):
+        if not (isinstance(node, ast.Call) and _last_name(node.func) in _TAKERS):
+            continue
+        for value in (*node.args, *(keyword.value for keyword in node.keywords)):
+            if isinstance(value, ast.Lambda):
+                yield _Given(value, parents)
+            elif isinstance(value, ast.Name):
+                yield from (_Given(made, parents) for made in _defined_in_loop(value.id, parents))
+
+
+def _defined_in_loop(name: str, parents: Sequence[ast.AST]) -> list[FunctionNode]:
+    loop = _loop_around(parents)
+    body = loop.body if isinstance(loop, (ast.For, ast.While)) else []
+    return [item for item in body if isinstance(item, FunctionNode) and item.name == name]
+
+
+def _last_name(function: ast.expr) -> str:
+    return str(getattr(function, "attr", None) or getattr(function, "id", ""))
+
+
+def _methods(code: ast.AST) -> dict[str, FunctionNode]:
+    """The methods of the classes, without those whose names stand for something else, too."""
+    found: dict[str, FunctionNode] = {}
+    others: set[str] = set()
+    for node in ast.walk(code):
+        if isinstance(node, ast.ClassDef):
+            for item in node.body:
+                if isinstance(item, FunctionNode):
+                    found[item.name] = item
+                    others |= {item.name} if any("property" in ast.unparse(d) for d in item.decorator_list) else set()
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            others.add(node.attr)
+    return {name: method for name, method in found.items() if name not in others}
+
+
+def _given_back(made: ast.Lambda, methods: dict[str, FunctionNode]) -> str:
+    """Why a lambda does nothing: it gives a method back; empty if it does something."""
+    match made.body:
+        case ast.Attribute(value=ast.Name(), attr=name) as method if name in methods:
+            shown = ast.unparse(method)
+            arguments = made.args
+            if len(arguments.args) == len(methods[name].args.args) - 1 and not arguments.defaults:
+                way = f"{shown} in place of the lambda"
+            else:
+                way = f"{ast.unparse(made)}(...)"
+            return f"the lambda gives back the method {shown} and does not call it; write {way}"
+    return ""
+
+
+def _loop_around(parents: Sequence[ast.AST]) -> ast.AST | None:
+    """The loop or comprehension in which something is made, in the same function."""
+    for parent in reversed(parents):
+        if isinstance(parent, NESTED):
+            return None
+        if isinstance(parent, (ast.For, ast.While, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)):
+            return parent
+    return None
+
+
+def _of_loop(given: _Given) -> str:
+    """The variable of the loop around it that a callback reads when the loop has gone on; empty if there is none."""
+    loop = _loop_around(given.parents)
+    if loop is None or _may_be_over(loop):
+        return ""
+    own = {name.id for name in ast.walk(given.made) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
+    own |= {argument.arg for argument in ast.walk(given.made) if isinstance(argument, ast.arg)}
+    body = given.made.body if isinstance(given.made.body, list) else [given.made.body]
+    read = [n.id for part in body for n in ast.walk(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)]
+    changing = _changing(loop, given.parents)
+    return next((name for name in read if name in changing and name not in own), "")
+
+
+def _may_be_over(loop: ast.AST) -> bool:
+    """Whether a round of a loop may be the last one, or may wait until its callback has been called."""
+    for node, parents in walk(loop):
+        if any(isinstance(parent, NESTED) for parent in parents):
+            continue
+        if isinstance(node, (ast.Break, ast.Return, ast.Raise, ast.Await, ast.Yield, ast.YieldFrom)):
+            return True
+        if isinstance(node, ast.Call) and _last_name(node.func).startswith(_LATER):
+            return True
+    items = loop.iter if isinstance(loop, ast.For) else None
+    return isinstance(items, (ast.Tuple, ast.List)) and len(items.elts) < 2
+
+
+def _changing(loop: ast.AST, parents: Sequence[ast.AST]) -> set[str]:
+    """The variables that have another value in each round of a loop: its own, and those that are made from them."""
+    if not isinstance(loop, (ast.For, ast.While)):
+        return {name for part in getattr(loop, "generators", ()) for name in _names(part.target)}
+    found = set(_names(loop.target)) if isinstance(loop, ast.For) else set()
+    for node in (n for statement in loop.body for n in ast.walk(statement)):
+        if isinstance(node, ast.Assign) and found & set(_names(node.value)):
+            found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+    around = [n for n in ast.walk(parents[0]) if isinstance(n, (ast.Global, ast.Nonlocal, ast.AugAssign))]
+    shared = {name for n in around for name in (getattr(n, "names", None) or _names(getattr(n, "target", n)))}
+    return found - shared
+
+
+def _names(node: ast.AST) -> list[str]:
+    return [name.id for name in ast.walk(node) if isinstance(name, ast.Name)]
+
+
+def _with_default(arguments: ast.arguments, name: str) -> ast.arguments:
+    """Arguments, and behind them the one that keeps the value of this round."""
+    positional = [*arguments.args, ast.arg(name)] if not arguments.vararg else arguments.args
+    defaults = [*arguments.defaults, ast.Name(name)] if not arguments.vararg else arguments.defaults
+    only = [*arguments.kwonlyargs, ast.arg(name)] if arguments.vararg else arguments.kwonlyargs
+    only_defaults = [*arguments.kw_defaults, ast.Name(name)] if arguments.vararg else arguments.kw_defaults
+    return ast.arguments(
+        arguments.posonlyargs, positional, arguments.vararg, only, only_defaults, arguments.kwarg, defaults
+    )

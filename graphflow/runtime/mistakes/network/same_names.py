@@ -1,0 +1,111 @@
+"""Other nodes of this process's names, which tools, parameters and services of ROS 2 then reach by chance; and others
+that offer services of its own, which then reach both.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from functools import partial
+
+from graphflow.deadlock.protocols import ProcessContext
+from graphflow.errors import printable
+from graphflow.executor.clock import Alarm
+from graphflow.machines.cache import GraphChange
+from graphflow.machines.matching import shared
+from graphflow.names import is_hidden
+from graphflow.times import to_ns
+from graphflow.transport.base import Closable
+from graphflow.wire import process
+from graphflow.wire.process import ProcessToken
+
+TELL_AFTER = 1.0
+"""Seconds that a node of the same name may take to leave, as one does that is being restarted."""
+NAMED = 3
+"""Other processes that a message names."""
+PROCESSES_BOUND = 10_000
+logger = logging.getLogger("graphflow")
+
+
+class Twins:
+    """Tells, once for each name, of another node that has it, or that offers a service of it. One per process."""
+
+    def __init__(self, here: ProcessContext) -> None:
+        self._here = here
+        self._known: set[str] = set()
+        self._shared: set[str] = set()
+        """Services of which it is yet to be told."""
+        self._told: set[str] = set()
+        """Services of which it has been told: a limited number, as those are this process's own."""
+        self._processes: dict[str, ProcessToken] = {}
+        self._watch: Closable | None = None
+        self._alarms: set[Alarm] = set()
+
+    def changed(self, change: GraphChange) -> None:
+        """A node came or went."""
+        name = change.entity.node_name
+        if not change.alive or name in self._known or is_hidden(name):
+            return
+        if any(node.full_name == name for node in self._here.nodes) and len(self._here.cache.owners(name)) > 1:
+            self._known.add(name)
+            if self._watch is None:
+                self._watch = self._here.session.watch(process.watch_key(self._here.domain), self._process)
+            self._later(partial(self._tell, name))
+
+    def _later(self, tell: Callable[[], None]) -> None:
+        def due() -> None:
+            self._alarms.discard(alarm)
+            tell()
+
+        clock = self._here.clock
+        alarm = clock.call_at(clock.monotonic_ns() + to_ns(TELL_AFTER), due)
+        self._alarms.add(alarm)
+
+    def _tell(self, name: str) -> None:
+        mine = self._here.session.zid
+        owners = [entity.zid for entity in self._here.cache.owners(name)]
+        if len(owners) < 2 or mine not in owners:
+            self._known.discard(name)
+            return
+        others = {zid for zid in owners if zid != mine}
+        named = sorted(map(self._owner, sorted(others)[:NAMED]))
+        more = [f"{len(others) - NAMED} more"] if len(others) > NAMED else []
+        where = " and ".join([*named, *more]) or "this process, too"
+        rename = "rename one: --ros-args -r __node:=NAME" if others else "rename one"
+        text = "another node is called %s, in %s: parameters, services and tools reach one of them by chance; %s"
+        logger.warning(text, name, where, rename)
+
+    def share(self, name: str) -> None:
+        """Another node offers a service of this process, too."""
+        if not self._shared:
+            self._later(self._tell_shared)
+        self._shared.add(name)
+
+    def _tell_shared(self) -> None:
+        names, self._shared = self._shared - self._told, set()
+        offered = {name: self._here.cache.named(name) for name in names}
+        self._told |= {name for name, entities in offered.items() if shared(entities)}
+        for text in shared(entity for entities in offered.values() for entity in entities):
+            logger.warning("%s", text)
+
+    def _owner(self, zid: str) -> str:
+        token = self._processes.get(zid)
+        if token is None:
+            return f"session {zid}, not a graphflow process"
+        return f"{token} ({printable(token.command)})" if token.command else str(token)
+
+    def _process(self, text: str, alive: bool) -> None:
+        token = process.parse(text)
+        if token is None:
+            return
+        if not alive:
+            self._processes.pop(token.zid, None)
+        elif len(self._processes) < PROCESSES_BOUND:
+            self._processes[token.zid] = token
+
+    def close(self) -> None:
+        """Look no more, and tell no more: the graph stands still from now on."""
+        for alarm in self._alarms:
+            alarm.cancel()
+        if self._watch is not None:
+            self._watch.close()

@@ -1,0 +1,129 @@
+"""Topics and services with nobody at the other end, where a name or the domain is probably wrong.
+
+A publisher that nobody listens to is legal, as is a subscription that nobody publishes for. So nothing is told unless a
+topic of the same type and a near name has what is missing, or the node is alone in its domain while others have nodes.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from graphflow.deadlock.protocols import ProcessContext
+from graphflow.executor.clock import Alarm
+from graphflow.machines.cache import ACTION_SEND_GOAL, GraphChange
+from graphflow.machines.matching import COUNTERPARTS
+from graphflow.machines.near_topics import by_type, did_you_mean_topic, is_everybodys
+from graphflow.names import is_hidden
+from graphflow.qos import Durability
+from graphflow.runtime.mistakes.network.other_domains import look_elsewhere
+from graphflow.times import to_ns
+from graphflow.wire.liveliness import Entity, Kind
+
+TELL_AFTER = 3.0
+"""Seconds that the other end may take to come."""
+AT_ONCE = 8
+"""Endpoints that are looked at before others have a turn of the loop."""
+LATE = 1.0
+"""Seconds by which a look may be late: a loop that was blocked for longer has not heard of who came meanwhile."""
+
+
+@dataclass
+class _Waiting:
+    """A publisher, subscription or client without a counterpart so far."""
+
+    log: logging.Logger
+    due_ns: int | None
+    """The time of the next look; None if nothing of its type has come since the last."""
+
+
+class Unmatched:
+    """Tells, once for each, of topics with nobody at the other end and a near name, and once of the domain.
+
+    An endpoint is looked at `TELL_AFTER` seconds after it was opened, and after a possible counterpart has come.
+    One per process.
+    """
+
+    def __init__(self, here: ProcessContext) -> None:
+        self._here = here
+        self._waiting: dict[str, dict[Entity, _Waiting]] = {}
+        """By type."""
+        self._told: set[tuple[str, Kind, str]] = set()
+        """The reported ones, by node, kind and topic: a limited number, as they are this process's own."""
+        self._alarm: Alarm | None = None
+        self._is_domain_told = self._is_closed = False
+
+    def opened(self, own: Entity, log: logging.Logger) -> None:
+        """A node of this process has opened an endpoint."""
+        name = own.name.removesuffix(ACTION_SEND_GOAL)
+        if self._is_closed or own.kind is Kind.SERVICE or is_everybodys(name) or is_hidden(own.node_name):
+            return
+        keeps = own.kind is Kind.PUBLISHER and own.qos.durability is Durability.TRANSIENT_LOCAL
+        if not keeps and (own.node_name, own.kind, own.name) not in self._told:
+            self._waiting.setdefault(own.type, {})[own] = _Waiting(log, self._due())
+
+    def changed(self, change: GraphChange) -> None:
+        """An endpoint came or went."""
+        other = change.entity
+        for own, waiting in [*self._waiting.get(other.type, {}).items()] if change.alive else ():
+            if other.kind is COUNTERPARTS[own.kind] and other.name == own.name:
+                self._forget(own)
+            elif other.kind is COUNTERPARTS[own.kind] and waiting.due_ns is None:
+                waiting.due_ns = self._due()
+
+    def _due(self) -> int:
+        """Look again after some time; returns when."""
+        clock = self._here.clock
+        due_ns = clock.monotonic_ns() + to_ns(TELL_AFTER)
+        if self._alarm is None:
+            self._alarm = clock.call_at(due_ns, self._look)
+        return due_ns
+
+    def _look(self) -> None:
+        now_ns, cache = self._here.clock.monotonic_ns(), self._here.cache
+        self._alarm = None
+        due: list[tuple[Entity, _Waiting]] = []
+        for own, waiting in [pair for same in self._waiting.values() for pair in same.items()]:
+            if own.token not in cache:  # it was closed
+                self._forget(own)
+            elif waiting.due_ns is not None and waiting.due_ns + to_ns(LATE) < now_ns:
+                waiting.due_ns = self._due()
+            elif waiting.due_ns is not None and waiting.due_ns <= now_ns:
+                due.append((own, waiting))
+        self._look_at(due[:AT_ONCE])
+        left = [w.due_ns for same in self._waiting.values() for w in same.values() if w.due_ns is not None]
+        if left and self._alarm is None:
+            self._alarm = self._here.clock.call_at(min(left), self._look)
+
+    def _look_at(self, due: Sequence[tuple[Entity, _Waiting]]) -> None:
+        there = by_type(self._here.cache, {own.type for own, _ in due})
+        for own, waiting in due:
+            waiting.due_ns = None
+            if text := did_you_mean_topic(own, there):
+                self._forget(own)
+                self._told.add((own.node_name, own.kind, own.name))
+                waiting.log.warning("%s", text)
+        logs = {own.node_name: waiting.log for own, waiting in due}
+        for name, log in logs.items() if not self._is_domain_told else ():
+            look_elsewhere(self._here, name, partial(self._tell_domain, log))
+
+    def _tell_domain(self, log: logging.Logger, text: str) -> None:
+        if text and not self._is_domain_told and not self._is_closed:
+            self._is_domain_told = True
+            log.warning("%s", text)
+
+    def _forget(self, own: Entity) -> None:
+        same = self._waiting[own.type]
+        del same[own]
+        if not same:
+            del self._waiting[own.type]
+
+    def close(self) -> None:
+        """Tell no more."""
+        self._is_closed = True
+        self._waiting.clear()
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None

@@ -1,0 +1,87 @@
+"""Requests of other threads to a node: to call something on its event loop; and what they must not do to it, told."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import linecache
+import logging
+import re
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import PurePath
+from types import FrameType
+from typing import Any
+
+from graphflow.analysis.user_code import is_users
+from graphflow.errors import ClosedError, Place
+from graphflow.runtime.part import Host
+
+TOLD_BOUND = 100
+"""Lines that are remembered, so that each is told once."""
+_ASYNCIO = str(PurePath(asyncio.__file__).parent)
+_CALL = re.compile(r"([\w.]+\.(?:put_nowait|get_nowait|set|set_result|set_exception|cancel|notify|release))\((.*)")
+_STARTS = re.compile(r"\b(create_task|ensure_future)\(")
+logger = logging.getLogger("graphflow")
+
+
+def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> None:
+    """Call `fn(*args)` on the event loop of a node, from any thread. An error in it is logged.
+
+    Raises:
+        ClosedError: The node does not run.
+        TypeError: `fn` is a coroutine function.
+    """
+    name = getattr(fn, "__name__", str(fn))
+    if inspect.iscoroutinefunction(fn):
+        raise TypeError(f"call_soon calls functions; {name} is a coroutine function: spawn({name}) runs it")
+
+    def call() -> None:
+        try:
+            fn(*args)
+        except Exception as error:
+            host.report_error(f"call_soon of {name}", error)
+
+    try:
+        host.context.loop.call_soon_threadsafe(call)
+    except RuntimeError:
+        raise ClosedError(f"call_soon of {name}: the event loop of node {host.full_name} has ended") from None
+
+
+def tell_strangers(loop: asyncio.AbstractEventLoop) -> None:
+    """Have calls of asyncio's told that another thread has made: `queue.put_nowait`, `future.set_result`."""
+    if hasattr(loop, "stranger"):
+        told = set[Place]()
+        loop.stranger = lambda: _tell(told, sys._getframe(2))
+
+
+def _tell(told: set[Place], frame: FrameType | None) -> None:
+    """Tell of a call, if it is the user's own code that has made it.
+
+    Args:
+        frame: That which has called the loop.
+    """
+    while frame is not None and frame.f_code.co_filename.startswith(_ASYNCIO) and frame.f_code.co_name != "__del__":
+        frame = frame.f_back
+    if frame is None or not is_users(frame.f_code.co_filename):
+        return
+    place = Place(frame.f_code.co_filename, frame.f_lineno)
+    if place in told or len(told) >= TOLD_BOUND:
+        return
+    told.add(place)
+    text = (
+        "%s: thread %r changes something of the event loop's, which notices it when something else wakes it, perhaps "
+        "seconds later; write %s"
+    )
+    logger.error(text, place, threading.current_thread().name, _way(linecache.getline(place.file, place.line)))
+
+
+def _way(line: str) -> str:
+    """What to write in place of a line."""
+    if _STARTS.search(line):
+        return "self.spawn(fn, ...)"
+    found = _CALL.search(line)
+    if found is None:
+        return "self.call_soon(fn, ...)"
+    return f"self.call_soon({found[1]}{'' if found[2].startswith(')') else ', ...'})"

@@ -1,0 +1,90 @@
+"""Endpoints and timers that a node makes again and again, such as a publisher in each run of a timer; and handlers that
+are subscribed twice to one topic.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable
+from typing import Any
+
+from graphflow.analysis.user_code import users_frame
+from graphflow.errors import Place
+from graphflow.runtime.declarations.checks import written_at
+from graphflow.runtime.declarations.handlers import MARK
+from graphflow.runtime.part import Host, Part
+
+MANY = 10
+"""So many of one kind and name, made after the start and not closed, are told."""
+
+
+class Repeats:
+    """The parts that one node has made since its start and not closed, by kind and name."""
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._made: dict[Part, Hashable] = {}
+        self._alike: Counter[Hashable] = Counter()
+        self._told: set[Hashable] = set()
+
+    def made(self, part: Part) -> None:
+        """Count a part, and tell when there are many like it."""
+        if part.is_inner:
+            return
+        self._made[part] = key = _key(part)
+        self._alike[key] += 1
+        alike = self._alike[key]
+        if alike >= MANY and key not in self._told and (place := _place()) is not None:
+            self._told.add(key)
+            text = (
+                "%s is there %d times by now, made last in %s: make it once, in __init__, or close the former one first"
+            )
+            self._host.log.warning(text, _name(part), alike, place)
+
+    def closed(self, part: Part) -> None:
+        """Count it no more."""
+        key = self._made.pop(part, None)
+        if key is not None:
+            self._alike[key] -= 1
+            if not self._alike[key]:
+                del self._alike[key]
+
+
+def _name(part: Part) -> str:
+    return part.title or str(getattr(part, "name", ""))
+
+
+def _key(part: Part) -> Hashable:
+    """The key under which parts are alike; lambdas share a name, so that of a timer has its period."""
+    return type(part), _name(part), getattr(part, "period", None)
+
+
+def _place() -> Place | None:
+    """The user's line that has led here; None if it was in another thread, as rclpy's are, which tells it itself."""
+    frame = users_frame(sys._getframe(1))
+    return None if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
+
+
+def tell_same(host: Host, parts: Iterable[Part], made: Part, callback: Callable[..., Any] | None) -> None:
+    """Tell of a handler that is called twice for one message or period, as a node has two parts for it.
+
+    Args:
+        parts: Those that the node has already.
+        made: The one that is about to be added; a subscription, or a timer.
+        callback: What it calls. One that the class declares is told by `doubled`.
+    """
+    is_timer = not hasattr(made, "type_name")  # another of them may have been cancelled, or begin at another time
+    if callback is None or is_timer or getattr(callback, MARK, None) is not None:
+        return
+    for other in parts:
+        if type(other) is type(made) and _calls(other) == _calls(made):
+            text = "%s calls %s (%s) twice for each message: keep one"
+            called = getattr(callback, "__name__", repr(callback))
+            host.log.warning(text, _name(made), called, written_at(callback))
+            return
+
+
+def _calls(part: Any) -> Hashable:
+    """What a part calls, and when."""
+    return part._callback, getattr(part, "name", None), getattr(part, "_period_ns", None)

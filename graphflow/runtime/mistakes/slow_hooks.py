@@ -1,0 +1,77 @@
+"""Hooks of a node that take long: where they wait is told, and what waits for them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import PurePath
+
+from graphflow.analysis.frames import stack_of
+from graphflow.analysis.user_code import innermost
+from graphflow.deadlock.startup_waits import place_of
+from graphflow.errors import Place
+from graphflow.executor.clock import Alarm
+from graphflow.runtime.part import Host
+from graphflow.times import to_ns
+
+logger = logging.getLogger("graphflow")
+
+SLOW_INIT = 3.0
+"""Seconds that an `__init__` may take before it is reported."""
+SLOW = 5.0
+"""Seconds that a hook may take before it is reported."""
+_BEGINNINGS = ("on_start", "on_configure", "on_activate")
+"""Hooks after which handlers run, sooner or later."""
+_NO_HANDLERS = (
+    "this node's handlers start when it has: what waits for them, or for nodes that wait for this one, belongs in a "
+    "@task"
+)
+_ELSEWHERE = "what takes long or repeats belongs in on_start, a @timer or a @task"
+_NO_TRANSITION = "until it has, the node can make no other transition"
+
+
+def when_slow(host: Host, hook: str) -> Alarm:
+    """Say where a hook that this task runs waits if it has not returned in a while; the caller cancels that."""
+    task, clock = asyncio.current_task(), host.context.clock
+    then = _NO_HANDLERS if hook in _BEGINNINGS else _NO_TRANSITION
+
+    def say() -> None:
+        host.log.warning("%s has not returned for %.0f s %s; %s", hook, SLOW, place_of(task), then)
+
+    return clock.call_at(clock.monotonic_ns() + to_ns(SLOW), say)
+
+
+@contextmanager
+def telling_slow_init(cls: type) -> Iterator[None]:
+    """Say where the code of the block, which makes a node, is after a while; on an event loop the watchdog says it."""
+    thread = threading.get_ident()
+
+    def say() -> None:
+        frame = innermost(stack_of(thread))
+        if frame is None:
+            return
+        place = Place(PurePath(frame.f_code.co_filename).name, frame.f_lineno)
+        logger.warning(
+            "%s.__init__ has not returned for %.0f s, now in %s in %s, and the node starts when it has: %s",
+            *(cls.__name__, SLOW_INIT, place, frame.f_code.co_name, _ELSEWHERE),
+        )
+
+    timer = threading.Timer(SLOW_INIT, say)
+    timer.daemon = True
+    if not _is_on_loop():
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def _is_on_loop() -> bool:
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True

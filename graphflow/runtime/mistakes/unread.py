@@ -1,0 +1,92 @@
+"""Words of a command line that nothing reads: neither graphflow, nor the program that runs the nodes."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from graphflow.analysis.user_code import is_installed, is_users
+from graphflow.names import nearest
+from graphflow.reading import found_text
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+_READERS = re.compile(
+    r"argv|getopt|\b(argparse|optparse|click|typer|tyro|fire|docopt|absl|gflags|hydra|simple_parsing|jsonargparse)\b"
+)
+"""Names that a program mentions if it reads its command line."""
+
+_OF_FILES = ("params", "param", "param-file", "params-file", "parameters", "parameters-file", "config", "file", "f")
+"""What an option with a file of parameters is called elsewhere."""
+_OF_ROS = {
+    **dict.fromkeys(("--name", "--node-name", "--node_name", "-n"), "-r __node:=VALUE"),
+    **dict.fromkeys(("--namespace", "--ns"), "-r __ns:=VALUE"),
+    **dict.fromkeys(("--debug", "--verbose"), "--log-level debug"),
+    **dict.fromkeys(("--quiet", "-q"), "--log-level error"),
+    **dict.fromkeys(("--sim-time", "--use-sim-time", "--use_sim_time"), "-p use_sim_time:=true"),
+}
+"""Options of other tools, and the arguments of ROS's that do the same."""
+_FILE = re.compile(r"\.ya?ml\Z")
+
+
+def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_program: bool) -> str:
+    """Complain of words that are left of a command line; empty if the program may read them.
+
+    Args:
+        words: Those that are not for ROS.
+        classes: Of the nodes that are to run.
+        is_own_program: Whether the user's program runs them, and not `graphflow run`.
+    """
+    if not words or any(_may_read(file) for file in _files(classes, is_own_program)):
+        return ""
+    word = words[0]
+    name, _, value = word.partition("=")
+    value = value if value else words[1] if words[1:] and not words[1].startswith("-") else "VALUE"
+    known = [param.name for cls in classes for param in cls.interface().params]
+    if name.startswith("-") and _FILE.search(value) and name.lstrip("-").replace("_", "-") in _OF_FILES:
+        return f"nothing reads the option {name!r}; a file of parameters is given by --params-file {value}"
+    if (way := _OF_ROS.get(name)) is not None:
+        return f"nothing reads the option {name!r}; write {way.replace('VALUE', value)}"
+    near = nearest(name.lstrip("-").replace("-", "_"), known)
+    way = f"; to set the parameter write -p {near}:={value}" if near else ""
+    if not way and known:
+        way = f"; -p NAME:=VALUE sets a parameter: {', '.join(known)}"
+    return f"nothing reads the {'option' if word.startswith('-') else 'word'} {word!r}{way}"
+
+
+def _files(classes: Sequence[type[Node]], is_own_program: bool) -> Iterator[str]:
+    """The program's files: the user's own, those of the packages that the nodes are from, and of modules it imports."""
+    packages = {cls.__module__.partition(".")[0] for cls in classes}
+    for name, module in list(sys.modules.items()):
+        file: str | None = getattr(module, "__file__", None)
+        if name == "__main__":
+            if not is_own_program:
+                continue
+            yield file if file is not None and not is_installed(file) else ""
+        elif file is None or not is_users(file) or (is_installed(file) and name.partition(".")[0] not in packages):
+            continue
+        else:
+            yield file
+        yield from _imported(module)
+
+
+def _imported(module: ModuleType) -> Iterator[str]:
+    """The files of installed modules that a module imports, or from which it imports functions or classes."""
+    for value in list(vars(module).values()):
+        found = value if isinstance(value, ModuleType) else sys.modules.get(str(getattr(value, "__module__", "")))
+        file: str | None = getattr(found, "__file__", None)
+        if file is not None and is_users(file) and is_installed(file):
+            yield file
+
+
+def _may_read(file: str) -> bool:
+    """Whether a file mentions the command line, or cannot be looked at."""
+    try:
+        return _READERS.search(found_text(Path(file), "replace")) is not None
+    except OSError:
+        return True

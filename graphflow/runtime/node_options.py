@@ -1,0 +1,132 @@
+"""What a node is given by what runs it, a graph file or a command line: it comes to the node from its surroundings.
+
+So a class whose `__init__(self)` takes nothing, as ROS 2 teaches it, gets its name, remaps and parameters too. What the
+surroundings say wins over what is written in the class.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Container, Iterator, Mapping, Sequence
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from graphflow.errors import DeclarationError
+from graphflow.interface import may_make
+from graphflow.machines.regrouping import Regrouping
+from graphflow.names import Remap, Resolver, did_you_mean, whole_rule
+from graphflow.runtime.args import is_number_or_truth
+from graphflow.runtime.mistakes.slow_hooks import telling_slow_init
+
+T = TypeVar("T")
+
+_NAMES = ("name", "node_name")
+"""What the first argument of an `__init__` is called that takes the node's name."""
+
+
+@dataclass(frozen=True)
+class NodeOptions:
+    """What is said of a node from outside.
+
+    Attributes:
+        name: Its name; None leaves that to the class.
+        namespace: Where it lives; None likewise.
+        remaps: Rules that come before the class's own.
+        overrides: Parameter values, each with where it was written.
+        concurrency: What a graph file says about its groups.
+        rosout: Whether what it logs is published.
+    """
+
+    name: str | None = None
+    namespace: str | None = None
+    remaps: Sequence[Remap] = ()
+    overrides: Mapping[str, tuple[Any, str]] = field(default_factory=dict)
+    concurrency: Regrouping = field(default_factory=Regrouping)
+    rosout: bool = True
+
+
+NOTHING = NodeOptions()
+_given: ContextVar[tuple[type, NodeOptions] | None] = ContextVar("graphflow_surroundings", default=None)
+
+
+def make_within(cls: type[T], surroundings: NodeOptions, default_name: str) -> T:
+    """A node of a class, within surroundings.
+
+    Args:
+        default_name: What an `__init__` gets that insists on a name, where the surroundings have none.
+
+    Raises:
+        DeclarationError: Its `__init__` needs more than a name, or does not call its parent's.
+        Exception: Whatever its `__init__` raises.
+    """
+    reason = why_not(cls)
+    if reason:
+        raise DeclarationError(reason)
+    arguments = (surroundings.name or default_name,) if _required(cls) else ()
+    token = _given.set((cls, surroundings))
+    try:
+        with telling_slow_init(cls):
+            return cls(*arguments)
+    finally:
+        _given.reset(token)
+
+
+def take(node: object) -> NodeOptions:
+    """What the surroundings have for a node that is being made; another node that it makes gets nothing."""
+    given = _given.get()
+    if given is None or given[0] is not type(node):
+        return NOTHING
+    _given.set(None)
+    return given[1]
+
+
+def why_not(cls: type) -> str:
+    """Why nodes of a class cannot be made, as a sentence; empty if they can."""
+    init = inspect.unwrap(cls.__init__)  # type: ignore[misc]
+    code = getattr(init, "__code__", None)
+    is_ours = init.__module__.startswith("graphflow.")
+    if code is not None and not is_ours and not {"super", "__init__"} & {*code.co_names, *code.co_freevars}:
+        return f"{cls.__name__}.__init__ must call super().__init__(...)"
+    required = _required(cls)
+    if required[:1] and required[0] in _NAMES:
+        del required[0]
+    if not required:
+        return ""
+    several = len(required) > 1
+    first = required[0]
+    return (
+        f"{cls.__name__}.__init__ needs {' and '.join(required)}, and nodes are made without arguments: give "
+        f"{'them defaults' if several else 'it a default'}, or declare a parameter in the class: {first} = Param(...)"
+    )
+
+
+def _required(cls: type) -> list[str]:
+    """The names of the arguments that cannot be left out."""
+    parameters = list(inspect.signature(cls.__init__).parameters.values())[1:]  # type: ignore[misc]
+    kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    return [p.name for p in parameters if p.default is p.empty and p.kind not in kinds]
+
+
+def unused_remaps(
+    names: Resolver, own: Container[str], dynamic: bool | Sequence[str], parameters: Container[str]
+) -> Iterator[str]:
+    """What is wrong with the remap rules of a node that have matched nothing, a sentence for each.
+
+    Args:
+        own: Names that every node has, which no rule is suspected to mean.
+        dynamic: Names that the class makes at run time, and may use later.
+        parameters: Those of the node, which a rule may have been meant to set.
+    """
+    known = [r.given for r in names.derivations.values() if r.given not in own]
+    for rule in names.unused():
+        is_value = rule.match in parameters and is_number_or_truth(rule.replacement)
+        may_be_made = may_make(dynamic, names.full(rule.match)) if "*" not in rule.match else dynamic
+        if may_be_made and not is_value:
+            continue
+        name = rule.match[1:] if rule.match.startswith("_") else rule.match  # as ROS 1 sets a parameter
+        is_param = name in parameters
+        set_by = f"-p {name}:={rule.replacement}"
+        hint = f"; to set the parameter write {set_by}" if is_param else whole_rule(rule.match, rule.replacement, known)
+        hint = hint or did_you_mean(rule.match, known)
+        yield f"the remap {rule} matches no name of this node{hint}"

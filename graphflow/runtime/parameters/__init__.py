@@ -1,0 +1,1 @@
+"""A node's parameters: values, checks and ROS 2's services for them."""

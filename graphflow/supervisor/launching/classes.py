@@ -1,0 +1,242 @@
+"""Node classes by their paths, as graph files name them: imported, and described without being run."""
+
+from __future__ import annotations
+
+import linecache
+import re
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from itertools import islice
+from pathlib import Path
+from pkgutil import iter_modules
+from types import ModuleType
+from typing import Any
+
+from graphflow.analysis.hiding import hidden
+from graphflow.analysis.user_code import place_in
+from graphflow.errors import DeclarationError, GraphflowError, NoModule
+from graphflow.msgs import registry
+from graphflow.names import did_you_mean, nearest
+from graphflow.runtime.importing import importing
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.mistakes.errors.python_errors import remark_on
+from graphflow.runtime.mistakes.slips import slips
+from graphflow.runtime.node import Node
+from graphflow.runtime.node_options import why_not
+from graphflow.typographic import plain
+from graphflow.workspace.project import INSTALLED_DEMOS, add_interfaces
+
+_FOLDERS_BOUND = 200
+"""Folders of a project in which a misspelt module is looked for."""
+_roots: list[str] = []
+
+
+def add_root(root: str) -> None:
+    """Make modules and interfaces of the project at `root` importable.
+
+    Before the installed packages, so that a project's own `nodes` is never shadowed; after the standard library, so
+    that a file that happens to be called `queue.py` breaks nothing.
+    """
+    _roots.append(root)
+    add_interfaces(Path(root))
+    installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
+    at = next(installed, len(sys.path))
+    if root not in sys.path[:at]:  # it may be behind, after another project that is installed to be edited
+        sys.path.insert(at, root)
+
+
+def import_class(class_path: str) -> type[Node]:
+    """The node class at `package.module:Class`.
+
+    Raises:
+        NoModule: There is no such module; the text names the nearest, or where modules are looked for.
+        GraphflowError: The module has no such class, or importing it failed; the text says where.
+    """
+    module_name, _, class_name = class_path.partition(":")
+    module = import_module_of(module_name, class_name)
+    found = getattr(module, class_name, None)
+    if found is None:
+        near = did_you_mean(class_name, node_classes(module, imported=True))
+        raise GraphflowError(f"module {module_name} has no class {class_name!r}{near}")
+    if not (isinstance(found, type) and issubclass(found, Node)):
+        raise GraphflowError(f"{class_path} is not a node class: it does not derive from graphflow.Node")
+    return found
+
+
+def import_module_of(name: str, class_name: str = "") -> ModuleType:
+    """A module of a project.
+
+    Args:
+        class_name: The class that is wanted of it, for the text of an error.
+
+    Raises:
+        NoModule: There is no such module; the text names the nearest, or where modules are looked for.
+        GraphflowError: Importing it failed; the text says where.
+    """
+    bundled = f"graphflow.{name}" if name.startswith("nodes.") else ""
+    try:
+        with importing(name):
+            return import_module(bundled if bundled and _roots[-1:] == [str(INSTALLED_DEMOS)] else name)
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and error.name and name.startswith(error.name):
+            if bundled and _is_there(bundled):  # a project has no such node of its own
+                return import_module_of(bundled, class_name)
+            text = _no_module(error.name, name, class_name, _roots[-1] if _roots else ".")
+            raise NoModule(text, error.name) from None
+        raise GraphflowError(f"cannot import {name}: {_where(error)}") from error
+
+
+def _is_there(name: str) -> bool:
+    """Whether there is a module of that name; the packages above it are imported."""
+    try:
+        return find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+def node_classes(module: ModuleType, *, imported: bool = False) -> dict[str, type[Node]]:
+    """The node classes of a module, by name.
+
+    Args:
+        imported: Those that it has from elsewhere too.
+    """
+    found = {k: v for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node) and v is not Node}
+    return {k: v for k, v in found.items() if imported or v.__module__ == module.__name__}
+
+
+def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
+    """What is said when `wanted` cannot be imported for want of `module`: the nearest, or where it was looked for."""
+    near = nearest_module(wanted, root)
+    if near == wanted:  # it is there, and another package of that name comes before it
+        top = wanted.partition(".")[0]
+        taken = getattr(sys.modules.get(top), "__file__", None)
+        return f"cannot import {wanted}: {top!r} is {taken}; give the package in {root} another name"
+    meant = f"{near}:{class_name}" if class_name else near
+    hint = f"; did you mean {meant!r}?"
+    if near is None:
+        parent, _, last = module.rpartition(".")
+        beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
+        hint = did_you_mean(last, beside) or f"; modules are looked for in {root}"
+    return f"cannot import {wanted}: there is no module {module!r}{hint}"
+
+
+def nearest_module(module: str, root: str) -> str | None:
+    """The module of a project, by its full name, whose name is most like that of one that is not there.
+
+    Modules beside it come first; then those of the project's folder and of the folders in it.
+    """
+    parent, _, last = module.rpartition(".")
+    beside = getattr(sys.modules.get(parent), "__path__", [root] if not parent else [])
+    folders = islice((f for f in sorted(Path(root).iterdir()) if f.name.isidentifier() and f.is_dir()), _FOLDERS_BOUND)
+    inner = [(folder.name, [str(folder)]) for folder in folders]
+    for places in ([(parent, beside)], [("", [root]), *inner]):
+        known = {m.name: f"{at}.{m.name}".lstrip(".") for at, paths in reversed(places) for m in iter_modules(paths)}
+        near = nearest(last, known)
+        if near is not None:
+            return known[near]
+    return None
+
+
+def _where(error: BaseException) -> str:
+    """The error on one line, with the place in the user's code it came from."""
+    if isinstance(error, SyntaxError):
+        line = (error.text or "").strip()
+        hint = f"; write {plain(line)}" if "invalid character" in error.msg and plain(line) != line else ""
+        return f"{error.filename}:{error.lineno}: {error.msg}{hint}"
+    place = place_in(error)
+    explain(error)
+    text = str(error)
+    missing = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    if is_hidden := hidden(error):
+        text += f"; {is_hidden}"
+    elif missing in registry.packages():
+        text += f"; write graphflow.msgs.{error.name}"  # type: ignore[attr-defined]
+    elif missing == "graphflow" and error.name and (meant := _instead_of(error.name.split(".")[1])):  # type: ignore[attr-defined]
+        text += f"; {meant}"
+    elif found := re.fullmatch(r"cannot import name '(\w+)' from 'graphflow' .*", text):
+        text = f"graphflow has no {found[1]}; {_instead_of(found[1])}".removesuffix("; ")
+    elif missing == "rclpy":
+        text += '; write `from graphflow import Node`: the page "coming from ROS 2" has each word of rclpy'
+    elif missing in ("rospy", "roscpp", "roslib"):
+        text += f"; {missing} is ROS 1's: write `from graphflow import Node`, or ROS 2's import rclpy"
+    elif remark := remark_on(error) or _way_beside(error, place):
+        text += f"; {remark}"
+    # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
+    return text if text.startswith("/") else f"{place}{place and ': '}{type(error).__name__}: {text}"
+
+
+def _way_beside(error: BaseException, place: str) -> str:
+    """What to write for a module that lies beside the file that imports it; empty if that is not known.
+
+    A file that is run as a program finds what lies beside it; a module of a package is found from the project's folder.
+    """
+    path, _, number = place.rpartition(":")
+    file, written = Path(path), _IMPORT.match(linecache.getline(path, int(number)) if number else "")
+    if "no known parent package" in str(error):
+        return _as_module(file)
+    if not isinstance(error, ModuleNotFoundError) or written is None:
+        return ""
+    module, names = written[1] or written[3], written[2]
+    top, _, rest = module.partition(".")
+    if file.parent.name == top and rest and _lies_in(file.parent, rest):
+        return _as_module(file)
+    package = _package_of(file)
+    if not package or error.name != top or not _lies_in(file.parent, top):
+        return ""
+    above, _, last = f"{package}.{module}".rpartition(".")
+    return f"write from {package}.{module} import {names.strip()}" if names else f"write from {above} import {last}"
+
+
+_IMPORT = re.compile(r"\s*(?:from\s+([\w.]+)\s+import\s+([^#\n]+)|import\s+([\w.]+)\s*(?:#|$))")
+"""An import of names from a module, or of one module."""
+
+
+def _lies_in(folder: Path, module: str) -> bool:
+    path = folder / module.partition(".")[0]
+    return path.with_suffix(".py").is_file() or path.is_dir()
+
+
+def _as_module(file: Path) -> str:
+    """How a file is run that imports from its own package."""
+    package, above = file.parent.name, file.parent.parent
+    return f"as a module of {package} it finds that: graphflow run {package}.{file.stem}, in {above}"
+
+
+def _package_of(file: Path) -> str:
+    """The package of a module of the project's; empty for none."""
+    root = next((root for root in reversed(_roots) if file.is_relative_to(root)), None)
+    return "" if root is None else ".".join(file.relative_to(root).parent.parts)
+
+
+def _instead_of(word: str) -> str:
+    """The import to write for one of something that graphflow does not have; empty if that is not known."""
+    if word in ("msg", "srv", "action", "message", "messages"):
+        return "messages are in graphflow.msgs, as in from graphflow.msgs.std_msgs.msg import String"
+    names: list[str] = vars(sys.modules["graphflow"])["__all__"]  # the facade above, which the user's file imports
+    meant = {name.lower(): name for name in names}
+    near = nearest(word.lower(), meant)
+    return f"write from graphflow import {meant[near]}" if near is not None else ""
+
+
+def interfaces(class_paths: list[str], *, with_slips: bool = False) -> dict[str, Any]:
+    """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
+
+    Beside each stands `needs_numpy`: whether nodes of the class will load it; and, if that is asked for, `slips`: those
+    in its source, which a node tells when it starts.
+    """
+    found: dict[str, Any] = {}
+    for path in class_paths:
+        try:
+            cls = import_class(path)
+            reason = why_not(cls)
+            if reason:
+                raise DeclarationError(f"{cls.interface().place}: {reason}")
+            interface = cls.interface()
+            has_arrays = any(registry.has_numeric_arrays(e.type) for e in interface.endpoints if e.type)
+            found[path] = {**interface.to_json(), "needs_numpy": has_arrays or "numpy" in sys.modules}
+            if with_slips:
+                found[path]["slips"] = [*slips(cls)]  # type: ignore[arg-type] # it can be hashed
+        except GraphflowError as error:
+            found[path] = {"problem": str(error)}
+    return found

@@ -1,0 +1,465 @@
+"""From a graph file to a running supervisor: what happens between `graphflow up` and the first node.
+
+The command forks the guardian before anything heavy is imported, that the supervisor, and that at once the preload
+process, so that imports there, reading the file here and waiting in the command overlap. Whatever goes wrong before the
+graph runs goes back over a report pipe, as the exit code and text the command ends with.
+
+From the first moment the command holds one end of a *lifeline*: when it ends without having let go, however it ends,
+the graph goes down, or never comes up.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
+
+from graphflow.supervisor.processes import process_tree
+from graphflow.supervisor.processes.guardian import guard, leave_note
+from graphflow.supervisor.processes.lifeline import LET_GO, Lifeline
+from graphflow.supervisor.starts import ANNOUNCEMENT
+from graphflow.system import detached, is_portable, offer_ros2
+
+if TYPE_CHECKING:
+    from graphflow.graph.checks.check import Interfaces
+    from graphflow.graph.plan import Plan
+    from graphflow.runtime.context import Context
+    from graphflow.supervisor.processes.starter import Starter
+    from graphflow.supervisor.rundir import GraphRun, RunDirectory
+    from graphflow.supervisor.supervisor import Supervisor
+
+Report = dict[str, Any]
+
+GONE = "its terminal went away"
+
+
+class Launched(NamedTuple):
+    """A supervisor that has begun, as the command sees it."""
+
+    report: int
+    """The descriptor its report comes from."""
+    lifeline: int
+    """The command's end of the lifeline."""
+    wait: Callable[[], str]
+    """Waits until it has ended, with all that belonged to it; says what ended it."""
+
+    def let_go(self) -> None:
+        """Let the graph go on without this command. Its end still shows: the lifeline stays open until then."""
+        with suppress(OSError):  # it may have ended
+            os.write(self.lifeline, LET_GO)
+
+
+def launch(
+    file: Path,
+    given: list[str],
+    domain: int | None,
+    only: Sequence[str] = (),
+    debug: Sequence[str] = (),
+    *,
+    watch: bool = False,
+) -> tuple[Report, Launched]:
+    """Start a supervisor for a graph file; returns when the graph is being brought up, or has been refused.
+
+    Args:
+        file: The graph file.
+        given: `name:=value` arguments.
+        domain: See `domain.domain_id`.
+        only: Nodes that are wanted, if not all are.
+        debug: Nodes whose processes wait for a debugger.
+        watch: Start nodes again when their source changes.
+
+    Returns:
+        `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
+    """
+    offer_ros2()
+    ANNOUNCEMENT.begin(file)
+    begin = _begin_portable if is_portable() else _begin_forked
+    begun = begin(
+        {"file": str(file), "given": given, "domain": domain, "only": list(only), "debug": list(debug), "watch": watch}
+    )
+    data = b""
+    try:
+        while not data.endswith(b"\n") and (chunk := os.read(begun.report, 65536)):
+            data += chunk
+    finally:
+        os.close(begun.report)
+        ANNOUNCEMENT.end()
+    if not data.endswith(b"\n"):
+        return {"ok": False, "exit_code": 1, "message": f"{begun.wait()} before the graph was up"}, begun
+    report: Report = json.loads(data)
+    if not report["ok"]:
+        begun.wait()
+    return report, begun
+
+
+def _begin_forked(job: dict[str, Any]) -> Launched:
+    report, write = os.pipe()
+    watched, lifeline = os.pipe()
+    noted, note = os.pipe()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    pid = os.fork()
+    if pid == 0:
+        try:
+            os.close(report)
+            os.close(lifeline)
+            ANNOUNCEMENT.leave()
+            os.setsid()
+            # Told here: a supervisor that asked for its parent might get an answer after the guardian's end.
+            begun = _Launch(job, write, watched, note, guardian=os.getpid())
+            guard(begun.supervise, noted, (write, watched, note))
+        finally:
+            os._exit(1)
+    for fd in (write, watched, noted, note):
+        os.close(fd)
+    return Launched(report, lifeline, lambda: _end_of(pid))
+
+
+def _end_of(guardian: int) -> str:
+    """Wait for the guardian, which ends with the exit code of its supervisor; returns what ended the two."""
+    from graphflow.machines.process import Exit
+
+    code = os.waitstatus_to_exitcode(os.waitpid(guardian, 0)[1])
+    if code < 0:
+        return f"the guardian, process {guardian}, was ended by {Exit.of_status(code)}, and the supervisor with it"
+    return f"the supervisor was ended by {Exit.of_status(128 - code if code > 128 else code)}"
+
+
+def _begin_portable(job: dict[str, Any]) -> Launched:
+    import subprocess
+
+    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launching.launch"]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, **detached())
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(json.dumps(job).encode() + b"\n")
+    wait = lambda: f"the supervisor, process {process.pid}, was ended by code {process.wait()}"  # noqa: E731
+    return Launched(os.dup(process.stdout.fileno()), _kept(process.stdin), wait)
+
+
+def _kept(stream: IO[bytes]) -> int:
+    """A descriptor that outlives the object which has it."""
+    with stream:
+        return os.dup(stream.fileno())
+
+
+def _end_at_once(directory: RunDirectory | None = None) -> None:
+    """End this process, whatever it is doing, before it has started anything."""
+    if directory is None:
+        os._exit(1)
+    with directory.changing:  # and so nothing comes into the directory any more
+        try:
+            directory.release()
+        finally:
+            os._exit(1)
+
+
+class _Launch:
+    """The supervisor's process, from the fork to the end of the graph.
+
+    Args:
+        report: The pipe to the command.
+        lifeline: The supervisor's end of the lifeline.
+        note: The pipe to the guardian; -1 for none.
+        guardian: The guardian's process id; 0 for none.
+    """
+
+    def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1, guardian: int = 0) -> None:
+        self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
+        self._is_watching, self._debug = bool(job["watch"]), job["debug"]
+        self._report_pipe, self._lifeline, self._note = report, Lifeline(lifeline, _end_at_once), note
+        self._guardian = guardian
+        self._was_cut = False
+        self._starter: Starter
+
+    def supervise(self) -> int:
+        """Bring the graph up and supervise it to its end; returns the exit code."""
+        from graphflow.errors import GraphFileError, GraphflowError, SupervisorError
+
+        for name in ("SIGINT", "SIGHUP"):
+            if hasattr(signal, name):
+                signal.signal(getattr(signal, name), signal.SIG_IGN)
+        process_tree.name_process("gf-supervisor", f"supervisor of {self._file}")
+        process_tree.adopt_orphans()  # the nodes, should the preload process end
+        starter = None
+        try:
+            keep = (self._report_pipe, *(fd for fd in (self._note,) if fd >= 0))
+            starter = self._starter = _make_starter(keep)
+            self._lifeline.watch()
+            return self._run()
+        except GraphFileError as error:
+            count = len(error.problems)
+            return self._refuse(2, f"{error}\n{count} problem{'s' if count > 1 else ''}; nothing was started")
+        except SupervisorError as error:
+            return self._refuse(error.exit_code, str(error))
+        except GraphflowError as error:
+            return self._refuse(1, str(error))
+        except BaseException:  # a forked child: it must answer the waiting command, not unwind into its parent's code
+            import traceback
+
+            return self._refuse(1, f"the supervisor failed:\n{traceback.format_exc()}")
+        finally:
+            if starter is not None:
+                starter.end()
+
+    def _report(self, **report: Any) -> None:
+        if self._report_pipe < 0:  # the command already knows that the graph is up; what comes now goes to the log
+            sys.stderr.write(f"{report}\n")
+            return
+        try:
+            os.write(self._report_pipe, json.dumps(report).encode() + b"\n")
+        except OSError:  # the command was killed meanwhile
+            return
+
+    def _refuse(self, exit_code: int, message: str) -> int:
+        self._report(ok=False, exit_code=exit_code, message=message)
+        return exit_code
+
+    def _run(self) -> int:
+        import asyncio
+
+        from graphflow.domain import domain_id
+        from graphflow.errors import GraphFileError
+        from graphflow.graph.checks.check import check, step_type
+        from graphflow.graph.resolve import load
+        from graphflow.supervisor.launching.command_output import printed
+        from graphflow.supervisor.launching.debugging import debugged
+        from graphflow.supervisor.launching.launch_python import described
+        from graphflow.supervisor.launching.probed import read_interfaces
+        from graphflow.workspace.project import add_interfaces
+
+        plan = load(self._file, self._given, run=printed, describe=described)
+        if self._only:
+            plan = plan.only(self._only)
+        if self._debug:
+            plan = debugged(plan, self._debug)
+        add_interfaces(Path(plan.root))
+        domain = domain_id(self._domain if self._domain is not None else plan.domain)
+        self._starter.begin_probe(plan.classes(), plan.root)
+        import graphflow.introspect.view  # noqa: F401 - overlaps with the probe
+
+        interfaces = read_interfaces(self._starter.probed())
+        problems = check(plan, interfaces)
+        if problems:
+            raise GraphFileError(problems)
+        types = {s.name: t for s in plan.steps if (t := step_type(s, plan, interfaces))}
+        return asyncio.run(self._claim_and_supervise(plan, domain, interfaces, types))
+
+    async def _claim_and_supervise(
+        self, plan: Plan, domain: int, interfaces: Interfaces, step_types: dict[str, str]
+    ) -> int:
+        from graphflow.introspect.view import refuse_taken_names
+        from graphflow.supervisor import rundir
+        from graphflow.supervisor.processes.jobs import first_starts
+        from graphflow.transport.config import reaches_out
+        from graphflow.transport.rendezvous import establish
+
+        directory = rundir.RunDirectory(domain, plan.name)
+        self._lifeline.on_cut(partial(_end_at_once, directory))
+        directory.claim()
+        try:
+            names = [n.name for n in plan.nodes]
+            refuse_taken_names(names, domain)
+            directory.claim_names(names)  # another graph may be starting at this very moment
+            run_id = rundir.new_run_id()
+            logs = rundir.open_logs(plan.name, run_id)
+            self._log_to(logs / rundir.SUPERVISOR_LOG)
+            if self._note >= 0:
+                leave_note(self._note, domain, plan.name, logs / rundir.SUPERVISOR_LOG)
+            router = establish()
+            if not reaches_out():  # a link that is refused keeps a graph from being started
+                self._lifeline.on_cut(self._cut_early)
+                self._starter.begin(first_starts(plan, domain, logs))
+            from graphflow.runtime.context import Context  # all that follows overlaps with the start of the nodes
+
+            context = await Context.open(domain, link=False, checked=True, router=router)
+            try:
+                context.open_link()
+                run = _run_file(plan, run_id, logs, domain, self._guardian)
+                return await self._supervise(plan, context, directory, run, interfaces, step_types)
+            finally:
+                await context.close()
+        finally:
+            directory.release()
+
+    async def _supervise(
+        self,
+        plan: Plan,
+        context: Context,
+        directory: RunDirectory,
+        run: GraphRun,
+        interfaces: Interfaces,
+        step_types: dict[str, str],
+    ) -> int:
+        import asyncio
+        from dataclasses import replace
+
+        from graphflow.supervisor import rundir
+        from graphflow.supervisor.control import server as controlling
+        from graphflow.supervisor.control.reachable import keep_reachable
+        from graphflow.supervisor.status import mirror
+        from graphflow.supervisor.supervisor import Supervisor
+
+        supervisor = Supervisor(plan, context, self._starter, Path(run.logs), step_types)
+        control = controlling.ControlServer(supervisor)
+
+        def cut() -> None:
+            control.expect_nobody()
+            supervisor.begin_stop(now=False, reason=GONE)
+
+        def on_loop(function: Callable[[], object]) -> None:
+            with suppress(RuntimeError):  # the loop is closed: the graph has ended
+                context.loop.call_soon_threadsafe(function)
+
+        self._lifeline.on_cut(partial(on_loop, cut), partial(on_loop, control.expect_nobody))
+        if self._was_cut:
+            cut()
+        _tell_notes(supervisor.note)
+        await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
+        run = replace(run, socket=await control.open(directory.socket))
+        directory.write(run)
+        stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
+        signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
+        classes = {path: str(interface.place) for path, interface in interfaces.items()}
+        self._report(ok=True, run=run.__dict__, classes=classes)
+        os.close(self._report_pipe)
+        self._report_pipe = -1
+        linked = asyncio.create_task(context.wait_linked())
+        kept = asyncio.create_task(keep_reachable(supervisor, control, directory, run))
+        warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
+        mirrored = asyncio.create_task(mirror(supervisor, context))
+        watching = asyncio.create_task(_watch(supervisor, plan, interfaces)) if self._is_watching else None
+        try:
+            code = await supervisor.run()
+            await control.wait_followed()
+            return code
+        finally:
+            context.session.leave()
+            linked.cancel()
+            kept.cancel()
+            warned.cancel()
+            mirrored.cancel()
+            if watching is not None:
+                watching.cancel()
+            await control.close()
+            await self._starter.close()
+
+    def _cut_early(self) -> None:
+        """The command has ended while workers were being started: they are stopped as soon as that can be done."""
+        self._was_cut = True
+
+    def _log_to(self, path: Path) -> None:
+        """From here on the supervisor writes only to its log; the terminal belongs to the command."""
+        import logging
+
+        null = os.open(os.devnull, os.O_RDWR)
+        out = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        # The lifeline may be the standard input.
+        for source, fd in ((null, 1), (out, 2)) if self._note < 0 else ((null, 0), (null, 1), (out, 2)):
+            os.dup2(source, fd)
+        logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
+
+
+async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
+    """Report what is odd in the graph's files and, once it is up, the deadlocks that its source shows."""
+    import asyncio
+    import logging
+
+    from graphflow.analysis.deadlock_check import findings, warnings
+    from graphflow.graph.checks.loose_ends import loose_ends
+
+    try:
+        for remark in (*plan.remarks, *map(str, loose_ends(plan, interfaces))):
+            supervisor.note(remark)  # it may be the reason why the graph does not come up
+        await supervisor.up.wait()
+        ways = await asyncio.to_thread(findings, plan, interfaces) if plan.deadlock != "off" else []
+        for text in warnings(ways, plan.file):
+            supervisor.note(text)
+    except Exception as error:  # remarks must not keep a graph from running
+        logging.getLogger("graphflow.supervisor").error("the graph was not examined: %s", error, exc_info=error)
+    finally:  # `up -d` waits for it
+        supervisor.clients.tell(event="checked")
+
+
+async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
+    """Once the graph is up, start nodes again when their source changes."""
+    from graphflow.interface import Interface
+    from graphflow.supervisor.processes.watching import Watch
+
+    nodes: dict[Path, list[str]] = {}
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if isinstance(interface, Interface):
+            nodes.setdefault(Path(interface.place.file).resolve(), []).append(node.name)
+    await supervisor.up.wait()
+    await Watch(Path(plan.root), nodes, partial(supervisor.restart, by="--watch"), supervisor.note).run()
+
+
+def _run_file(plan: Plan, run_id: str, logs: Path, domain: int, guardian: int) -> GraphRun:
+    import hashlib
+    import time
+
+    from graphflow.domain import rendezvous_endpoint
+    from graphflow.supervisor import rundir
+
+    return rundir.GraphRun(
+        run_id=run_id,
+        graph=plan.name,
+        domain=domain,
+        pid=os.getpid(),
+        started=rundir.start_time(os.getpid()) or 0.0,
+        began=time.time(),
+        file=str(Path(plan.file).resolve()),
+        socket="",
+        logs=str(logs),
+        endpoint=rendezvous_endpoint(),
+        guardian=guardian,
+        guardian_started=(rundir.start_time(guardian) or 0.0) if guardian else 0.0,
+        plan_hash=hashlib.sha256(json.dumps(plan.to_json(), sort_keys=True).encode()).hexdigest(),
+    )
+
+
+def _tell_notes(note: Callable[[str], None]) -> None:
+    """Pass what the supervisor's process learns about the network on to the clients that follow the graph."""
+    import logging
+
+    class Notes(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            note(record.getMessage())
+
+    for name in ("graphflow.link", "graphflow.rendezvous"):
+        logging.getLogger(name).addHandler(Notes(logging.INFO))
+
+
+def _make_starter(keep: tuple[int, ...]) -> Starter:
+    """A starter of the kind that this system uses. Must be made while this process has one thread.
+
+    Args:
+        keep: Descriptors that workers must not inherit.
+    """
+    if is_portable():
+        from graphflow.supervisor.processes.spawning import SpawningStarter
+
+        return SpawningStarter()
+    from graphflow.supervisor.processes.forking import ForkingStarter
+
+    return ForkingStarter(keep)
+
+
+def _read_line(fd: int) -> bytes:
+    """The first line that comes, and no byte of the next."""
+    line = b""
+    while not line.endswith(b"\n") and (byte := os.read(fd, 1)):
+        line += byte
+    return line
+
+
+if __name__ == "__main__":
+    report = os.dup(1)
+    sys.exit(_Launch(json.loads(_read_line(0)), report, 0).supervise())

@@ -1,0 +1,43 @@
+"""Launch files in Python: each describes itself in a process of its own, to stand-ins for ROS's launch packages."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from graphflow.errors import GraphFileError, Place, Problem
+
+PYTHON_LIMIT = 20.0
+"""Seconds that a launch file may take to describe itself."""
+
+
+def described(file: Path, name: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
+    """What a launch file says: its `actions`, and `problems` and `remarks` on what it says in vain. It is run.
+
+    Args:
+        name: The file as messages show it.
+        values: The arguments that it is about to be started with; None if it is only to be written down.
+
+    Raises:
+        GraphFileError: It failed, or took too long.
+    """
+    # By way of what lets Python import rclpy and the packages of the file's workspace.
+    recorder = ["-m", "graphflow.rclpy", "-m", "graphflow.supervisor.launching.launch_recorder"]
+    command = [sys.executable, "-P", *recorder, str(file)]
+    command += [] if values is None else [json.dumps(values)]
+    try:
+        ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
+    except subprocess.TimeoutExpired:
+        raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
+    if values is not None:  # what it prints is for whoever starts it
+        sys.stderr.write(ran.stderr.decode(errors="replace"))
+    try:
+        told: dict[str, Any] = json.loads(ran.stdout)
+    except ValueError:
+        words = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {words}")]) from None
+    return told

@@ -1,0 +1,47 @@
+"""The words that start a program of a graph, and with which one of a package gets its name, remaps and parameters."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from graphflow.graph.plan import PlannedNode
+from graphflow.introspect.echo import flow
+from graphflow.names import split
+from graphflow.workspace.packages import uses_ros
+
+
+def words_of(node: PlannedNode) -> list[str]:
+    """The program of a planned node that has no class, and its words."""
+    match node.command:
+        case "graphflow", "run", *words if node.executable:
+            command = [sys.executable, "-P", "-m", "graphflow.rclpy", *words]
+        case "graphflow", *words:  # this one, whether or not it is on the PATH
+            command = [sys.executable, "-P", "-m", "graphflow", *words]
+        case (("python" | "python3"), script, *words) if script.endswith(".py") and uses_ros(Path(script)):
+            command = [sys.executable, "-P", "-m", "graphflow.rclpy", script, *words]  # that Python may have no rclpy
+        case words:
+            command = list(words)
+    return [*command, *(_ros_args(node) if node.executable else ())]
+
+
+def signal_of(node: PlannedNode) -> str:
+    """The signal that asks such a program to end; those of ROS 2 expect what Ctrl-C sends."""
+    return "SIGINT" if node.executable else "SIGTERM"
+
+
+def _ros_args(node: PlannedNode) -> Iterator[str]:
+    namespace, name = split(node.name)
+    rules = [f"{rule.match}:={rule.replacement}" for rule in node.remaps]
+    rules += [] if node.keeps_names else [f"__node:={name}"]
+    rules += [f"__ns:={namespace}"] if namespace != "/" else []
+    yield "--ros-args"
+    for rule in rules:
+        yield from ("-r", rule)
+    for file in node.params_files:
+        yield from ("--params-file", file)
+    for parameter, setting in node.params.items():
+        yield from ("-p", f"{parameter}:={flow(setting.value)}")
+    if node.log_level:
+        yield from ("--log-level", node.log_level)

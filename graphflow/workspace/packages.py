@@ -1,0 +1,448 @@
+"""ROS 2 workspaces, read without building them: the packages below a folder, and what each has to be run.
+
+What a package installs is read from its `setup.py`, `setup.cfg` or `CMakeLists.txt`, without running any of them.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from importlib.machinery import PathFinder
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+from graphflow.folders import home
+from graphflow.names import nearest
+from graphflow.reading import found_text
+from graphflow.system import SITE
+from graphflow.workspace.setup_file import EntryPoint, SetupFile, entry_point, function_fault, starts_nodes
+
+DEPTH = 5
+"""Folders below a workspace in which packages are looked for."""
+FOLDERS_BOUND = 5000
+"""Folders that are looked into: the shell may stand in any folder, be it `/`."""
+PACKAGES_BOUND = 1000
+_VALUE_BOUND = 10_000
+"""Characters that a variable of CMake may stand for."""
+_LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
+"""Folders that colcon makes, and others in which no package lies."""
+_MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+"""Files that say that nothing below is a package."""
+_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
+_INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
+_COMPILED = re.compile(r"add_executable\s*\(\s*([\w${}-]+)", re.IGNORECASE)
+_SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^()]+?)\s*\)", re.IGNORECASE)
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
+_MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
+_SETUPS = ("setup.py", "CMakeLists.txt", "pyproject.toml")
+"""Files of a package that may say what it has to be run."""
+KINDS = ("msg", "srv", "action")
+_NEAR_KINDS = {*KINDS, "msgs", "message", "messages", "srvs", "service", "services", "actions"}
+"""Names of folders, in any case, that are meant for definitions."""
+_ROS = ("rclpy", "launch", "launch_ros")
+"""Packages of ROS's that a program of ROS's imports one of."""
+BUNDLED = Path(__file__).parents[1] / "rclpy" / "packages"
+"""The packages with programs of ROS 2's that come with graphflow; they lie there as in any workspace."""
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package of a workspace."""
+
+    name: str
+    folder: Path
+
+    @property
+    def import_roots(self) -> list[Path]:
+        """The folders that Python imports from: of a package of its name or that CMake installs, of executables."""
+        folders = {self.folder / self.name, self.python_folder / self.name}
+        for name, folder in _MODULES.findall(cmake_text(self)):
+            folders.add(self.folder / (folder or name).strip('"'))
+        roots = {folder.parent for folder in folders if next(folder.glob("*.py"), None) is not None}
+        if any(self.file_of(entry).is_file() for entry in self.entry_points.values()):
+            roots.add(self.python_folder)
+        return sorted(roots)
+
+    @cached_property
+    def setup(self) -> SetupFile:
+        """Its `setup.py`, which need not be there."""
+        return SetupFile(self.folder / "setup.py", _text(self.folder / "setup.py"))
+
+    @cached_property
+    def python_folder(self) -> Path:
+        """Where its modules begin: its folder, unless `setup.py` says `package_dir={"": "src"}`."""
+        return self.folder / self.setup.package_dir
+
+    @property
+    def has_interfaces(self) -> bool:
+        """Whether messages, services or actions are defined in it."""
+        return any(self.has_kind(kind) for kind in KINDS)
+
+    def has_kind(self, kind: str) -> bool:
+        """Whether messages, or services, or actions are defined in it."""
+        return next((self.folder / kind).rglob(f"*.{kind}"), None) is not None
+
+    @property
+    def misplaced_interfaces(self) -> dict[Path, Path]:
+        """Definitions in folders such as `msgs/`, which nothing reads, and where each has to be."""
+        files = [(kind, file) for kind in KINDS for file in sorted(self.folder.glob(f"*/*.{kind}"))]
+        wrong = [(kind, file) for kind, file in files if file.parent.name != kind]
+        return {f: self.folder / kind / f.name for kind, f in wrong if f.parent.name.lower() in _NEAR_KINDS}
+
+    @cached_property
+    def entry_points(self) -> Mapping[str, EntryPoint]:
+        """Its executables that are functions, by name."""
+        return {**self.setup.entry_points, **self._setup_cfg[0]}
+
+    @cached_property
+    def _setup_cfg(self) -> tuple[dict[str, EntryPoint], list[str]]:
+        return _of_setup_cfg(self.folder / "setup.cfg")
+
+    @cached_property
+    def programs(self) -> Mapping[str, Path]:
+        """Its executables that are files, by name: those that CMake installs, and those in `scripts/`."""
+        files = (file for file in sorted((self.folder / "scripts").glob("*")) if file.is_file())
+        known = {file.name: file for file in files if file.name != "__init__.py" and not file.name.startswith(".")}
+        return known | dict(_of_cmake(self))
+
+    @property
+    def executables(self) -> list[str]:
+        """The names of all."""
+        return sorted({*self.entry_points, *self.programs})
+
+    @property
+    def compiled(self) -> set[str]:
+        """The executables that only a compiler makes."""
+        return {*_COMPILED.findall(cmake_text(self))}
+
+    @property
+    def faults(self) -> list[str]:
+        """What is wrong with its executables."""
+        found = self._no_setup + self.build_faults
+        found += [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
+        found += [fault for name in self.entry_points if (fault := self.copy_fault(name)) is not None]
+        found += [f"{file} must be {right}" for file, right in self.misplaced_interfaces.items()]
+        if self.setup.computes_scripts:
+            file = self.setup.file
+            found.append(f"{file}: it computes some executables, and is only read; run their files: graphflow run FILE")
+        return found
+
+    @property
+    def build_faults(self) -> list[str]:
+        """Faults of its `setup.py`, and folders that a build would leave out though they run from here."""
+        line = self.setup.finds_packages
+        lacking = [f for f in self._module_folders if not (f / "__init__.py").is_file()] if line is not None else []
+        where = f"find_packages() in {self.setup.file}:{line}"
+        return [*self.setup.faults, *self._setup_cfg[1]] + [
+            f"{folder} has no __init__.py: {where} leaves such folders out of what ROS 2 builds; make an empty one: "
+            f"touch {folder / '__init__.py'}"
+            for folder in lacking
+        ]
+
+    @property
+    def _module_folders(self) -> list[Path]:
+        """The folders that a build has to know as packages of Python's: of its own name, and of its executables."""
+        own = self.python_folder / self.name
+        folders = {own} if next(own.glob("*.py"), None) is not None else set()
+        for entry in self.entry_points.values():
+            file = self.file_of(entry)
+            if file.is_file():
+                folders |= {parent for parent in file.parents if parent.is_relative_to(self.python_folder)}
+        return sorted(folders - {self.python_folder})
+
+    @property
+    def why_no_executable(self) -> str:
+        """Why an executable may be missing: the faults of `setup.py`, to stand after a sentence; or nothing."""
+        return "".join(f"; {fault}" for fault in [*self._no_setup, *self.setup.faults, *self._setup_cfg[1]])
+
+    @property
+    def _no_setup(self) -> list[str]:
+        """That it has modules, and none of the files that say what is run."""
+        has_modules = {file.name for file in (self.folder / self.name).glob("*.py")} - {"__init__.py"}
+        if not has_modules or self.entry_points or any((self.folder / name).is_file() for name in _SETUPS):
+            return []
+        return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
+
+    def fault_of(self, executable: str) -> str | None:
+        """What is wrong with one: its module is not there, or has not its function."""
+        entry = self.entry_points.get(executable)
+        if entry is None:
+            return None
+        file, line = self.file_of(entry), self.setup.lines.get(executable)
+        place = f"{self.setup.file}:{line}" if line is not None else f"{self.folder / 'setup.cfg'}"
+        says = f"{place}: {executable} is {entry.module}:{entry.function}, and"
+        if file.is_file():
+            fault = None if is_graphflows(file) else function_fault(entry, file, _text(file))
+            return None if fault is None else f"{says} {fault}"
+        top = entry.module.partition(".")[0]
+        if (folder := self.setup.renamed.get(top)) is not None:
+            return f"{says} package_dir has {top} in {folder}, which cannot be run from source; call it {top}"
+        if not (self.python_folder / top).exists() and _is_elsewhere(top, self.folder):
+            return None
+        if entry.module.endswith(".py"):
+            return f"{says} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
+        near = self._nearest_module(entry.module)
+        meant = "write that module, or name another one there"
+        return f"{says} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")
+
+    def copy_fault(self, executable: str) -> str | None:
+        """What is wrong with one whose line is another's with the name alone changed, while a module has that name."""
+        entry, line = self.setup.entry_points.get(executable), self.setup.lines.get(executable)
+        first = next((name for name, other in self.entry_points.items() if other == entry), executable)
+        if entry is None or first == executable:
+            return None
+        package = entry.module.rpartition(".")[0]
+        meant = EntryPoint(f"{package}.{executable}".lstrip("."), entry.function)
+        file = self.file_of(meant)
+        is_started = any(other.module == meant.module for other in self.entry_points.values())
+        if is_started or not file.is_file() or not starts_nodes(_text(file), entry.function) or self._imports(file):
+            return None
+        return (
+            f"{self.setup.file}:{line}: {executable} starts {entry.module}:{entry.function}, as {first} does, and "
+            f"{file.relative_to(self.folder)} has a {entry.function}() that nothing starts; "
+            f"write {executable} = {meant.module}:{meant.function}"
+        )
+
+    def _imports(self, module: Path) -> bool:
+        """Whether another file of the package names a module: to import it, or to run its file."""
+        word = re.compile(
+            rf"\b{re.escape(module.stem)}(\.py\b|\b.*\bimport\b)|\bimport\b.*\b{re.escape(module.stem)}\b"
+        )
+        files = (file for file in self.folder.rglob("*.py") if file not in (module, self.setup.file))
+        return any(word.search(_text(file)) for file in files)
+
+    def _nearest_module(self, name: str) -> str | None:
+        """The module of the package that is most like a name, or has it as the last part of its own."""
+        files = (self.python_folder / self.name).rglob("*.py")
+        known = [".".join(file.relative_to(self.python_folder).with_suffix("").parts) for file in sorted(files)]
+        known = [module for module in known if not module.endswith("__init__")]
+        last = name.rpartition(".")[2]
+        return next((module for module in known if module.endswith(f".{last}")), None) or nearest(name, known)
+
+    def file_of(self, entry: EntryPoint) -> Path:
+        """Where the module of an executable is, or has to be."""
+        path = self.python_folder.joinpath(*entry.module.split("."))
+        return path / "__init__.py" if (path / "__init__.py").is_file() else path.with_suffix(".py")
+
+    def path_of(self, executable: str, root: Path) -> str:
+        """The module and the function of an executable, as `src.lamp.lamp.node:main`; without one for a file."""
+        entry = self.entry_points.get(executable)
+        file = self.programs[executable] if entry is None else self.file_of(entry)
+        inside = file.relative_to(root) if file.is_relative_to(root) else file
+        module = ".".join(inside.with_suffix("").parts)
+        return module if entry is None else f"{module}:{entry.function}"
+
+    def known_as(self, executable: str) -> str | None:
+        """The name of an executable that is asked for with or without `.py`; None if there is none."""
+        names = (executable, f"{executable}.py", executable.removesuffix(".py"))
+        return next((name for name in names if name in self.entry_points or name in self.programs), None)
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """The packages below a folder, by name."""
+
+    root: Path
+    packages: Mapping[str, Package] = field(default_factory=dict)
+    doubles: tuple[Package, ...] = ()
+    """Packages whose names others have that were met before them."""
+
+    @property
+    def import_roots(self) -> list[Path]:
+        """The folders of packages from which Python imports."""
+        return [root for package in self.packages.values() for root in package.import_roots]
+
+    @property
+    def replaced(self) -> dict[str, Path]:
+        """Packages that Python would import from here, had graphflow not its own: source trees of rclpy, tf2_ros."""
+        own = os.listdir(SITE)
+        return {
+            name: root / name for root in self.import_roots for name in own if (root / name / "__init__.py").is_file()
+        }
+
+    @property
+    def interfaces(self) -> dict[str, Path]:
+        """The folders of packages that define messages, services or actions, be it in folders of other names."""
+        return {p.name: p.folder for p in self.packages.values() if p.has_interfaces or p.misplaced_interfaces}
+
+
+def find_workspace(start: Path) -> Workspace:
+    """The workspace that a folder or file belongs to, or else what is below the folder.
+
+    Returns:
+        One without packages where there is none.
+    """
+    start = start.resolve()
+    return workspace_around(start) or (read_workspace(start, start) if start.is_dir() else Workspace(start))
+
+
+def workspace_around(start: Path) -> Workspace | None:
+    """The workspace that a folder or file lies in: the nearest above with packages in its `src`, or beside its own."""
+    start = start.resolve()
+    folders = [start, *start.parents] if start.is_dir() else list(start.parents)
+    for folder in folders:
+        if (folder / "src").is_dir() and next(_walk(folder / "src"), None) is not None:
+            return read_workspace(folder, folder / "src")
+    highest = next((f for f in reversed(folders) if (f / "package.xml").is_file()), None)
+    if highest is not None:  # beside it there may be others, and below the folder that one stands in
+        here = Path.cwd()
+        if here in highest.parent.parents and here not in (Path(here.anchor), home()):  # which hold anything
+            around = read_workspace(here, here)
+            if any(package.folder == highest for package in around.packages.values()):
+                return around
+        return read_workspace(highest.parent, highest.parent)
+    return None
+
+
+@cache
+def bundled() -> Workspace:
+    """The packages that come with graphflow."""
+    return read_workspace(BUNDLED, BUNDLED)
+
+
+def read_workspace(root: Path, source: Path) -> Workspace:
+    """The packages below `source`; of two with the same name, the one that is met first."""
+    packages: dict[str, Package] = {}
+    doubles: list[Package] = []
+    for package in islice(_walk(source), PACKAGES_BOUND):
+        if packages.setdefault(package.name, package) is not package:
+            doubles.append(package)
+    return Workspace(root, packages, tuple(doubles))
+
+
+class Folder(NamedTuple):
+    """A folder in which packages are looked for."""
+
+    path: Path
+    files: set[str]
+    """The names of its files."""
+    package: str | None
+    """The name in its `package.xml`; None if it is no package."""
+
+    @property
+    def mark(self) -> str | None:
+        """The file that leaves it, and all below, out of the workspace."""
+        return next((mark for mark in _MARKS if mark in self.files), None)
+
+
+def _walk(source: Path) -> Iterator[Package]:
+    return (Package(found.package, found.path) for found in folders(source) if found.package is not None)
+
+
+def folders(source: Path) -> Iterator[Folder]:
+    """The folders of packages and those above, the nearest first; there may be any number that are no packages."""
+    waiting = deque([(source, 0)])
+    for _ in range(FOLDERS_BOUND):
+        if not waiting:
+            return
+        path, depth = waiting.popleft()
+        inside, files = _listing(path)
+        name = _NAME.search(_text(path / "package.xml")) if "package.xml" in files else None
+        found = Folder(path, files, None if name is None else name[1])
+        if found.mark is not None:
+            yield found._replace(package=None)
+            continue
+        yield found
+        if name is None and depth < DEPTH:  # packages lie side by side
+            waiting.extend((path / f, depth + 1) for f in inside if not f.startswith(".") and f not in _LEFT_OUT)
+
+
+def _listing(folder: Path) -> tuple[list[str], set[str]]:
+    """The names of a folder's folders, sorted, and of its files."""
+    try:
+        _, folders, files = next(os.walk(folder), ("", [], []))
+    except OSError:
+        return [], set()
+    return sorted(f for f in folders if not (folder / f).is_symlink()), set(files)
+
+
+def _text(file: Path) -> str:
+    try:
+        return found_text(file, "replace")
+    except OSError:
+        return ""
+
+
+def cmake_text(package: Package) -> str:
+    """The `CMakeLists.txt` of a package without its comments, and with what its variables plainly stand for."""
+    text = re.sub(r"#.*", "", _text(package.folder / "CMakeLists.txt"))
+    known = {"PROJECT_NAME": package.name, "CMAKE_CURRENT_SOURCE_DIR": ".", "PROJECT_SOURCE_DIR": "."}
+
+    def put_in(text: str) -> str:
+        return _VARIABLE.sub(lambda found: known.get(found[1], found[0]), text)
+
+    for name, value in _SET.findall(text):
+        known.setdefault(name, put_in(value.replace('"', " ")).strip()[:_VALUE_BOUND])
+    return put_in(text)
+
+
+def _is_elsewhere(module: str, folder: Path) -> bool:
+    """Whether a module is of another package beside a package's folder, or installed."""
+    return (folder.parent / module / "package.xml").is_file() or PathFinder.find_spec(module) is not None
+
+
+def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:
+    """The executables of a `setup.cfg`, and the faults of the lines that should name one."""
+    import configparser
+
+    parser, text = configparser.ConfigParser(), _text(file)
+    try:
+        parser.read_string(text)
+        lines = parser.get("options.entry_points", "console_scripts", fallback="").splitlines()
+    except configparser.ParsingError as error:
+        line = getattr(error, "lineno", 0) or error.errors[0][0]
+        return {}, [f"{file}:{line}: it is no [section] and no KEY = VALUE, so that it has no executables"]
+    except configparser.Error as error:
+        return {}, [f"{file}: {error}"]
+    written = [line.strip() for line in text.splitlines()]
+    faults = [
+        f"{file}:{written.index(line.strip()) + 1}: {line.strip()!r} names no function; write "
+        "'NAME = PACKAGE.MODULE:FUNCTION'"
+        for line in lines
+        if line.strip() and entry_point(line) is None and line.strip() in written
+    ]
+    return dict(script for line in lines if (script := entry_point(line)) is not None), faults
+
+
+def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
+    """The programs that `CMakeLists.txt` installs below `lib/`."""
+    for installed in _INSTALL.findall(cmake_text(package)):
+        words = installed.replace('"', " ").split()
+        upper = [word.upper() for word in words]
+        if "DESTINATION" not in upper:
+            continue
+        files = words[: upper.index("DESTINATION")]
+        destination = words[upper.index("DESTINATION") + 1] if upper[-1] != "DESTINATION" else ""
+        if not destination.startswith("lib"):
+            continue
+        renamed = words[upper.index("RENAME") + 1] if "RENAME" in upper[:-1] else ""
+        for word in files:
+            file = package.folder / word
+            if file.is_file():
+                yield renamed or file.name, file
+
+
+def is_graphflows(file: Path) -> bool:
+    """Whether a Python file is written for graphflow, and not for rclpy."""
+    return "graphflow" in _text(file) and not uses_ros(file)
+
+
+def uses_ros(file: Path) -> bool:
+    """Whether a Python file imports rclpy or launch, itself or in a function of it."""
+    try:
+        tree = ast.parse(_text(file))
+    except (SyntaxError, ValueError):
+        return False
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names) if any(alias.name.partition(".")[0] in _ROS for alias in names):
+                return True
+            case ast.ImportFrom(module=str(module), level=0) if module.partition(".")[0] in _ROS:
+                return True
+    return False

@@ -1,0 +1,89 @@
+"""Programs whose `main()` nothing calls."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.analysis.uncalled import uncalled, uncalled_methods
+
+MAIN = "def main():\n    rclpy.init()\n"
+NEVER = "talk.py:1: main() is defined and never called; add as the last line: if __name__ == '__main__': main()"
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        (MAIN, NEVER),
+        (f"{MAIN}if __name__ == '__main__':\n    main()\n", ""),
+        (f"{MAIN}Thread(target=main).start()\n", ""),
+        (
+            f"{MAIN}if __name__ == '__main__':\n    main\n",
+            "talk.py:4: main without parentheses calls nothing; write: main()",
+        ),
+        (
+            f"{MAIN}if __name__ == 'main':\n    main()\n",
+            "talk.py:3: __name__ is never 'main', so nothing runs; write: if __name__ == '__main__':",
+        ),
+        (
+            "async def main():\n    pass\n",
+            "talk.py:1: main() is defined and never called; add as the last line: "
+            "if __name__ == '__main__': asyncio.run(main())",
+        ),
+        (
+            "def begin():\n    graphflow.run(Talk)\n",
+            "talk.py:1: begin() is defined and never called; add as the last line: if __name__ == '__main__': begin()",
+        ),
+        (
+            "def begin():\n    graphflow.run(Talk)\ndef main():\n    begin\n",
+            "talk.py:3: main() is defined and never called; add as the last line: if __name__ == '__main__': main()",
+        ),
+        (
+            "def generate_launch_description():\n    return LaunchDescription([])\n",
+            "talk.py:1: generate_launch_description() makes it a launch file; write: graphflow launch talk.py",
+        ),
+        ("def generate_launch_description(): ...\nls.include_launch_description(generate_launch_description())", ""),
+        ("def helper():\n    return 1\n", ""),
+        (f"@app.command()\n{MAIN}app()\n", ""),
+        ("from talk import main\n", ""),
+        ("def main(:\n", ""),
+        ("if __name__ == '__mp_main__':\n    prepare()\n", ""),
+        (f"{MAIN}globals()['main']()\n", ""),
+    ],
+)
+def test_a_main_that_nothing_calls(source: str, told: str) -> None:
+    """Is told with its line and the line that calls it."""
+    assert uncalled(source, "talk.py") == told
+
+
+ALWAYS = "{0} without parentheses is always true; write: {0}()"
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        ("while not self.adder.service_is_ready: pass", "self.adder.service_is_ready"),
+        ("assert self.adder.server_is_ready, 'no'", "self.adder.server_is_ready"),
+        ("if a and not (b or self.adder.wait_for_service): pass", "self.adder.wait_for_service"),
+        ("x = 1 if rclpy.ok else 2", "rclpy.ok"),
+        ("while not self.future.done: pass", "self.future.done"),
+        ("while not self.adder.service_is_ready(): pass", ""),
+        ("if goal.done: pass", ""),
+        ("if self.is_canceled: self.is_canceled = False", ""),
+        ("if self.lamp.ok: pass", ""),
+        ("if asks(self.adder.service_is_ready): pass", ""),
+    ],
+)
+def test_questions_that_are_not_asked(line: str, shown: str) -> None:
+    """Are told where they decide something; attributes of the user's by such names are not."""
+    told = [text for _, text in uncalled_methods(ast.parse(f"def tick(self):\n    {line}\n"))]
+    assert told == ([ALWAYS.format(shown)] if shown else [])
+
+
+def test_methods_without_parentheses() -> None:
+    """Known ones that are a statement of their own, and no others."""
+    source = "def tick(self):\n    self.timer.cancel\n    self.rate\n    x = self.close\n    self.close()\n"
+    assert list(uncalled_methods(ast.parse(source))) == [
+        (2, "self.timer.cancel without parentheses calls nothing; write: self.timer.cancel()")
+    ]

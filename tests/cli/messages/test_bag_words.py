@@ -1,0 +1,19 @@
+"""Moments of a bag; tests/cli/ros/test_bag.py has the order of words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+import pytest
+
+from graphflow.cli.messages.bag_words import moment_option
+
+
+def test_a_moment_is_a_number() -> None:
+    """A date is answered with the number that it is."""
+    none: Any = None
+    assert moment_option(none, none, "1.5") == 1.5
+    assert moment_option(none, none, None) is None
+    with pytest.raises(click.BadParameter, match=r"is no number of seconds.*; in the time here it is 1700000000$"):
+        moment_option(none, none, "2023-11-14T22:13:20+00:00")

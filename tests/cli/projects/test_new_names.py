@@ -1,0 +1,95 @@
+"""Names that would be a mistake."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli.projects.new_names import (
+    check_dependencies,
+    check_package,
+    hidden_module,
+    near_name,
+    tell_name,
+    tell_place,
+)
+from graphflow.errors import UsageFault
+
+
+@pytest.fixture
+def source(tmp_path: Path) -> Path:
+    """The folder `src` of a workspace with a package `lamp`."""
+    folder = tmp_path / "src"
+    (folder / "lamp").mkdir(parents=True)
+    (folder / "lamp" / "package.xml").write_text("<package><name>lamp</name></package>")
+    return folder
+
+
+@pytest.mark.parametrize("name", ["std_msgs", "rclpy", "turtlesim", "tf2_tools"])
+def test_names_of_ros(source: Path, name: str) -> None:
+    """Are refused, as the package would hide the one that programs mean."""
+    with pytest.raises(UsageFault, match=f"'{name}' is a package of ROS 2, which yours would hide; choose another"):
+        check_package(name, source / name)
+
+
+def test_a_name_of_the_workspace(source: Path) -> None:
+    """Is refused wherever the new package is to be."""
+    for folder in (source / "tools" / "lamp", source.parent / "lamp"):
+        with pytest.raises(UsageFault, match=f"{source / 'lamp'} is the package 'lamp' already"):
+            check_package("lamp", folder)
+    check_package("lamp", source / "lamp")
+    check_package("light", source / "light")
+
+
+def test_dependencies(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Are names of packages; one that is like a known one is probably misspelt."""
+    with pytest.raises(UsageFault, match="write spaces between them: --dependencies rclpy std_msgs"):
+        check_dependencies(["lamp", "rclpy,std_msgs"], source / "new")
+    with pytest.raises(UsageFault, match=r"'<x>' is no name of a package$"):
+        check_dependencies(["<x>"], source / "new")
+    check_dependencies(["rclpy", "rclcpp", "nav2_msgs", "lamp"], source / "new")
+    assert capsys.readouterr().err == ""
+    check_dependencies(["rclpi"], source / "new")
+    assert capsys.readouterr().err == "note: the dependency 'rclpi' is not known here; did you mean 'rclpy'?\n"
+
+
+def test_a_name_that_ros_warns_of(capsys: pytest.CaptureFixture[str]) -> None:
+    """Is told with one that it does not; other names are not."""
+    for name in ("lamp", "lamp_2"):
+        tell_name(name)
+    assert capsys.readouterr().err == ""
+    tell_name("TurtleCtl")
+    told = "note: names of packages have lower-case letters, digits and _, as 'turtle_ctl' has\n"
+    assert capsys.readouterr().err == told
+
+
+def test_a_place_where_it_is_not_found(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Is told with the command that mends it."""
+    tell_place(source / "new")
+    assert capsys.readouterr().err == ""
+    tell_place(source.parent / "new")
+    told = f"in src/: mv {source.parent / 'new'} {source}\n"
+    assert capsys.readouterr().err == f"note: packages of this workspace are looked for {told}"
+
+
+@pytest.mark.parametrize(
+    ("word", "near"),
+    [("My-Robot", "my_robot"), ("3pkg", "my_3pkg"), ("first.py", "first"), ("class", "my_class"), ("--", "my_lab")],
+)
+def test_a_name_that_can_be(word: str, near: str) -> None:
+    """Is made of one that cannot, and is one of the same kind."""
+    assert near_name(word) == near
+    assert near.isidentifier()
+    assert near_name(near) == near
+
+
+def test_modules_that_would_be_hidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of Python and of installed packages; a folder of the user's own is none."""
+    (tmp_path / "own_lamp").mkdir()
+    (tmp_path / "own_lamp" / "__init__.py").touch()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert [hidden_module(word) for word in ("class", "queue")] == ["a name of Python's"] * 2
+    assert [hidden_module(word) for word in ("graphflow", "yaml", "numpy")] == ["an installed module"] * 3
+    assert [hidden_module(word) for word in ("own_lamp", "nothing_of_that_name")] == ["", ""]

@@ -1,0 +1,42 @@
+"""Keys of other tools in a graph file."""
+
+from __future__ import annotations
+
+import pytest
+from pydantic import BaseModel
+
+from graphflow.graph.checks.foreign_keys import _CONTAINED, meant
+from graphflow.graph.model import Arg, GraphFile, GroupBlock, NodeSpec, StepSpec, keys_of
+
+
+@pytest.mark.parametrize(
+    ("key", "model", "text"),
+    [
+        ("depends_on", NodeSpec, "it is called 'after' here"),
+        ("environment", NodeSpec, "it is called 'env' here"),
+        ("condition", NodeSpec, "it is called 'if' here"),
+        ("ports", NodeSpec, _CONTAINED),
+        ("services", GraphFile, "it is called 'nodes' here"),
+        ("version", GraphFile, "leave it out"),
+        ("service", StepSpec, "it is called 'call' here"),
+        ("action", StepSpec, "it is called 'goal' here"),
+        ("sleep", StepSpec, "it is called 'delay' here"),
+        ("description", Arg, "it is called 'doc' here"),
+        ("ns", GroupBlock, "it is called 'namespace' here"),
+        ("sleep", NodeSpec, ""),
+        ("service", NodeSpec, ""),
+    ],
+)
+def test_what_is_meant(key: str, model: type[BaseModel], text: str) -> None:
+    """It depends on where the key stands; others have nothing."""
+    assert meant(key, keys_of(model)) == text
+
+
+@pytest.mark.parametrize("model", [Arg, GraphFile, GroupBlock, NodeSpec, StepSpec])
+def test_keys_of_graph_files(model: type[BaseModel]) -> None:
+    """What may stand there is never answered."""
+    from graphflow.graph.checks.foreign_keys import _OF_COMPOSE, _OF_NODES
+
+    known = keys_of(model)
+    allowed = {"namespace"} if model is NodeSpec else set()
+    assert {key for key in known if key in {**_OF_NODES, **_OF_COMPOSE} and meant(key, known)} <= allowed

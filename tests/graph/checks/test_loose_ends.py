@@ -1,0 +1,136 @@
+"""Names of a plan that nothing in the graph answers to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from graphflow.errors import Place, Problem
+from graphflow.graph.checks.check import Interfaces
+from graphflow.graph.checks.loose_ends import loose_ends
+from graphflow.graph.resolve import resolve
+from graphflow.interface import EndpointInfo, Interface
+from graphflow.markup import source
+
+CODE = Place("code.py", 1)
+STRING, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
+
+
+def endpoint(kind: Any, name: str, type_: str) -> EndpointInfo:
+    return EndpointInfo(kind, name, type_, name, CODE)
+
+
+TALKER = Interface(
+    "a:Talker",
+    "talker",
+    CODE,
+    endpoints=(endpoint("publisher", "chatter", STRING), endpoint("service", "spawn", TRIGGER)),
+)
+LISTENER = Interface(
+    "a:Listener",
+    "listener",
+    CODE,
+    endpoints=(endpoint("subscription", "chatter", STRING), endpoint("client", "spawn", TRIGGER)),
+)
+SLIPPED = Interface("a:Slipped", "slipped", CODE, endpoints=(endpoint("subscription", "chater", STRING),))
+NUMBERED = Interface("a:Numbered", "numbered", CODE, endpoints=(endpoint("subscription", "chatter2", STRING),))
+ANY = Interface("a:Any", "any", CODE, dynamic_names=("/chater",))
+KNOWN: Interfaces = {i.class_path: i for i in (TALKER, LISTENER, SLIPPED, NUMBERED, ANY)}
+GRAPH = "nodes:\n  /t: {class: a:Talker}\n  /l: {class: a:Listener}\n"
+
+
+def told(text: str, known: Interfaces = KNOWN) -> list[str]:
+    plan = resolve(source.read(text, "g.yaml"), Path("/nowhere/g.yaml"), [], {})
+    here = {path: known[path] for path in plan.classes()}
+    return [str(problem) for problem in sorted(loose_ends(plan, here))]
+
+
+def test_a_graph_without_loose_ends() -> None:
+    """Every name has both ends, or an end that needs no other."""
+    assert told(GRAPH) == []
+    assert told("nodes: {/t: {class: a:Talker}}") == []
+    assert told("nodes: {/l: {class: a:Listener}}") == [], "its publisher may be outside the graph"
+
+
+@pytest.mark.parametrize(
+    ("rule", "expected"),
+    [
+        ("chatter: /chater", "no node of this graph publishes /chater; did you mean '/chatter'?"),
+        ("chatter: /elsewhere", "no node of this graph publishes /elsewhere"),
+        ("spawn: /spwan", "no node of this graph offers the service /spwan; did you mean '/spawn'?"),
+        ("chatter: /chatter2", "no node of this graph publishes /chatter2"),
+    ],
+)
+def test_a_remap_to_a_name_that_nobody_has(rule: str, expected: str) -> None:
+    """At the rule; the nearest name is offered unless only a number tells the two apart."""
+    text = GRAPH.replace("a:Listener", f"a:Listener, remap: {{{rule}}}")
+    assert told(text) == [f"g.yaml:3:{text.splitlines()[2].index(rule) + 1}: {expected}"]
+
+
+def test_a_publisher_may_have_no_listener_but_not_a_misspelt_one() -> None:
+    """It is told where a subscription is spelt almost so; what nobody is near to may be meant for others."""
+    text = GRAPH.replace("a:Talker", "a:Talker, remap: {chatter: /NAME}")
+    assert told(text.replace("NAME", "elsewhere")) == []
+    assert told(text.replace("NAME", "chater")) == [
+        "g.yaml:2:33: no node of this graph subscribes to /chater; did you mean '/chatter'?"
+    ]
+
+
+def test_a_slip_in_a_class() -> None:
+    """At the declaration, though no rule was written; names that differ in a number are two names."""
+    text = "nodes:\n  /t: {class: a:Talker}\n  /s: {class: a:Slipped}\n"
+    assert told(text) == ["code.py:1: no node of this graph publishes /chater; did you mean '/chatter'?"]
+    assert told(text.replace("Slipped", "Numbered")) == []
+
+
+@pytest.mark.parametrize(
+    ("step", "expected"),
+    [
+        ("{call: /spwan, type: std_srvs/srv/Trigger}", "no node of this graph offers the service /spwan; did you mean"),
+        ("{call: /outside, type: std_srvs/srv/Trigger}", ""),
+        ("{call: /t/get_parameters, type: rcl_interfaces/srv/GetParameters}", ""),
+        ("{wait: /chater}", "nothing in this graph is called /chater; did you mean '/chatter'?"),
+        ("{wait: /camera}", "nothing in this graph is called /camera"),
+        ("{wait: /t}", ""),
+    ],
+)
+def test_steps(step: str, expected: str) -> None:
+    """One that gives the type may call outside the graph, unless a service of it is spelt almost so."""
+    found = told(f"{GRAPH}steps:\n  s: {step}\n")
+    assert len(found) == bool(expected)
+    assert expected in "".join(found)
+
+
+def test_nothing_is_said_of_what_cannot_be_known() -> None:
+    """Programs, classes that cannot be imported, and names that a class may make at run time."""
+    text = GRAPH.replace("a:Listener", "a:Listener, remap: {chatter: /chater}")
+    assert told(text) != []
+    assert told(f"{text}  /p: {{command: [sleep, '1']}}\n") == []
+    assert told(f"{text}  /a: {{class: a:Any}}\n") == []
+    assert told(text, {**KNOWN, "a:Talker": Problem(CODE, "broken")}) == []
+
+
+def test_a_class_that_the_project_of_an_included_file_has_too(tmp_path: Path) -> None:
+    """One module of a name is imported: that of the including project."""
+    for project in ("ours", "theirs"):
+        for folder in ("graphs", "nodes"):
+            (tmp_path / project / folder).mkdir(parents=True)
+        (tmp_path / project / "nodes" / "talk.py").touch()
+    (tmp_path / "ours/nodes/only.py").touch()
+    theirs = tmp_path / "theirs/graphs/theirs.yaml"
+    theirs.write_text("nodes: {/t: {class: 'nodes.talk:Talk'}, /o: {class: 'nodes.only:Only'}}")
+    ours = tmp_path / "ours/graphs/ours.yaml"
+    text = f"include: {theirs}\nnodes: {{/u: {{class: 'nodes.talk:Talk'}}}}\n"
+    plan = resolve(source.read(text, str(ours)), ours, [], {})
+
+    def imported(project: str) -> Interfaces:
+        places = {name: Place(str(tmp_path / project / "nodes" / f"{name}.py")) for name in ("talk", "only")}
+        return {f"nodes.{n}:{n.title()}": Interface(f"nodes.{n}:{n.title()}", n, at) for n, at in places.items()}
+
+    [problem] = loose_ends(plan, imported("ours"))
+    assert problem.place.file == str(theirs)
+    assert f"ours/nodes/talk.py, not that of this file's project, {tmp_path}/theirs/nodes/talk.py" in problem.message
+    (tmp_path / "theirs/nodes/only.py").touch()
+    assert loose_ends(plan, imported("theirs")) == []

@@ -1,0 +1,167 @@
+"""Attributes that are not there: the text of the error once it is reported."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from graphflow import Node
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.sensor_msgs.msg import Image
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+
+NODE: Any = Node("n")
+
+
+@pytest.mark.parametrize(
+    ("use", "here"),
+    [
+        (lambda: NODE.get_logger(), 'self.log.info("...")'),
+        (lambda: NODE.get_clock(), "self.clock.now()"),
+        (lambda: NODE.get_parameter("x"), 'self.parameters.get("rate")'),
+        (lambda: NODE.get_name(), "node.name"),
+        (lambda: NODE.create_rate(10), "self.clock.every(hz=10.0)"),
+        (lambda: NODE.destroy_node(), "self.shutdown() ends the node from within"),
+        (lambda: NODE.create_client(AddTwoInts, "x").call_async(), "await client.call(request, timeout=2.0)"),
+        (lambda: NODE.create_client(AddTwoInts, "x").wait_for_service(), "await client.wait_ready(1.0)"),
+        (lambda: NODE.create_publisher(String, "x").topic_name, "here it is .name"),
+    ],
+)
+def test_what_it_is_called_here(use: Any, here: str) -> None:
+    """Once, however often it is explained."""
+    with pytest.raises(AttributeError) as caught:
+        use()
+    explain(caught.value)
+    assert here in str(caught.value)
+    assert "`" not in str(caught.value)
+    text = str(caught.value)
+    explain(caught.value)
+    assert str(caught.value) == text
+
+
+def test_other_attributes() -> None:
+    """Python's own words; and hasattr works."""
+    with pytest.raises(AttributeError) as caught:
+        NODE.foo()
+    explain(caught.value)
+    assert str(caught.value) == "'Node' object has no attribute 'foo'"
+    assert not hasattr(NODE, "get_logger")
+    assert getattr(NODE, "x", 1) == 1
+
+
+def test_a_node_that_was_not_made() -> None:
+    """Its class has forgotten to call ours."""
+
+    class Forgot(Node):
+        def __init__(self) -> None:
+            self.create_publisher(String, "x", 10)
+
+    with pytest.raises(AttributeError) as caught:
+        Forgot()
+    explain(caught.value)
+    assert str(caught.value) == "Forgot.__init__ must call super().__init__(...) first"
+
+
+@pytest.mark.parametrize("message", [String(), Image()])
+def test_fields(message: Any) -> None:
+    """Those that there are; the text stays the error's when it is pickled or raised anew."""
+    with pytest.raises(AttributeError) as caught:
+        _ = message.dat
+    assert str(caught.value) == f"'{type(message).__name__}' object has no attribute 'dat'"
+    explain(caught.value)
+    assert str(caught.value) == f"{type(message).__name__} has no field 'dat'; did you mean 'data'?"
+
+
+def test_errors_that_led_to_others() -> None:
+    """Causes, contexts and groups, each once; an error that leads to itself has an end."""
+    causes: list[AttributeError] = []
+    for _ in range(3):
+        with pytest.raises(AttributeError) as caught:
+            _ = cast(Any, String()).dat
+        causes.append(caught.value)
+    group = ExceptionGroup("two", [ValueError("x"), causes[0]])
+    group.__cause__, group.__context__ = causes[1], causes[2]
+    causes[2].__context__ = group
+    explain(group)
+    assert {str(e) for e in causes} == {"String has no field 'dat'; did you mean 'data'?"}
+
+
+class Broken(AttributeError):
+    """Has no text."""
+
+    def __str__(self) -> str:
+        raise ValueError("no text")
+
+
+def test_the_texts_of_other_classes_are_not_asked_for() -> None:
+    """Their code may raise, while an error is being reported."""
+    explain(Broken(name="dat", obj=String()))
+
+
+def test_errors_of_others() -> None:
+    """Are left as they are, those of Python's own objects, and those that say something else."""
+    for error in (
+        AttributeError("other words", name="get_logger", obj=NODE),
+        AttributeError("'str' object has no attribute 'dat'", name="dat", obj="x"),
+        AttributeError("'String' object has no attribute 'dat'"),
+    ):
+        before = str(error)
+        explain(error)
+        assert str(error) == before
+
+
+def test_fields_that_are_set() -> None:
+    """By a line that names the message; of others nothing is known."""
+    response: Any = AddTwoInts.Response()
+    holder = SimpleNamespace(image=Image())
+
+    def sets_its_own() -> None:
+        response.summ = 3
+
+    def sets_an_inner_one() -> None:
+        holder.image.header.stmp = None
+
+    def sets_another() -> None:
+        [response][0].summ = 3
+
+    texts = []
+    for fn in (sets_its_own, sets_an_inner_one, sets_another):
+        with pytest.raises(AttributeError) as caught:
+            fn()
+        caught.value.name = None  # as in Python 3.11
+        explain(caught.value)
+        texts.append(str(caught.value))
+    assert texts == [
+        "AddTwoInts.Response has no field 'summ'; did you mean 'sum'?",
+        "Header has no field 'stmp'; did you mean 'stamp'?",
+        texts[2],  # Python's own words
+    ]
+    assert texts[2].startswith("'AddTwoInts_Response' object has no attribute 'summ'")
+
+
+class Follower(Node):
+    """Sets an attribute in a handler, and another when it is made."""
+
+    def __init__(self) -> None:
+        super().__init__("follower")
+        if self.name == "other":
+            self.unmade = 1
+
+    def moved(self, pose: str) -> None:
+        self.pose = pose
+
+
+def test_attributes_that_a_method_sets_later() -> None:
+    """The method is named, unless it has run long ago."""
+    node = Follower()
+    later = "; moved (test_attribute_errors.py:{}) sets it, and has not run yet: begin "
+    for name, text in (("pose", later), ("unmade", "")):
+        with pytest.raises(AttributeError) as caught:
+            getattr(node, name)
+        explain(caught.value)
+        begin = f"'Follower' object has no attribute '{name}'" + text.format(Follower.moved.__code__.co_firstlineno)
+        assert str(caught.value).startswith(begin)
+        assert text or str(caught.value) == begin

@@ -1,0 +1,157 @@
+"""What is remarked on errors of Python's own; the table of `docs/mistakes.md` shows them as they are told."""
+
+from __future__ import annotations
+
+import asyncio
+import linecache
+import re
+from typing import Any
+
+import pytest
+
+from graphflow import Node, Param
+from graphflow.msgs.std_msgs.msg import UInt8MultiArray
+from graphflow.runtime.mistakes.errors.python_errors import OF_VALUES, REMARKS, remark_on
+
+NODE: Any = Node("n")
+
+
+def caught(use: Any) -> BaseException:
+    with pytest.raises((TypeError, AttributeError, RuntimeError, ValueError, KeyError)) as error:
+        use()
+    return error.value
+
+
+@pytest.mark.parametrize("row", [*REMARKS, *OF_VALUES], ids=lambda row: row.text)
+def test_groups_that_are_named(row: Any) -> None:
+    """A remark uses only groups that one of its patterns has, so that it can always be written."""
+    known = {*re.compile(row.text).groupindex, *re.compile(row.line).groupindex}
+    assert {*re.findall(r"{(\w+)}", row.remark)} <= known
+
+
+PUBLISH, TICK = "publish returns at once: leave out await", "call it: await tick()"
+GROUP = "a group is given to the handlers that share it: @timer(1.0, group=motion)"
+SEND = "write send in place of send_goal: async with client.send(goal) as sent:"
+FEEDBACK = "they come one by one: async for one in ....feedback(...)"
+RESULT = "wait for it first: result = await g.result()"
+HEARD, WITH = "messages come one by one: async for message in self.heard", "write async with"
+LOG = 'the log has a method for each level: write self.log.info("...")'
+NO_HANDLER = (
+    "messages are read from a Subscription(Type, topic) in the body of the class, not from their handler; an async "
+    "generator is called: self.moved(...)"
+)
+EXPRESSION = "object {} can't be used in 'await' expression"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "remark"),
+    [
+        (EXPRESSION.format("NoneType"), "await self.words.publish(String())", PUBLISH),
+        ("'NoneType' object can't be awaited", "await self.words.publish(String())", PUBLISH),
+        (EXPRESSION.format("method"), "await self.tick", TICK),
+        (
+            EXPRESSION.format("int"),
+            "x = await self.compute(3)",
+            "compute is no `async def`, and returns at once: leave out await",
+        ),
+        (
+            "'float' object can't be awaited",
+            "await total(3)",
+            "total is no `async def`, and returns at once: leave out await",
+        ),
+        (
+            "'AddTwoInts_Response' object is not subscriptable",
+            'print(r["sum"])',
+            "the fields of a message are attributes: write r.sum",
+        ),
+        ("'NoneType' object is not subscriptable", 'print(r["sum"])', ""),
+        (
+            "unsupported operand type(s) for -: 'Time' and 'int'",
+            "dt = self.clock.now() - self.last",
+            "self.last is a number: begin with self.last = self.clock.now(); a span of seconds is "
+            "Duration.of(self.last)",
+        ),
+        ("'method' object can't be awaited", "await self.tick", TICK),
+        (EXPRESSION.format("TopicSubscription"), "message = await self.heard", HEARD),
+        ("'TopicSubscription' object can't be awaited", "message = await self.heard", HEARD),
+        ("'X' object does not support the context manager protocol", "with self.clock.timeout(1.0):", WITH),
+        ("'HandlerGroup' object does not support the context manager protocol", "with self.motion:", GROUP),
+        ("'HandlerGroup' object does not support the asynchronous context", "async with self.motion:", GROUP),
+        (
+            "'coroutine' object does not support the asynchronous context manager protocol",
+            "async with self.fib.send_goal(goal) as sent:",
+            SEND,
+        ),
+        ("'ClientGoalHandle' object does not support the asynchronous context manager", "async with await x:", SEND),
+        (
+            EXPRESSION.format("async_generator"),
+            "await sent.feedback()",
+            "they come one by one: async for one in ....feedback(...)",
+        ),
+        (
+            "'async for' requires an object with __aiter__ method, got method",
+            "async for f in g.feedback:",
+            "call it: g.feedback(...)",
+        ),
+        ("'async for' requires an object with __aiter__ method, got method", "async for p in self.moved:", NO_HANDLER),
+        (
+            "'function' object has no attribute 'sum'",
+            "print(g.result.sum)",
+            "wait for it first: result = await g.result()",
+        ),
+        ("'float' object has no attribute 'value'", "print(message.speed.value)", ""),
+        ("'NodeLogger' object is not callable", 'self.log("x")', LOG),
+        ("'TopicPublisher' object is not callable", "self.words(message)", "write self.words.publish(message)"),
+        ("'ServiceClient' object is not callable", "await self.add(r)", "write await self.add.call(request)"),
+        ("'float' object is not callable", "print(self.rate())", "self.rate is a value: leave out the parentheses"),
+    ],
+)
+def test_the_line_and_the_words_of_several_versions(
+    monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str
+) -> None:
+    """Python 3.14 says some of it differently."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: line)
+
+    def use() -> None:
+        raise TypeError(text)
+
+    assert remark_on(caught(use)) == remark
+
+
+@pytest.mark.parametrize(
+    ("use", "remark"),
+    [
+        (lambda: UInt8MultiArray.from_bytes(UInt8MultiArray(data=[1, 2]).to_bytes()).data.__setitem__(0, 3), "a copy"),
+        (lambda: bool(UInt8MultiArray(data=[1, 2]).data), "len(...) > 0"),
+        (lambda: UInt8MultiArray().data.append(1), "fill a list"),  # type: ignore[attr-defined]
+    ],
+)
+def test_arrays(use: Any, remark: str) -> None:
+    """What numpy refuses, in terms of messages."""
+    assert remark in remark_on(caught(use))
+
+
+def test_a_timer_method_is_no_handle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is made by hand where it shall be cancelled."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: "self.tick.cancel()")
+    assert "self.create_timer(period, self.tick)" in remark_on(caught(lambda: caught.cancel()))  # type: ignore[attr-defined]
+
+
+def test_a_period_from_a_parameter() -> None:
+    """It has no value in the class body."""
+    assert "@timer(hz=rate)" in remark_on(caught(lambda: 1 / Param(1.0)))  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda: NODE.parameters.get("x"),
+        lambda: (1.0).value,  # type: ignore[attr-defined]
+        lambda: dict[str, int]()["x"],
+        lambda: asyncio.run(1),  # type: ignore[arg-type]
+        lambda: int(None),  # type: ignore[call-overload]
+    ],
+)
+def test_other_errors(use: Any) -> None:
+    """Nothing is said of what has nothing to do with a node."""
+    assert remark_on(caught(use)) == ""

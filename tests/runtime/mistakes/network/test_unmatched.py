@@ -1,0 +1,193 @@
+"""Topics and services with nobody at the other end, since a name or the domain is wrong."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import pytest
+
+from graphflow import Context, Node, Publisher, subscription
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.geometry_msgs.msg import Twist
+from graphflow.qos import Durability, Qos
+from graphflow.runtime.mistakes.network.unmatched import AT_ONCE, LATE, TELL_AFTER
+from graphflow.runtime.node_core import core_of
+from graphflow.testing import Graph
+from tests.runtime.cast import running_in
+
+Caplog = pytest.LogCaptureFixture
+
+
+class Turtle(Node):
+    """Listens, as turtlesim does."""
+
+    @subscription(Twist, "/turtle1/cmd_vel")
+    async def move(self, message: Twist) -> None:
+        """Do nothing."""
+
+
+class Circle(Node):
+    """Publishes without the namespace."""
+
+    velocity = Publisher(Twist, "cmd_vel")
+
+
+TOLD = (
+    "nobody listens to /cmd_vel [geometry_msgs/msg/Twist]; did you mean '/turtle1/cmd_vel', to which /turtle listens?",
+    "nobody publishes /turtle1/cmd_vel [geometry_msgs/msg/Twist]; did you mean '/cmd_vel', which /circle publishes?",
+)
+
+
+def told(caplog: Caplog) -> list[str]:
+    return sorted(text for text in caplog.messages if text.startswith("nobody"))
+
+
+@pytest.mark.parametrize("classes", [(Turtle, Circle), (Circle, Turtle)])
+async def test_it_is_told_once_by_both(classes: tuple[Callable[[], Node], ...], graph: Graph, caplog: Caplog) -> None:
+    """Some seconds after the later one has come, whichever that is."""
+    for cls in classes:
+        await graph.clock.advance(60.0)
+        await graph.start(cls())
+    await graph.clock.advance(TELL_AFTER - 0.1)
+    assert told(caplog) == []
+    await graph.clock.advance(0.1)
+    assert sorted(told(caplog)) == sorted(TOLD)
+    await graph.start(Turtle("late"))
+    await graph.clock.advance(60.0)
+    assert len(told(caplog)) == 3  # the new one's
+
+
+async def test_a_listener_that_comes_in_time(graph: Graph, caplog: Caplog) -> None:
+    """Nothing is told, also when it has left again."""
+    await graph.start(Turtle(), Circle())
+    await graph.clock.advance(TELL_AFTER - 0.1)
+    base, teleop = Node("base"), Node("teleop")
+    base.create_subscription(Twist, "cmd_vel", lambda _: None)
+    teleop.create_publisher(Twist, "/turtle1/cmd_vel")
+    await graph.start(base, teleop)
+    await graph.clock.advance(1.0)
+    await graph.stop(base)
+    await graph.clock.advance(60.0)
+    assert told(caplog) == []
+
+
+async def test_topics_that_may_have_no_listener(graph: Graph, caplog: Caplog) -> None:
+    """Are those of ROS, hidden ones, latched ones, those of commands, and those without a near name."""
+    await graph.start(Turtle())
+    node, hidden = Node("n"), Node("_graphflow_1")
+    node.create_publisher(Twist, "/velocity")
+    node.create_publisher(Twist, "/_cmd_vel")
+    node.create_publisher(Twist, "/cmd_vel", Qos(durability=Durability.TRANSIENT_LOCAL))
+    hidden.create_publisher(Twist, "/turtle1/cmd_vl")
+    await graph.start(node, hidden)
+    await graph.clock.advance(60.0)
+    assert [text for text in told(caplog) if text.startswith("nobody listens")] == []
+
+
+async def test_a_publisher_that_was_closed(graph: Graph, caplog: Caplog) -> None:
+    """Is not told of; one that is opened again and again is told of once."""
+    node = Node("n")
+    await graph.start(Turtle(), node)
+    for seconds in (1.0, TELL_AFTER, TELL_AFTER):
+        publisher = node.create_publisher(Twist, "/cmd_vel")
+        await graph.clock.advance(seconds)
+        publisher.close()
+        assert len([text for text in told(caplog) if "listens to" in text]) == (seconds > 1.0)
+    assert not core_of(node).context.unmatched._waiting
+
+
+async def test_many_at_once(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are looked at in turns, and each is told of."""
+    names = [f"/cmd_v{letter}" for letter in "abcdfghijkmnopq"]
+    assert len(names) > AT_ONCE
+    node = Node("n")
+    for name in names:
+        node.create_publisher(Twist, f"{name}/cmd_vel")
+    looks: list[int] = []
+    base = Node("base")
+    for name in names:
+        base.create_subscription(Twist, f"{name}/cmd_vl", lambda _: None)
+    await graph.start(node, base)
+    unmatched = core_of(node).context.unmatched
+    look = unmatched._look_at
+
+    def counted(due: Sequence[Any]) -> None:
+        looks.append(len(due))
+        look(due)
+
+    monkeypatch.setattr(unmatched, "_look_at", counted)
+    await graph.clock.advance(TELL_AFTER)
+    assert looks == [AT_ONCE, len(names) - AT_ONCE]
+    assert len([text for text in told(caplog) if "listens to" in text]) == len(names)
+
+
+async def test_a_loop_that_was_blocked(graph: Graph, caplog: Caplog) -> None:
+    """Hears first who has come meanwhile."""
+    await graph.start(Turtle(), Circle())
+    graph.clock._elapsed_ns += int((TELL_AFTER + 2 * LATE) * 1e9)
+    await graph.clock.advance(0.0)
+    assert told(caplog) == []
+    await graph.clock.advance(TELL_AFTER)
+    assert sorted(told(caplog)) == sorted(TOLD)
+
+
+async def test_a_process_that_ends(graph: Graph, caplog: Caplog) -> None:
+    """Tells nothing more, of what it has opened and of what it opens yet."""
+    await graph.start(Turtle())
+    context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
+    circle = Circle()
+    await core_of(circle).start(context)
+    context.unmatched.close()
+    circle.create_publisher(Twist, "/turtle1/cmd_vl")
+    await graph.clock.advance(60.0)
+    assert [text for text in told(caplog) if text.startswith("nobody listens")] == []
+    await core_of(circle).stop()
+    await context.close()
+
+
+def open_publisher(node: Node) -> None:
+    node.create_publisher(Twist, "/cmd_vel")
+
+
+def open_client(node: Node) -> None:
+    node.create_client(AddTwoInts, "/add")
+
+
+def open_action_client(node: Node) -> None:
+    node.create_action_client(Fibonacci, "/fibonacci")
+
+
+@pytest.mark.parametrize("opened", [open_publisher, open_client, open_action_client])
+async def test_another_domain(
+    opened: Callable[[Node], None], graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Is told of once, where nothing else is in this one."""
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "0")
+    node = Node("n")
+    opened(node)
+    async with running_in(graph, 7):
+        await graph.start(node)
+        await graph.clock.advance(TELL_AFTER - 0.1)
+        assert caplog.messages == []
+        await graph.clock.advance(0.1)
+        open_publisher(node)
+        await graph.clock.advance(60.0)
+    assert caplog.messages == [
+        "this domain, 0, has no other nodes; domain 7 has 1: start it with GRAPHFLOW_DOMAIN=7 to join"
+    ]
+
+
+async def test_another_domain_is_none_of_its_business(graph: Graph, caplog: Caplog) -> None:
+    """Where a node has all that it needs, and where there are others with it."""
+    node = Node("n")
+    node.create_subscription(Twist, "/cmd_vel", lambda _: None)
+    open_publisher(node)
+    async with running_in(graph, 7):
+        await graph.start(node)
+        await graph.clock.advance(60.0)
+        await graph.start(Node("other"), Circle())
+        await graph.clock.advance(60.0)
+    assert caplog.messages == []

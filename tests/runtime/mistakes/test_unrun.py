@@ -1,0 +1,60 @@
+"""Programs that define a node and run nothing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from graphflow.runtime.mistakes.unrun import advice
+from tests.conftest import LIMIT
+
+TALK = "from graphflow import Node\n\nclass Talk(Node):\n    pass\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "is_told"),
+    [
+        ("", True),
+        ("Talk()\n", False),
+        ("import graphflow\nif False:\n    graphflow.run(Talk)\n", False),
+        ("def helper():\n    pass\n", True),
+    ],
+)
+def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
+    """It is told how to run what it defines, unless it made a node or has words that run one."""
+    (tmp_path / "talk.py").write_text(TALK + more)
+    done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    told = "talk.py defines Talk, and runs nothing: graphflow run talk.py, or as its last line: graphflow.run(Talk)\n"
+    assert done.returncode == 0
+    assert done.stderr == (told if is_told else "")
+
+
+@pytest.mark.parametrize("made", ["class Talk(Node): ...", "from talks import Talk"])
+def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:
+    """It is told so, wherever its nodes are from."""
+    (tmp_path / "talks.py").write_text(TALK)
+    (tmp_path / "talk.py").write_text(
+        f"import graphflow\nfrom graphflow import Node\n\n{made}\n\ndef main():\n    graphflow.run(Talk)\n"
+    )
+    done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    told = "talk.py:6: main() is defined and never called; add as the last line: if __name__ == '__main__': main()\n"
+    assert done.returncode == 0
+    assert done.stderr == told
+
+
+def test_an_error_is_enough(tmp_path: Path) -> None:
+    """A program that failed has said why it ran nothing."""
+    (tmp_path / "talk.py").write_text(f"{TALK}1 / 0\n")
+    done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    assert done.stderr.endswith("ZeroDivisionError: division by zero\n")
+
+
+def test_advice(tmp_path: Path) -> None:
+    """Of several classes one has to be named; a file that is gone says nothing."""
+    file = tmp_path / "talk.py"
+    assert advice(file, ["A"]) == ""
+    file.write_text(TALK)
+    assert "graphflow run MODULE:A, or" in advice(file, ["A", "B"])

@@ -1,0 +1,53 @@
+"""Faults of a `package.xml`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.workspace.manifest import fault_of, name_fault
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("<package><name>a</name></package>", None),
+        ('<!DOCTYPE x [<!ENTITY a "b">]><package>', None),
+        (
+            "<package>\n<name>a</name>\n",
+            ":3: no element found: ROS 2 does not build it; is </package> there at the end?",
+        ),
+        ("<package>\n<name>a</nam>\n</package>", ":2: mismatched tag: ROS 2 does not build it"),
+    ],
+)
+def test_what_is_no_xml(tmp_path: Path, text: str, fault: str | None) -> None:
+    """Is told with its line."""
+    file = tmp_path / "package.xml"
+    file.write_text(text)
+    assert fault_of(file) == (None if fault is None else f"{file}{fault}")
+
+
+def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    """Is told, too."""
+    assert fault_of(tmp_path) is not None
+
+
+@pytest.mark.parametrize(
+    ("text", "called"),
+    [
+        ("package_name = 'lamp'\nsetup(name=package_name)", None),
+        ("package_name = 'lump'\nsetup(\n    name=package_name)", (3, "lump")),
+        ("setuptools.setup(name='lump')", (1, "lump")),
+        ("setup(name=f'{x}')", None),
+        ("setup(version='1')", None),
+        ("setup(", None),
+    ],
+)
+def test_another_name_in_setup_py(tmp_path: Path, text: str, called: tuple[int, str] | None) -> None:
+    """Is told with its line."""
+    assert name_fault(tmp_path, "lamp") is None
+    file = tmp_path / "setup.py"
+    file.write_text(text)
+    told = called and f"{file}:{called[0]}: the package is called {called[1]!r} here, and 'lamp' in package.xml"
+    assert name_fault(tmp_path, "lamp") == told

@@ -1,0 +1,126 @@
+"""Why a package is not found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.workspace.packages import Workspace, find_workspace
+from graphflow.workspace.unfound import launching, no_packages, outer_workspace, owners, why_no_package
+
+SETUP = "from setuptools import setup\nsetup(entry_points={'console_scripts': ['shine = lamp.node:main']})\n"
+
+
+def manifest(name: str) -> str:
+    return f"<package><name>{name}</name></package>"
+
+
+def write(folder: Path, **files: str) -> Path:
+    folder.mkdir(parents=True)
+    for name, text in files.items():
+        (folder / name.replace("_", ".", 1)).write_text(text)
+    return folder
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+    """A workspace with one package, and folders that are none."""
+    source = tmp_path / "ws" / "src"
+    write(source / "lamp", package_xml=manifest("lamp"), setup_py=SETUP)
+    write(source / "dark", setup_py=SETUP)
+    (source / "dark" / "resource").mkdir()
+    (source / "dark" / "resource" / "dark").touch()
+    write(source / "vendored", setup_py="")
+    write(source / "cut", package_xml="<package")
+    write(source / "open", package_xml="<package><name>open<name></package>")
+    write(source / "nameless", package_xml="<package></package>")
+    write(source / "folder", package_xml=manifest("other"))
+    write(source / "ignored", package_xml=manifest("ignored"), setup_py=SETUP)
+    (source / "ignored" / "COLCON_IGNORE").touch()
+    write(source / "project", pyproject_toml="")
+    (source / "project" / "nodes").mkdir()
+    monkeypatch.chdir(tmp_path / "ws")
+    return find_workspace(tmp_path / "ws")
+
+
+def test_launch_files_of_packages(workspace: Workspace) -> None:
+    """Are started by their package, however deep they lie in its `launch/`."""
+    file = workspace.packages["lamp"].folder / "launch" / "robot" / "lamp.launch.py"
+    file.parent.mkdir(parents=True)
+    file.touch()
+    told = "; to start it: graphflow launch lamp lamp.launch.py"
+    assert launching("lamp.launch.py", workspace.packages.values()) == told
+    assert launching("src/lamp.launch.py", workspace.packages.values()) == told
+    assert launching("other.launch.py", workspace.packages.values()) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("dark", "src/dark has setup.py but no package.xml; to make it a package, write in it: <package"),
+        ("vendored", "src/vendored has setup.py but no package.xml"),
+        ("cut", "src/cut/package.xml:1: it is no valid XML: unclosed token; is a tag not closed by </...>?"),
+        ("open", "src/open/package.xml:1: it is no valid XML: mismatched tag; is a tag not closed by </...>?"),
+        ("nameless", "src/nameless/package.xml has no <name>; to make it a package, write in it: <package"),
+        ("folder", "src/folder is the package 'other', by the name in its package.xml"),
+        ("ignored", "src/ignored is left out of the workspace, as it has a file COLCON_IGNORE"),
+        ("project", "src/project is a project of graphflow's, not a package of ROS 2's; to use it: cd src/project"),
+    ],
+)
+def test_a_folder_of_that_name(workspace: Workspace, name: str, why: str) -> None:
+    """Its state is told."""
+    said = why_no_package(name, workspace)
+    assert said is not None
+    assert said.startswith(why)
+
+
+def test_the_folder_that_the_user_is_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also from within, where there is no workspace."""
+    inner = write(tmp_path / "dark" / "dark")
+    (tmp_path / "dark" / "setup.py").touch()
+    monkeypatch.chdir(inner)
+    assert "has setup.py but no package.xml" in str(why_no_package("dark", find_workspace(inner)))
+
+
+def test_a_package_beside_the_others(workspace: Workspace) -> None:
+    """It is told where it belongs."""
+    write(workspace.root / "new", package_xml=manifest("new"))
+    said = why_no_package("new", workspace)
+    assert said == "new lies beside src, where packages are looked for: mv new src"
+
+
+def test_nothing_of_that_name(workspace: Workspace) -> None:
+    """There is nothing to say of it, nor of a package that is there."""
+    assert why_no_package("nowhere", workspace) is None
+    assert why_no_package("lamp", workspace) is None
+
+
+def test_a_workspace_in_a_workspace(workspace: Workspace) -> None:
+    """The packages around it are told of, and where they are."""
+    root = workspace.root
+    write(root / "src" / "inner" / "src" / "deep", package_xml=manifest("deep"))
+    inner = find_workspace(root / "src" / "inner")
+    assert list(inner.packages) == ["deep"]
+    around = outer_workspace(inner)
+    assert around is not None
+    assert around.root == root
+    assert str(why_no_package("lamp", inner)).endswith(f": cd {root}")
+    assert outer_workspace(workspace) is None
+
+
+def test_folders_that_were_meant(workspace: Workspace) -> None:
+    """A `package.xml` or the marker of ament says so; other code may have a `setup.py`, too."""
+    told = [said.split()[0].rstrip(":1") for said in no_packages(workspace)]
+    assert sorted(told) == [
+        "src/cut/package.xml",
+        "src/dark",
+        "src/nameless/package.xml",
+        "src/open/package.xml",
+    ]
+
+
+def test_an_executable(workspace: Workspace) -> None:
+    """The packages that have it."""
+    assert owners("shine", workspace) == ["lamp"]
+    assert owners("lamp", workspace) == []
