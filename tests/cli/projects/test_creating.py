@@ -137,7 +137,7 @@ def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_
     ("words", "told"),
     [
         ("my_pkg rclpy std_msgs", "write graphflow pkg create my_pkg --dependencies rclpy std_msgs"),
-        ("my pkg", "a name is one word, such as my_pkg; packages that it needs stand behind --dependencies"),
+        ("my robott", "a name is one word, such as my_robott; packages that it needs stand behind --dependencies"),
         ("--node-name talker", "the package's name is missing; write it first: graphflow pkg create NAME"),
     ],
 )
