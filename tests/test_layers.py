@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import pytest
 
+from tests.cases import slow
+
 PACKAGE = Path(__file__).parents[1] / "graphflow"
 
 PURE = (
@@ -195,6 +197,7 @@ def shortest_circle(graph: Mapping[str, set[str]]) -> list[str]:
     return min(circles, key=len, default=[])
 
 
+@slow
 def test_no_files_import_each_other_in_a_circle() -> None:
     """Nowhere in the package, whichever way the import is written."""
     files = {}

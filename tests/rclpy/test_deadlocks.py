@@ -100,6 +100,7 @@ REMEDIES = [
 ]
 
 
+@slow
 @pytest.mark.parametrize("case", some(REMEDIES, REMEDIES[2]), ids="-".join)
 def test_the_remedy_of_a_ring_ends_it(machine: Machine, case: tuple[str, str]) -> None:
     """Nobody blocks, or nobody holds what another needs; it goes all the way round, and nothing is told."""

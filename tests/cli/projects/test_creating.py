@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 from graphflow.cli.main import cli
 from graphflow.errors import UsageFault
+from tests.cases import slow
 from tests.conftest import Machine
 
 PYTHON = [
@@ -82,6 +83,7 @@ def test_a_python_package(machine: Machine, source: Path) -> None:
     assert machine.look("pkg", "xml", "my_pkg", "-t", "depend", cwd=source) == "rclpy\nstd_msgs\n"
 
 
+@slow
 def test_it_runs_at_once(machine: Machine, source: Path) -> None:
     """Its first node, and what a student adds: a module, an entry point and a launch file."""
     words = ["--build-type", "ament_python", "my_pkg", "--node-name", "first", "--dependencies", "rclpy"]

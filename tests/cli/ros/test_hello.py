@@ -6,12 +6,13 @@ import os
 
 import pytest
 
-from tests.cases import some
+from tests.cases import slow, some
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 @pytest.mark.parametrize("words", some([("-ep", "0.05", "-pp", "0.5"), ()], ("-ep", "0.05", "-pp", "0.5")))
 def test_hello(machine: Machine, words: tuple[str, ...]) -> None:
     """Two that run it hear each other, and not themselves."""

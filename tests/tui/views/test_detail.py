@@ -8,6 +8,7 @@ from graphflow.testing import Graph
 from graphflow.tui.app import Console
 from graphflow.tui.panes import Content, Split
 from graphflow.tui.views.detail import TABS
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import Stage, record, stage
 
@@ -71,6 +72,7 @@ async def test_it_follows_the_cursor(graph: Graph) -> None:
         assert [p.content for p in s.console.window.panes()][1] == Content("detail", "", {"tab": "all"})
 
 
+@slow
 async def test_another_node_has_a_pane_of_its_own(graph: Graph) -> None:
     """Only what is about the chosen node belongs into the tabs."""
     await graph.start(Talker())
