@@ -1,4 +1,4 @@
-"""What a start, short commands and an idle graph cost, in counts: modules imported, forks, wake-ups.
+"""The cost of a start, of short commands and of an idle graph, in counts: modules imported, forks, wake-ups.
 
 Counts do not depend on how busy a machine is, so CI can hold them: `python -m benchmarks.counts` fails where more than
 3 % more modules are imported than when `counts.json` was written, and names them; where a start forks more often; and
@@ -58,7 +58,7 @@ Modules = dict[str, list[str]]
 
 
 class Recorded:
-    """What a command and its processes have done.
+    """The counts of a command and its processes.
 
     Args:
         file: Where it is written down.

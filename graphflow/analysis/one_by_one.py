@@ -20,7 +20,7 @@ _ENDS = re.compile(r"\b(shutdown|exit|SystemExit|kill|raise_signal)\b")
 
 
 def one_by_one(frame: FrameType | None) -> str:
-    """What to say of a program that is about to run nodes while others of it wait to be run; empty for any other.
+    """Warn of a program that is about to run nodes while others of it wait to be run; empty for any other.
 
     Args:
         frame: That of the program, in the call of `run`.

@@ -117,7 +117,7 @@ class Db3Part(Part):
             for statement, values in self._waiting:
                 self._base.execute(statement, values)
             self._base.execute("COMMIT")
-        except BaseException:
+        except BaseException:  # cancellation included: no transaction is left open
             if self._base.in_transaction:
                 self._base.execute("ROLLBACK")
             raise

@@ -38,7 +38,7 @@ _MEANT = {
     **dict.fromkeys(("time", "timestamp", "stamp", "t"), "time_ns"),
     **dict.fromkeys(("topic_name", "name", "channel"), "topic"),
 }
-"""What others call its parts."""
+"""Other words for its parts, as people try them."""
 
 
 def read(

@@ -231,7 +231,7 @@ def _improved(error: click.UsageError) -> click.UsageError:
 
 
 def _number_wanted(found: re.Match[str]) -> str:
-    """What to say of a word that is no number: of `10hz`, that 10 is meant."""
+    """Answer a word that is no number: for `10hz`, that 10 is meant."""
     number = _NUMBER.match(found[1])
     meant = f"; write {number[0].replace(',', '.')}" if number else "."
     return f"{found[1]!r} is not a {'whole ' if found[2] == 'integer' else ''}number{meant}"

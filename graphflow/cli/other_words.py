@@ -101,7 +101,7 @@ _LINES = {
     "topic send": "topic pub",
     "version": "--version",
 }
-"""What the words behind them follow, or the whole line where it has a place for the first of them."""
+"""The verb that the words behind them follow, or the whole line where it has a place for the first of them."""
 _NO_CORE = "none is needed: nodes find each other, and each machine starts what they meet at by itself"
 _THERE = "a topic is there as soon as a node publishes it or subscribes to it"
 _RENAMED = "names are changed where a node is started: graphflow run NODE -r OLD:=NEW"

@@ -107,7 +107,7 @@ class Verbs(click.Group):
         return ""
 
     def unknown(self, ctx: click.Context, word: str) -> str:
-        """What to say of a word that is no verb."""
+        """Answer a word that is no verb."""
         path = word if ctx.parent is None else f"{ctx.info_name} {word}"
         if path in NOT_NEEDED:
             return f"graphflow has no {path!r}: {NOT_NEEDED[path]}".replace("`", "")

@@ -141,7 +141,7 @@ def run(program: Program) -> None:
     hook = sys.excepthook
     try:
         _begin(program)
-    except BaseException:
+    except BaseException:  # SystemExit and KeyboardInterrupt are shown by a hook, too
         if sys.excepthook is hook:  # not before: some libraries look whether it is Python's own
             sys.excepthook = partial(_tell, program.workspace)
         raise

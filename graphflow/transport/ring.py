@@ -141,7 +141,7 @@ class Ring:
             os.ftruncate(self._fd, self.bytes)
             fcntl.fcntl(self._fd, fcntl.F_ADD_SEALS, _seals())
             self._memory = _Memory(mmap.mmap(self._fd, self.bytes), slots, _stride(size))
-        except BaseException:
+        except BaseException:  # whatever it was, the file is not left open
             os.close(self._fd)
             raise
         _HEAD.pack_into(self._memory.map, 0, _MAGIC, self._number, slots, _stride(size))

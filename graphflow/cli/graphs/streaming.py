@@ -305,7 +305,7 @@ def last_words(run: GraphRun) -> str:
 
 
 def how_ended(logs: Path) -> str:
-    """What ended the graph with a folder of logs; empty if it ended by itself, or nobody could write it down."""
+    """The cause of the end of a graph, from its folder of logs; empty if it ended by itself, or none was written."""
     for _, run in left_over():
         if run.logs == str(logs):
             return f"the supervisor, process {run.pid}, was killed{', and its guardian' if run.guardian else ''}"

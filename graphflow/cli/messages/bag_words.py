@@ -36,7 +36,7 @@ class BagVerb(Verb):
 
 
 def all_or_some(topics: Sequence[str]) -> str:
-    """What to say where all topics are recorded, and some are named, of which one may be the bag."""
+    """Answer `-a` beside names, one of which may be the bag's."""
     folder = "" if "/" in topics[0] else f"; the bag's folder is named by -o: graphflow bag record -a -o {topics[0]}"
     return f"all topics, or only {' '.join(topics)}: leave out -a, or the names{folder}"
 

@@ -79,7 +79,7 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
 
 
 def _instead(word: str) -> str:
-    """What to say of a word that is a package, or a field of a type; empty for others."""
+    """Answer a word that is a package, or a field of a type; empty for others."""
     from graphflow.msgs import registry
 
     if registry.package_folders(word):
