@@ -118,6 +118,22 @@ def test_a_reader_leaves(writer: Ring) -> None:
     assert writer.admit([])
 
 
+def test_a_reader_is_put_out_while_it_claims(writer: Ring, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The writer has looked at the claims already, and may write the slot: the message is lost to this reader."""
+    alice, place, fence = RingReader(ALICE), write(writer, 1), ring._fence
+
+    def meanwhile() -> None:
+        monkeypatch.setattr(ring, "_fence", fence)
+        writer.admit([])
+
+    assert alice.take(place) is not None
+    gc.collect()
+    monkeypatch.setattr(ring, "_fence", meanwhile)
+    # The claim is written by now, so the writer sees it too: neither believes that the slot is its own.
+    assert alice.take(place) is None
+    assert writer.admit([])
+
+
 def test_all_slots_claimed(writer: Ring) -> None:
     """Then the writer says so, and the messages stay as they are."""
     writer.admit(range(1, 2))
@@ -222,6 +238,7 @@ class TestForged:
         read, sent = os.pipe()
         named = os.memfd_create("graphflow ring", os.MFD_ALLOW_SEALING)
         os.ftruncate(named, 1 << 20)
+        os.pwrite(named, os.pread(good.fd, 4096, 0), 0)  # a ring in all but its seals
         sealed = os.memfd_create("graphflow ring", os.MFD_ALLOW_SEALING)
         os.pwrite(sealed, os.pread(good.fd, 4096, 0), 0)
         fcntl.fcntl(sealed, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_SEAL)
