@@ -8,6 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Coroutine
+from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -30,6 +31,8 @@ BESIDE = bytes(33)
 """An attachment's worth of bytes."""
 
 LOOPS = ["asyncio", "uvloop"]
+if find_spec("uvloop") is None:
+    sys.exit("the benchmarks between processes need uvloop: pip install -e '.[dev,fast]'")
 
 
 def loop_of(kind: str) -> asyncio.AbstractEventLoop:
