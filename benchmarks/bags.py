@@ -27,7 +27,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from benchmarks.rounds import compare, goal
 from graphflow.bag.contents import Record, Topic
-from graphflow.bag.definitions import known
+from graphflow.bag.formats.definitions import known
 from graphflow.bag.reader import Bag
 from graphflow.bag.writer import BagWriter
 from graphflow.msgs import registry

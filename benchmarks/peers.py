@@ -20,7 +20,7 @@ from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.qos import Qos
 from graphflow.transport.base import Inbox
 from graphflow.transport.config import config, open_session
-from graphflow.transport.loop import LOOP_VARIABLE, new_event_loop
+from graphflow.transport.event_loop.loop import LOOP_VARIABLE, new_event_loop
 from graphflow.transport.malloc import keep_freed_memory
 from graphflow.transport.rendezvous import establish, free_endpoint
 from graphflow.transport.zenoh import ZenohSession

@@ -75,7 +75,7 @@ if TYPE_CHECKING:
     from graphflow.runtime.endpoints.subscriptions import TopicSubscription
     from graphflow.runtime.endpoints.timer import Timer, TimerInfo
     from graphflow.runtime.failures import ErrorBudget
-    from graphflow.runtime.lifecycle import LifecycleNode
+    from graphflow.runtime.managed.lifecycle_node import LifecycleNode
     from graphflow.runtime.node import Node
     from graphflow.runtime.run import run, running
     from graphflow.times import Duration, Time
@@ -154,7 +154,7 @@ _HOMES = {
         "task",
         "timer",
     ),
-    "graphflow.runtime.lifecycle": ("LifecycleNode",),
+    "graphflow.runtime.managed.lifecycle_node": ("LifecycleNode",),
     "graphflow.runtime.node": ("Node",),
     "graphflow.runtime.endpoints.publishers": ("TopicPublisher",),
     "graphflow.runtime.run": (
@@ -259,7 +259,7 @@ def __getattr__(name: str) -> object:
             value: object = getattr(import_module(home), name)
             globals()[name] = value
             return value
-    from graphflow.runtime.rclpy_words import translation
+    from graphflow.runtime.mistakes.rclpy_words import translation
 
     hint = translation(name, "names")
     if name[:1].isupper() and name.lower() in __all__:

@@ -40,7 +40,8 @@ def test_help_of_a_verb_imports_nothing_heavy(verb: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "module", [*(f"graphflow.cli.ros.{verb}" for verb in ("topic", "node", "service")), "graphflow.introspect.view"]
+    "module",
+    [*(f"graphflow.cli.ros.{verb}" for verb in ("topic", "node", "service")), "graphflow.introspect.graph_view"],
 )
 def test_the_modules_of_the_list_verbs_import_nothing_heavy(module: str) -> None:
     """Listing nodes, topics and services needs neither asyncio nor numpy, pydantic or textual."""

@@ -19,7 +19,7 @@ PURE = (
     *("wire", "msgs", "machines"),
 )
 """Decides: it neither waits, nor looks at a clock, nor logs, nor reads files or the environment."""
-FILES = ("folders", "workspace", "markup", "launchfiles", "graph", "analysis")
+FILES = ("folders", "workspace", "markup", "launchfiles", "console", "graph", "analysis")
 """Reads files and the environment; nothing that waits."""
 RUNTIME = ("transport", "executor", "deadlock", "runtime")
 """Where waiting happens."""

@@ -6,9 +6,9 @@ import heapq
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from graphflow.bag.choice import Choice
 from graphflow.bag.contents import Contents, Topic
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import Choice
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError
 

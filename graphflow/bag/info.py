@@ -6,9 +6,9 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from graphflow.bag.choice import EVENTS
 from graphflow.bag.contents import Topic
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import EVENTS
 
 
 def lines(bag: Bag, sort: str = "name", *, verbose: bool = False) -> Iterator[str]:

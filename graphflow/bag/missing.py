@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
-from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import EVENTS, Choice
 from graphflow.errors import BagError
 from graphflow.names import did_you_mean
 

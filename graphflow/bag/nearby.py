@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import islice
 from pathlib import Path
 
-from graphflow.bag import metadata
+from graphflow.bag.formats import metadata
 from graphflow.names import nearest
 
 _ENDINGS = (".mcap", ".db3", ".bag")

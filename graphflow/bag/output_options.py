@@ -17,8 +17,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from graphflow.bag.choice import Choice
 from graphflow.bag.overrides import named_file
+from graphflow.bag.topic_choice import Choice
 from graphflow.errors import GraphflowError, UsageFault
 from graphflow.names import did_you_mean, expand
 

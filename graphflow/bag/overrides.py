@@ -18,7 +18,7 @@ from typing import Any
 
 import yaml
 
-from graphflow.bag.metadata import DURATIONS, ENUMS, loaded
+from graphflow.bag.formats.metadata import DURATIONS, ENUMS, loaded
 from graphflow.errors import GraphflowError, UsageFault
 from graphflow.names import check_full_name, did_you_mean
 from graphflow.qos import Qos

@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
-from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.missing import check_messages, remarks
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import EVENTS, Choice
 from graphflow.bag.typed import learn
 from graphflow.errors import BagError, InvalidName
 from graphflow.msgs import registry

@@ -8,14 +8,14 @@ from collections.abc import Collection, Iterator
 from itertools import chain
 from pathlib import Path
 
-from graphflow.bag import metadata
 from graphflow.bag.contents import Record, together
-from graphflow.bag.db3_file import Db3File
-from graphflow.bag.mcap_file import RECORD_BOUND, McapFile
-from graphflow.bag.metadata import FileContents
+from graphflow.bag.formats import metadata
+from graphflow.bag.formats.compression import MAGICS, SUFFIXES, File, PackedFile, loosened
+from graphflow.bag.formats.db3_file import Db3File
+from graphflow.bag.formats.mcap_file import RECORD_BOUND, McapFile
+from graphflow.bag.formats.metadata import FileContents
+from graphflow.bag.formats.ros1_file import Ros1File
 from graphflow.bag.nearby import meant
-from graphflow.bag.packing import MAGICS, SUFFIXES, File, PackedFile, loosened
-from graphflow.bag.ros1_file import Ros1File
 from graphflow.errors import BagError
 
 _FILES_BOUND = 10_000

@@ -6,11 +6,11 @@ from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from graphflow.bag.choice import Choice
 from graphflow.bag.contents import Record, Topic
-from graphflow.bag.definitions import parted
+from graphflow.bag.formats.definitions import parted
 from graphflow.bag.missing import remarks
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import Choice
 from graphflow.errors import BagError, InterfaceError, UnknownInterface
 from graphflow.msgs import registry
 from graphflow.names import expand

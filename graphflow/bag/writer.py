@@ -18,13 +18,13 @@ from pathlib import Path
 from typing import Self
 
 from graphflow import __version__
-from graphflow.bag import metadata
 from graphflow.bag.contents import Contents, Record, Topic, together
-from graphflow.bag.db3_part import Db3Part
-from graphflow.bag.kept import NO_REPEATS, Kept, Repeats
-from graphflow.bag.mcap_writer import McapWriter
-from graphflow.bag.metadata import FileContents
-from graphflow.bag.part import Part
+from graphflow.bag.formats import metadata
+from graphflow.bag.formats.bag_file import Part
+from graphflow.bag.formats.db3_writer import Db3Part
+from graphflow.bag.formats.mcap_writer import McapWriter
+from graphflow.bag.formats.metadata import FileContents
+from graphflow.bag.recording.latched import NO_REPEATS, LatchedMessages, Repeats
 from graphflow.errors import BagError
 
 logger = logging.getLogger("graphflow")
@@ -169,7 +169,7 @@ class BagWriter:
         self._now_ns = monotonic_ns
         self._storage = storage
         self.repeats = repeats
-        self._kept, self._is_new = Kept(repeats), False
+        self._kept, self._is_new = LatchedMessages(repeats), False
         self._done: list[FileContents] = []
         self._is_finished = False
         """Whether the last file is among those that are done."""

@@ -100,18 +100,18 @@ def _expected(command: click.Command, words: Sequence[str]) -> tuple[str, list[s
 
 def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
     from graphflow.domain import domain_id
-    from graphflow.introspect import offers
-    from graphflow.introspect.view import View
+    from graphflow.introspect import completions
+    from graphflow.introspect.graph_view import View
 
     word = re.sub(r"^-*(\w*).*", r"\1", place.upper())
-    if word not in LIVE and word not in offers.MESSAGES:
+    if word not in LIVE and word not in completions.MESSAGES:
         return ()
     if word not in NAMES:
         from graphflow.cli.messages.types import use_project
 
         use_project()
-    if word in offers.MESSAGES:
-        return offers.message(given[1], mark) if len(given) >= 2 else ()
+    if word in completions.MESSAGES:
+        return completions.message(given[1], mark) if len(given) >= 2 else ()
     if word == "TYPE" and not given:
         return _types()
     with View(domain_id()) as view:
@@ -120,7 +120,7 @@ def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
 
             found = RemoteParameters(view, view.node(given[0]), ANSWER_LIMIT).names()
         else:
-            found = offers.names_for(word, given, view.cache)
+            found = completions.names_for(word, given, view.cache)
     # They come from other processes, and a shell runs what it is given: what it might obey is not offered.
     plain = [name for name in found if _PLAIN.fullmatch(name)]
     return _types() if word == "TYPE" and not plain else plain

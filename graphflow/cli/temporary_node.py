@@ -13,7 +13,7 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.ending import catch_signals
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
-from graphflow.transport import loop
+from graphflow.transport.event_loop import loop
 
 
 def visit(

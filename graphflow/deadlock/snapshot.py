@@ -20,8 +20,8 @@ from graphflow.analysis.frames import Frame, stack_of
 from graphflow.analysis.user_code import Pause, where
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
-from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, handler_in, handler_of, method_of
-from graphflow.deadlock.object_waits import setters
+from graphflow.deadlock.closed_world.object_waits import setters
+from graphflow.deadlock.closed_world.wakers import Setters, cancellers, entries_of, handler_in, handler_of, method_of
 from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.startup_waits import start_of, unopened
 from graphflow.deadlock.watchdog import Watchdog

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from graphflow.analysis.frames import Frame
 from graphflow.deadlock import asyncio_frames as aio
-from graphflow.deadlock.closed_world import method_of
+from graphflow.deadlock.closed_world.wakers import method_of
 from graphflow.deadlock.protocols import Subject
 from graphflow.executor.clock import ClockTimeout
 from graphflow.times import to_ns

@@ -11,12 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from shutil import which
 
+from graphflow.console.section import console_section
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.folders import newest_logs
 from graphflow.graph import params_file
 from graphflow.graph.checks.order import ordered
 from graphflow.graph.checks.validation import Problems, example, validated
-from graphflow.graph.console import console_section
 from graphflow.graph.expansion.arguments import given_values
 from graphflow.graph.expansion.expand import Expansion
 from graphflow.graph.model import BLOCKS, FROM_GROUPS, NO_CLASS, GraphFile, GroupSpec, NodeSpec, RestartSpec

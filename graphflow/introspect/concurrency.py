@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from graphflow.errors import CallTimeout, RemoteError
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.waits.explain import group_of, offer, title
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import explained

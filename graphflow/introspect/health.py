@@ -9,8 +9,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.numbers import REPLY_BOUND
-from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.matching import shared
 from graphflow.machines.near_topics import EVERYBODYS, is_misspelt

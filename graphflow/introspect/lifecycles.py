@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.wire.liveliness import Kind
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import GraphflowError, ParameterError, UsageFault
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:

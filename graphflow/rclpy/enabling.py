@@ -17,7 +17,7 @@ TYPINGS = "graphflow-rclpy"
 """The folder beside it with what editors read of messages."""
 LINES = f"""{SITE}
 {TYPINGS}
-import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.anywhere")
+import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.site_hook")
 """
 
 
@@ -44,7 +44,7 @@ def here() -> bool:
         return False
     if SITE not in sys.path:
         sys.path.append(SITE)
-    from graphflow.rclpy.finder import install, prefer_own
+    from graphflow.rclpy.messages.finder import install, prefer_own
 
     install()
     if any(map(_is_source_tree, sys.path)):
@@ -75,7 +75,7 @@ def enable() -> str:
 
     from graphflow.msgs import registry
     from graphflow.msgs.stubs import write
-    from graphflow.rclpy.stubs import stubs
+    from graphflow.rclpy.messages.stubs import stubs
 
     path = file()
     with open(path, "w", encoding="utf-8") as opened:

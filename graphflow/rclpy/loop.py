@@ -13,7 +13,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any, TypeVar
 
 from graphflow.transport.config import before_closing_at_exit
-from graphflow.transport.loop import new_event_loop
+from graphflow.transport.event_loop.loop import new_event_loop
 from graphflow.transport.malloc import keep_freed_memory
 
 T = TypeVar("T")

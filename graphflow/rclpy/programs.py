@@ -22,7 +22,9 @@ from graphflow.analysis import hiding
 from graphflow.errors import UsageFault
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
-from graphflow.rclpy import enabling, finder, tracebacks
+from graphflow.rclpy import enabling
+from graphflow.rclpy.hints import tracebacks
+from graphflow.rclpy.messages import finder
 from graphflow.runtime.mistakes import unrun
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile

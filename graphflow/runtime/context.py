@@ -28,8 +28,8 @@ from graphflow.runtime.endpoints.shared_memory import Readers
 from graphflow.runtime.mistakes.network.same_names import Twins
 from graphflow.runtime.mistakes.network.unmatched import Unmatched
 from graphflow.transport.base import Closable, Session
-from graphflow.transport.loop import in_thread
-from graphflow.transport.threads import THREADS
+from graphflow.transport.event_loop.daemon_threads import THREADS
+from graphflow.transport.event_loop.loop import in_thread
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, watch_key
 from graphflow.wire.profile import advice, wire_profile

@@ -48,11 +48,11 @@ from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.mistakes import unrun
 from graphflow.runtime.mistakes.doubled import tell_doubled
 from graphflow.runtime.mistakes.other_threads import call_soon
+from graphflow.runtime.mistakes.rclpy_words import OF_PARTS, SpeaksRos, in_our_words
 from graphflow.runtime.mistakes.repeats import tell_same
-from graphflow.runtime.mistakes.shadowing import check_names
+from graphflow.runtime.mistakes.source.shadowing import check_names
 from graphflow.runtime.node_arguments import rules_of
 from graphflow.runtime.node_core import NodeCore
-from graphflow.runtime.rclpy_words import OF_PARTS, SpeaksRos, in_our_words
 from graphflow.wire.attachment import MessageInfo
 
 M = TypeVar("M", bound=Message)

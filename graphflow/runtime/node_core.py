@@ -36,8 +36,8 @@ from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import Rosout
 from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.repeats import Repeats
-from graphflow.runtime.mistakes.slips import slips
 from graphflow.runtime.mistakes.slow_hooks import when_slow
+from graphflow.runtime.mistakes.source.slips import slips
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_options import unused_remaps
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions

@@ -13,7 +13,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import OnError
 from graphflow.runtime.context import Context
-from graphflow.runtime.rclpy_words import SpeaksRos
+from graphflow.runtime.mistakes.rclpy_words import SpeaksRos
 
 
 class Host(Protocol):

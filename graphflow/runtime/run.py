@@ -31,7 +31,7 @@ from graphflow.runtime.node_arguments import refuse_keywords
 from graphflow.runtime.node_core import core_of
 from graphflow.runtime.node_options import NodeOptions, make_within
 from graphflow.runtime.process_nodes import Company
-from graphflow.transport import loop
+from graphflow.transport.event_loop import loop
 
 logger = logging.getLogger("graphflow")
 

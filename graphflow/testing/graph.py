@@ -15,10 +15,10 @@ from graphflow.qos import Durability, Qos
 from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.context import Context
 from graphflow.runtime.endpoints.publishers import TopicPublisher
+from graphflow.runtime.mistakes.rclpy_words import SpeaksRos
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.runtime.node_options import NodeOptions, make_within
-from graphflow.runtime.rclpy_words import SpeaksRos
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.testing.forgotten import awaited
 from graphflow.testing.outside import outside

@@ -16,7 +16,7 @@ from functools import cache
 import zenoh
 
 from graphflow.errors import TransportError
-from graphflow.transport.threads import THREADS
+from graphflow.transport.event_loop.daemon_threads import THREADS
 
 logger = logging.getLogger("graphflow")
 CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"

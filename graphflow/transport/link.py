@@ -33,7 +33,7 @@ from graphflow.transport.config import (
     config,
     open_session,
 )
-from graphflow.transport.foreign import at_once
+from graphflow.transport.event_loop.foreign_threads import at_once
 from graphflow.wire import net
 
 logger = logging.getLogger("graphflow.link")

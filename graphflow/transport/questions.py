@@ -19,7 +19,7 @@ import zenoh
 from zenoh.handlers import RingChannel
 
 from graphflow.transport.config import ANSWERING
-from graphflow.transport.foreign import at_once
+from graphflow.transport.event_loop.foreign_threads import at_once
 
 FLOOD = 100
 """Questions that wait when the first flood begins; more are ended without an answer."""

@@ -8,7 +8,7 @@ import random
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.transport.base import Closable
-from graphflow.transport.loop import in_thread
+from graphflow.transport.event_loop.loop import in_thread
 from graphflow.transport.rendezvous import Router, host, occupied
 from graphflow.transport.zenoh import ZenohSession
 

@@ -32,13 +32,13 @@ from graphflow.transport.config import (
     config,
     open_session,
 )
-from graphflow.transport.foreign import at_once
+from graphflow.transport.event_loop.foreign_threads import at_once
+from graphflow.transport.event_loop.loop import in_thread
 from graphflow.transport.latched import AskingAgain, load_ext
-from graphflow.transport.loop import in_thread
 from graphflow.transport.questions import Questions
 
 if TYPE_CHECKING:  # only nodes with large messages load them
-    from graphflow.transport.large import RingReceiver, RingSender
+    from graphflow.transport.shared_memory.large_messages import RingReceiver, RingSender
 
 OWN = "@graphflow/"
 """What the keys begin with that ROS 2 does not know."""
@@ -277,7 +277,7 @@ class ZenohSession:
         return _Declared(self, subscriber) if again is None else _Declared(self, subscriber, again)
 
     def open_large_sender(self, sender: Sender, key: str) -> RingSender | None:
-        from graphflow.transport.large import RingSender, can_share
+        from graphflow.transport.shared_memory.large_messages import RingSender, can_share
 
         if not can_share() or isinstance(sender, _KeepingSender):
             return None
@@ -295,8 +295,8 @@ class ZenohSession:
         return RingSender(sender, describe)
 
     def open_ring_receiver(self, key: str, eid: int, inbox: Inbox) -> RingReceiver | None:
-        from graphflow.transport.large import RingReceiver, can_share, receive
-        from graphflow.transport.ring import RingReader, number_of, open_proof
+        from graphflow.transport.shared_memory.large_messages import RingReceiver, can_share, receive
+        from graphflow.transport.shared_memory.ring import RingReader, number_of, open_proof
 
         if not can_share():
             return None
@@ -307,7 +307,7 @@ class ZenohSession:
         return RingReceiver((os.getpid(), self._proof), rings, _Declared(self, subscriber))
 
     def is_neighbour(self, zid: str, pid: int, fd: int) -> bool:
-        from graphflow.transport.ring import is_proved
+        from graphflow.transport.shared_memory.ring import is_proved
 
         return is_proved(zid, pid, fd)
 

@@ -1,6 +1,6 @@
 """The console: a Textual client of a graph, opened by `main`. Packages that add views need three names from here.
 
-from graphflow.tui import Action, Tap, View
+from graphflow.tui import Action, TopicMonitor, View
 """
 
 from __future__ import annotations
@@ -8,11 +8,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from graphflow.tui.actions import Action
-    from graphflow.tui.tap import Tap
+    from graphflow.tui.commands.actions import Action
+    from graphflow.tui.feeds.topic_monitor import TopicMonitor
     from graphflow.tui.view import View
 
-__all__ = ["Action", "Tap", "View"]
+__all__ = ["Action", "TopicMonitor", "View"]
+_HOMES = {
+    "Action": "graphflow.tui.commands.actions",
+    "TopicMonitor": "graphflow.tui.feeds.topic_monitor",
+    "View": "graphflow.tui.view",
+}
 
 
 def __getattr__(name: str) -> object:
@@ -21,6 +26,5 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'graphflow.tui' has no attribute {name!r}")
     from importlib import import_module
 
-    module = import_module(f"graphflow.tui.{'actions' if name == 'Action' else name.lower()}")
-    value: object = getattr(module, name)
+    value: object = getattr(import_module(_HOMES[name]), name)
     return value

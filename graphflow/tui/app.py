@@ -11,23 +11,23 @@ from textual.binding import Binding
 from textual.screen import Screen
 
 from graphflow.supervisor.rundir import running
-from graphflow.tui.actions import console_actions, shown
-from graphflow.tui.bars import Hints, Status
-from graphflow.tui.deeds import Deeds
-from graphflow.tui.desk import Desk
+from graphflow.tui.commands.actions import console_actions, shown
+from graphflow.tui.commands.console_commands import ConsoleCommands
+from graphflow.tui.context import ConsoleApp
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.home import open_home
-from graphflow.tui.hub import Hub
-from graphflow.tui.ink import DARK, LIGHT, make_ink, recolouring
-from graphflow.tui.job_control import JobControl
-from graphflow.tui.keyboard import Keyboard, Typed
 from graphflow.tui.layout import Layout
-from graphflow.tui.lines import Lines
-from graphflow.tui.pacing import Pacing
+from graphflow.tui.pane_area import Workspace
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
+from graphflow.tui.tty.job_control import JobControl
+from graphflow.tui.tty.keyboard import Keyboard, Typed
+from graphflow.tui.tty.pacing import Pacing
 from graphflow.tui.view import View
-from graphflow.tui.welcome import Welcome
-from graphflow.tui.workspace import Workspace
+from graphflow.tui.widgets.bars import Hints, Status
+from graphflow.tui.widgets.colours import DARK, LIGHT, make_colours, recolouring
+from graphflow.tui.widgets.line_view import LineView
+from graphflow.tui.widgets.welcome import Welcome
 
 PULSE = 0.05
 """Seconds between two looks at what is new: at most twenty times a second anything is drawn."""
@@ -39,7 +39,7 @@ class MainScreen(Screen[object], inherit_bindings=False):
     AUTO_FOCUS = ""
 
 
-class Console(Desk):
+class Console(ConsoleApp):
     """The console. Its result says how it was left: `detach`, `stop`, `switch SOCKET`, or what a tour calls it.
 
     Args:
@@ -71,7 +71,7 @@ class Console(Desk):
         if not self.windows.windows:
             open_home(self.windows, hub)
         self.workspace = Workspace(self.windows, self._make_view)
-        self.deeds = Deeds(self)
+        self.deeds = ConsoleCommands(self)
         self.hints = Hints()
         self.status = Status()
         self.keyboard = Keyboard(self, super().on_event, self.deeds.do)
@@ -85,7 +85,7 @@ class Console(Desk):
         self.register_theme(DARK)
         self.register_theme(LIGHT)
         self.theme = theme if theme in self.available_themes else DARK.name
-        self.ink = make_ink(self)
+        self.colours = make_colours(self)
 
     # life
 
@@ -101,7 +101,7 @@ class Console(Desk):
 
     def on_mount(self) -> None:
         self.job_control.hear_signals()
-        self.theme_changed_signal.subscribe(self, lambda _: self._new_ink())
+        self.theme_changed_signal.subscribe(self, lambda _: self._new_colours())
         self.set_interval(PULSE, self._pulse)
         self.call_after_refresh(self._begin)
 
@@ -116,7 +116,7 @@ class Console(Desk):
             self.spawn(self._join)
 
     async def _join(self) -> None:
-        from graphflow.tui.live import Live
+        from graphflow.tui.feeds.graph_feed import Live
 
         live = Live(self.hub.domain)
         await live.open()
@@ -198,13 +198,13 @@ class Console(Desk):
         assert isinstance(content, Content)
         return view_class(content.view)(self.hub, content)
 
-    def _new_ink(self) -> None:
-        old, self.ink = self.ink, make_ink(self)
-        recolour = recolouring(old, self.ink)
+    def _new_colours(self) -> None:
+        old, self.colours = self.colours, make_colours(self)
+        recolour = recolouring(old, self.colours)
         for frame in self.workspace.frames.values():
             if frame.view.is_mounted:
                 frame.view.restyle()
-                for lines in frame.view.query(Lines):
+                for lines in frame.view.query(LineView):
                     lines.recolour(recolour)
         self.refresh(layout=True)
 
@@ -226,7 +226,7 @@ class Console(Desk):
     async def on_workspace_focus_arrived(self) -> None:
         await self.keyboard.go_on()
 
-    def on_lines_wanted(self, event: Lines.Wanted) -> None:
+    def on_line_view_wanted(self, event: LineView.Wanted) -> None:
         self.deeds.search_in(event.lines)
 
     async def on_keyboard_followed(self, event: Keyboard.Followed) -> None:

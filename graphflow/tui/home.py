@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from shutil import get_terminal_size
 
-from graphflow.tui.hub import Hub
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Content, Split
 

@@ -15,12 +15,12 @@ from graphflow.errors import SupervisorError
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import GraphRun, running
 from graphflow.tui.app import Console
-from graphflow.tui.history import History, history_file
-from graphflow.tui.hub import Hub, Verbs
-from graphflow.tui.ink import DARK
+from graphflow.tui.commands.history import History, history_file
+from graphflow.tui.feeds.hub import Hub, Verbs
+from graphflow.tui.feeds.supervision import Supervision
 from graphflow.tui.layout import Layout
-from graphflow.tui.supervision import Supervision
-from graphflow.tui.welcome import is_first_visit
+from graphflow.tui.widgets.colours import DARK
+from graphflow.tui.widgets.welcome import is_first_visit
 
 FAILED = "failed"
 """How a console was left whose own code has failed."""

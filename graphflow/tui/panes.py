@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
-from graphflow.graph.console import LAYOUTS
-from graphflow.introspect.drawing import Rect
+from graphflow.console.section import LAYOUTS
+from graphflow.introspect.drawing.layered import Rect
 
 MIN_WIDTH, MIN_HEIGHT = 12, 3
 """Cells that a pane has at least, its title included."""

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from graphflow.graph.console import PLUGINS, VIEWS, known_views
+from graphflow.console.views import PLUGINS, VIEWS, known_views
 from graphflow.names import did_you_mean
 from graphflow.tui.view import View
 
+_FOLDERS = {
+    "topics": ("topics", "echo", "hz", "plot"),
+    "nodes": ("nodes", "detail", "crash", "params", "tree", "top"),
+}
+"""The packages below `views`, and the views in each; the others have modules of their own."""
 TOUR = "tour"
 """The view of `graphflow demo`, which is in no list."""
 
@@ -15,7 +20,7 @@ TOUR = "tour"
 def view_class(name: str) -> type[View]:
     """The class of a view; a view that says what is wrong where there is none."""
     if name in VIEWS or name == TOUR:
-        found: type[View] = import_module(f"graphflow.tui.views.{name}").VIEW
+        found: type[View] = import_module(_module(name)).VIEW
         return found
     from importlib.metadata import entry_points
 
@@ -31,6 +36,11 @@ def view_class(name: str) -> type[View]:
                 return loaded
             return broken(f"{entry.value} is no subclass of graphflow.tui.view.View")
     return broken(f"there is no view {name!r}{did_you_mean(name, known_views())}")
+
+
+def _module(name: str) -> str:
+    folder = next((f"{folder}." for folder, names in _FOLDERS.items() if name in names), "")
+    return f"graphflow.tui.views.{folder}{name}"
 
 
 def describe(name: str) -> str:

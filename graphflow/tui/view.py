@@ -13,10 +13,10 @@ from typing import Any, ClassVar
 from textual.widget import Widget
 
 from graphflow.errors import GraphflowError
-from graphflow.tui.actions import Action, carry_out
-from graphflow.tui.hub import Hub
-from graphflow.tui.ink import Ink
+from graphflow.tui.commands.actions import Action, carry_out
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.panes import Content
+from graphflow.tui.widgets.colours import Colours
 
 SOON = 0.1
 """Seconds after an event in which what follows it may come, too, to be drawn with it."""
@@ -115,9 +115,9 @@ class View(Widget):
         return Content(self.NAME, self.about, self.options)
 
     @property
-    def ink(self) -> Ink:
-        ink: Ink = self.app.ink  # type: ignore[attr-defined]
-        return ink
+    def colours(self) -> Colours:
+        colours: Colours = self.app.colours  # type: ignore[attr-defined]
+        return colours
 
     @property
     def console(self) -> Any:

@@ -8,9 +8,9 @@ import logging
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from graphflow.bag.definitions import known
+from graphflow.bag.formats.definitions import known
 from graphflow.errors import GraphflowError, UnknownInterface, UsageFault, printable
-from graphflow.introspect.definitions import asked_sources
+from graphflow.introspect.messages.definitions import asked_sources
 from graphflow.msgs import registry
 from graphflow.runtime.node import Node
 from graphflow.viewer.client import Client

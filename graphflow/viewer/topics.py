@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from graphflow.bag.definitions import asked
+from graphflow.bag.formats.definitions import asked
 from graphflow.errors import UsageFault, printable
 from graphflow.names import is_hidden
 from graphflow.qos import BEST_AVAILABLE

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.bag.contents import Record, Topic
-from graphflow.bag.definitions import known
+from graphflow.bag.formats.definitions import known
 from graphflow.bag.writer import BagWriter
 from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import Int32, String

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from graphflow.bag import copying
-from graphflow.bag.choice import Choice
 from graphflow.bag.copying import beside, copy, times
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import Choice
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError
 from graphflow.msgs.std_msgs.msg import Int32

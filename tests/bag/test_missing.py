@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from graphflow.bag.choice import Choice
 from graphflow.bag.missing import check_messages, remarks
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import Choice
 from graphflow.errors import BagError
 from tests.bag.cast import START, write
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from graphflow.bag import overrides
-from graphflow.bag.choice import Choice
 from graphflow.bag.output_options import is_options, read
+from graphflow.bag.topic_choice import Choice
 from graphflow.errors import UsageFault
 
 ALL = Choice(all=True, all_services=True, hidden=True)

@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from graphflow import Node
-from graphflow.bag.choice import Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.player import Player, PlayOptions, offered
 from graphflow.bag.reader import Bag
+from graphflow.bag.topic_choice import Choice
 from graphflow.errors import BagError
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.msgs.std_msgs.msg import Int32, String

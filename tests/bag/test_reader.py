@@ -11,7 +11,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
-from graphflow.bag.mcap_file import McapFile
+from graphflow.bag.formats.mcap_file import McapFile
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError
 from tests.bag.cast import CHATTER, COUNT, START, some_records, write

@@ -89,10 +89,10 @@ def test_types_of_a_project(machine: Machine, tmp_path: Path, monkeypatch: pytes
 def test_what_a_shell_might_obey_is_not_offered(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names come from other processes."""
     names = ["/fine", "$(touch x)", "a;b", "a b", "`x`", "'q", "line\nline", "/~/x-1.y_2"]
-    monkeypatch.setattr("graphflow.introspect.view.View.__init__", lambda self, domain: None)
-    monkeypatch.setattr("graphflow.introspect.view.View.__exit__", lambda *_: None)
-    monkeypatch.setattr("graphflow.introspect.view.View.cache", None, raising=False)
-    monkeypatch.setattr("graphflow.introspect.offers.names_for", lambda *_: names)
+    monkeypatch.setattr("graphflow.introspect.graph_view.View.__init__", lambda self, domain: None)
+    monkeypatch.setattr("graphflow.introspect.graph_view.View.__exit__", lambda *_: None)
+    monkeypatch.setattr("graphflow.introspect.graph_view.View.cache", None, raising=False)
+    monkeypatch.setattr("graphflow.introspect.completions.names_for", lambda *_: names)
     with patch.dict(os.environ, machine.env):
         assert choices(["topic", "echo"], "") == ["/fine", "/~/x-1.y_2"]
         assert choices(["topic", "echo"], "'") == []

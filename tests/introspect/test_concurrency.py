@@ -9,7 +9,7 @@ import pytest
 
 from graphflow.errors import Place
 from graphflow.introspect import concurrency
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.waits.wait_graph import (
     FREE,

@@ -9,8 +9,8 @@ from typing import Any, cast
 import pytest
 
 from graphflow.introspect import health
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.health import Look, examine, needs_second, read
-from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from graphflow import LifecycleNode, Node
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
-from graphflow.introspect.view import View
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState
 from graphflow.testing import Graph
 

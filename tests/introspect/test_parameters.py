@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from graphflow.errors import CallError, ParameterError
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.parameters import STARTING, RemoteParameters
-from graphflow.introspect.view import View
 from graphflow.msgs.rcl_interfaces.msg import ListParametersResult, ParameterDescriptor, ParameterValue
 from graphflow.msgs.rcl_interfaces.msg import SetParametersResult as Result
 from graphflow.msgs.rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters

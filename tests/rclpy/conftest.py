@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from graphflow.rclpy import enabling
-from graphflow.rclpy.finder import MessagePackages
-from graphflow.rclpy.life import Life
+from graphflow.rclpy.context_state import ContextState
+from graphflow.rclpy.messages.finder import MessagePackages
 from graphflow.runtime.context import Context
 from graphflow.system import SITE
 from graphflow.transport.memory import MemorySession, Network
@@ -72,11 +72,11 @@ def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
     show()
     joined = Network()
 
-    async def open_context(self: Life) -> Context:
+    async def open_context(self: ContextState) -> Context:
         loop: Any = AnyThread(asyncio.get_running_loop())
         return Context(MemorySession(joined, loop), domain=self.domain)
 
-    monkeypatch.setattr(Life, "_open", open_context)
+    monkeypatch.setattr(ContextState, "_open", open_context)
     monkeypatch.setattr("sys.argv", ["program"])
     yield joined
     for thread in threading.enumerate():

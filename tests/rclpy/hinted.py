@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from graphflow.rclpy import hints
+from graphflow.rclpy.hints import lookup
 
 
 def hint_of(fn: Callable[[], object]) -> str:
@@ -12,5 +12,5 @@ def hint_of(fn: Callable[[], object]) -> str:
     try:
         fn()
     except BaseException as error:
-        return hints.hint(error)
+        return lookup.hint(error)
     raise AssertionError("nothing was raised")

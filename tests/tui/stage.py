@@ -24,12 +24,12 @@ from graphflow.supervisor.rundir import GraphRun
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer
 from graphflow.tui.app import Console
-from graphflow.tui.hub import Hub
+from graphflow.tui.feeds.graph_feed import Live
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import Record
+from graphflow.tui.feeds.supervision import Supervision
 from graphflow.tui.layout import Layout
-from graphflow.tui.live import Live
-from graphflow.tui.logs import Record
 from graphflow.tui.panes import Content
-from graphflow.tui.supervision import Supervision
 from graphflow.tui.view import View
 
 VERBS: dict[str, Any] = {

@@ -8,8 +8,8 @@ import pytest
 from textual import events
 from textual.widgets import Input
 
-from graphflow.tui.dialogs import AskLine
 from graphflow.tui.panes import Content
+from graphflow.tui.widgets.dialogs import AskLine
 from tests.tui.stage import record, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")

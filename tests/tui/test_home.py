@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.home import open_home
-from graphflow.tui.hub import Hub
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Split
 from tests.tui.stage import Supervised

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from graphflow.graph.console import console_section
-from graphflow.introspect.drawing import Rect
+from graphflow.console.section import console_section
+from graphflow.introspect.drawing.layered import Rect
 from graphflow.markup import source
 from graphflow.tui.layout import Layout, to_section
 from graphflow.tui.panes import Content

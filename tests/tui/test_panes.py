@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graphflow.graph.console import LAYOUTS
-from graphflow.introspect.drawing import Rect
+from graphflow.console.section import LAYOUTS
+from graphflow.introspect.drawing.layered import Rect
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import MIN_HEIGHT, MIN_WIDTH, Content, Pane, Split, Window, drag
 from tests.cases import cases, count, slow

@@ -6,8 +6,7 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from graphflow.graph import console
-from graphflow.graph.console import PLUGINS, VIEWS
+from graphflow.console.views import PLUGINS, VIEWS, known_views
 from graphflow.tui.registry import describe, view_class
 from graphflow.tui.view import View
 
@@ -40,5 +39,5 @@ def test_views_of_other_packages(value: str, doc: str, monkeypatch: pytest.Monke
     """Found by their entry point; one that does not work says why, in its pane."""
     entry = EntryPoint("mine", value, PLUGINS)
     monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [entry])
-    assert console.known_views()[-1] == "mine"
+    assert known_views()[-1] == "mine"
     assert doc in describe("mine")

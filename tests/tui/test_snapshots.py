@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
+from graphflow.console.views import VIEWS
 from graphflow.errors import Place
-from graphflow.graph.console import VIEWS
 from graphflow.introspect.concurrency import ConcurrencyReport
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import explained
@@ -25,11 +25,11 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
-from graphflow.tui.views import plot
+from graphflow.tui.views.topics import plot
 from tests.cases import sample
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import Stage, record, stage
-from tests.tui.views.test_crash import TRACE
+from tests.tui.views.nodes.test_crash import TRACE
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 

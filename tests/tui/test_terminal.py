@@ -15,7 +15,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from graphflow.tui.logs import Logs
+from graphflow.tui.feeds.log_feed import Logs
 from tests.cases import slow
 from tests.conftest import Machine, alive
 from tests.supervisor.running import nothing_is_left, rows, supervisor_of

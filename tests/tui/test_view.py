@@ -11,7 +11,7 @@ from textual.widgets import Static
 from graphflow.errors import GraphflowError
 from graphflow.msgs.sensor_msgs.msg import BatteryState
 from graphflow.testing import Graph
-from graphflow.tui.actions import Action
+from graphflow.tui.commands.actions import Action
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 from tests.conftest import PROJECT

@@ -110,7 +110,7 @@ def _choose(name: str | None) -> GraphRun:
 
 def _anybody(reaches_out: bool) -> bool:
     """Whether nodes can be seen that no supervisor of ours has started."""
-    from graphflow.introspect.view import View
+    from graphflow.introspect.graph_view import View
 
     try:
         with View(domain_id()) as view:

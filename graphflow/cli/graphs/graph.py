@@ -14,13 +14,13 @@ import click
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.errors import CallError
-from graphflow.introspect.elsewhere import nothing_here
-from graphflow.introspect.view import View
+from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.graph_view import View
 from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
-    from graphflow.introspect.drawing import Cell, Drawing
-    from graphflow.introspect.picture import Picture
+    from graphflow.introspect.drawing.layered import Cell, Drawing
+    from graphflow.introspect.drawing.picture import Picture
 
 PNG_LIMIT = 60.0
 """Seconds that Graphviz may take."""
@@ -36,7 +36,7 @@ PNG_LIMIT = 60.0
 @click.option("--png", type=click.Path(dir_okay=False, path_type=Path), help="Into a PNG file, by Graphviz.")
 def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, png: Path | None) -> int:
     """Draw the nodes and topics that run: all, or those of a NAMESPACE. What does not fit is marked."""
-    from graphflow.introspect.picture import dot, mermaid, picture
+    from graphflow.introspect.drawing.picture import dot, mermaid, picture
 
     below = namespace and f"/{namespace.strip('/')}"
     with View(domain_id()) as view:
@@ -66,7 +66,7 @@ def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, 
 
 
 def _drawn(made: Picture) -> Drawing:
-    from graphflow.introspect.drawing import Box, draw
+    from graphflow.introspect.drawing.layered import Box, draw
 
     bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
     boxes = {node: Box((node,)) for node in made.nodes}

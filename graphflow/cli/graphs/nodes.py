@@ -11,7 +11,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError, UsageFault
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.process import START_LIMIT, STOP_LIMIT
 from graphflow.names import did_you_mean
 from graphflow.supervisor import rundir

@@ -9,7 +9,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.wire.liveliness import Kind
 
 SERVICE = "std_srvs/srv/Trigger"

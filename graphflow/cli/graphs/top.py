@@ -10,10 +10,10 @@ import click
 from graphflow.cli import output
 from graphflow.domain import domain_id
 from graphflow.errors import harmless
-from graphflow.introspect.costs import Cost, Costs
-from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.numbers import Numbers
-from graphflow.introspect.view import View
+from graphflow.introspect.usage import Cost, Costs
 from graphflow.names import is_hidden
 from graphflow.system import host_name
 from graphflow.wire.process import NUMBERS, answer_key

@@ -11,7 +11,7 @@ from graphflow.cli.verbs import Verb, Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import RemoteError, UsageFault
 from graphflow.introspect import concurrency as found
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.names import did_you_mean
 
 ANSWER_LIMIT = 1.0

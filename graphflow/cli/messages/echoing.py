@@ -10,8 +10,8 @@ from graphflow.cli import exits, output
 from graphflow.cli.messages.conditions import compiled
 from graphflow.cli.messages.echo_options import EchoOptions
 from graphflow.cli.temporary_node import visit
-from graphflow.introspect.echo import block, csv, flow, plain, truncated
-from graphflow.introspect.fields import Path, field_path, value_at
+from graphflow.introspect.messages.echo import block, csv, flow, plain, truncated
+from graphflow.introspect.messages.fields import Path, field_path, value_at
 from graphflow.msgs import registry
 from graphflow.qos import Qos
 from graphflow.runtime.endpoints import raw

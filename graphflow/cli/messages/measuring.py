@@ -10,9 +10,9 @@ from graphflow.cli.messages.conditions import compiled
 from graphflow.cli.temporary_node import visit
 from graphflow.domain import domain_id
 from graphflow.errors import DecodeError, UsageFault
-from graphflow.introspect.elsewhere import nothing_here
-from graphflow.introspect.rates import Arrivals, Delays, Weights, table
-from graphflow.introspect.view import View
+from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.graph_view import View
+from graphflow.introspect.messages.rates import Arrivals, Delays, Weights, table
 from graphflow.msgs import registry
 from graphflow.qos import BEST_AVAILABLE, Durability
 from graphflow.runtime.endpoints import raw

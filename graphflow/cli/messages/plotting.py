@@ -16,8 +16,8 @@ from graphflow.bag.reader import Bag
 from graphflow.cli import exits, output
 from graphflow.cli.temporary_node import visit
 from graphflow.errors import CallError, UsageFault
-from graphflow.introspect.curves import COLOURS, CURVES, Curve, chart
-from graphflow.introspect.fields import numbers
+from graphflow.introspect.drawing.curves import COLOURS, CURVES, Curve, chart
+from graphflow.introspect.messages.fields import numbers
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, expand
 from graphflow.qos import BEST_AVAILABLE

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.info import size, topics_of
-from graphflow.bag.kept import Repeats
 from graphflow.bag.overrides import read as read_overrides
-from graphflow.bag.recorder import CACHE, Recorder
+from graphflow.bag.recording.latched import Repeats
+from graphflow.bag.recording.recorder import CACHE, Recorder
+from graphflow.bag.topic_choice import EVENTS, Choice
 from graphflow.bag.writer import BagWriter
 from graphflow.cli import exits, output
 from graphflow.cli.keys import pressed
 from graphflow.cli.temporary_node import visit
 from graphflow.errors import BagError, UsageFault
-from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.empty_hint import nothing_here
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
 from graphflow.names import check_node_name, expand
 from graphflow.qos import Qos

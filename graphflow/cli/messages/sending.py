@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from graphflow.cli import exits, output
 from graphflow.cli.temporary_node import visit
 from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected, ServiceUnavailable
-from graphflow.introspect.echo import block, plain
+from graphflow.introspect.messages.echo import block, plain
 from graphflow.msgs.base import Message
 from graphflow.runtime.actions.client import ClientGoalHandle
 from graphflow.runtime.node import Node

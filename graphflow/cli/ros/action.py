@@ -13,7 +13,7 @@ from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import UsageFault
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE, ACTION_SEND_GOAL
 from graphflow.machines.matching import shared
 from graphflow.names import did_you_mean, expand
@@ -96,7 +96,7 @@ def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
 def echo(name: str, **options: Any) -> int:
     """Show the feedback of an action's goals as it comes. Ctrl-C stops it."""
     from graphflow.cli.messages import echoing
-    from graphflow.introspect.definitions import learn
+    from graphflow.introspect.messages.definitions import learn
 
     full = expand(name, "/", "cli")
     use_project()
@@ -161,7 +161,7 @@ def send_goal(
                 f"TYPE is missing; {full} is of type {types[0]}: graphflow action send_goal {full} {types[0]}"
             )
         if there:
-            from graphflow.introspect.definitions import learn
+            from graphflow.introspect.messages.definitions import learn
 
             learn(view, full, type_name if type_name in there or len(there) > 1 else there[0])
             for text in shared(view.cache.named(f"{full}{ACTION_SEND_GOAL}")):

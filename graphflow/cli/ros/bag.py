@@ -74,7 +74,7 @@ def _chosen(command: F) -> F:
 
 def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) -> Any:
     """Take out of the options which topics are meant."""
-    from graphflow.bag.choice import Choice
+    from graphflow.bag.topic_choice import Choice
 
     named = _names((*topics, *options.pop("named")))
     services = _names(options.pop("services"))
@@ -314,11 +314,11 @@ def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json
     """Show the messages of a bag."""
     from itertools import islice
 
-    from graphflow.bag.choice import Choice
     from graphflow.bag.missing import check_messages, remarks
     from graphflow.bag.reader import Bag
+    from graphflow.bag.topic_choice import Choice
     from graphflow.bag.typed import said as messages
-    from graphflow.introspect import echo as texts
+    from graphflow.introspect.messages import echo as texts
 
     use_project()
     found, named = Bag(path), _names(topics)
@@ -467,11 +467,11 @@ def _progress(folder: Path) -> Callable[[int, int | None], None]:
 
 
 def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Any = None) -> int:
-    from graphflow.bag.choice import Choice
     from graphflow.bag.copying import beside, copy, times
     from graphflow.bag.info import size, topics_of
     from graphflow.bag.missing import check_messages, remarks
     from graphflow.bag.reader import Bag
+    from graphflow.bag.topic_choice import Choice
     from graphflow.bag.writer import BagWriter
 
     bags = []

@@ -80,7 +80,7 @@ def load(
     PROCESS is the word after `process:` in the graph file, or a node that runs in the process.
     """
     from graphflow.cli.projects.node_lookup import find_class
-    from graphflow.introspect.view import refuse_taken_names
+    from graphflow.introspect.graph_view import refuse_taken_names
     from graphflow.runtime.args import parse_ros_args
     from graphflow.supervisor.launching.joining import check_component, planned_component
 

@@ -17,8 +17,8 @@ from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.introspect import concurrency, installation
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.health import Look, examine, needs_second
-from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
 from graphflow.names import is_hidden
 from graphflow.rclpy import enabling

@@ -15,7 +15,7 @@ from graphflow.cli.messages.types import use_project
 from graphflow.cli.verbs import Verb, Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import GraphflowError, SupervisorError, UnknownInterface, UsageFault
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.names import did_you_mean
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -148,7 +148,7 @@ interface.add_command(show, "info")
 @click.option("--no-quotes", is_flag=True, help="Without the quotes around all.")
 def proto(type_name: str, no_quotes: bool) -> None:
     """Print a message with all its fields, for you to fill in; of a service the request, of an action the goal."""
-    from graphflow.introspect.echo import block, plain
+    from graphflow.introspect.messages.echo import block, plain
     from graphflow.msgs import registry
 
     use_project()
@@ -194,7 +194,7 @@ def stubs(folder: str) -> int:
     """Write what editors and type checkers read about the types of a project or workspace. Repeat when one changes."""
     from graphflow.msgs import registry
     from graphflow.msgs import stubs as writer
-    from graphflow.rclpy.stubs import stubs as ros_stubs
+    from graphflow.rclpy.messages.stubs import stubs as ros_stubs
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import project_root, shown
 

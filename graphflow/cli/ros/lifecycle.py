@@ -10,9 +10,9 @@ from graphflow.cli import exits, output
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
-from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
-from graphflow.introspect.view import View
 from graphflow.names import did_you_mean, is_hidden
 
 

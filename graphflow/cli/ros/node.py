@@ -10,8 +10,8 @@ import click
 from graphflow.cli import output
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.domain import domain_id
-from graphflow.introspect.elsewhere import nothing_here
-from graphflow.introspect.view import View
+from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE, GraphCache
 from graphflow.names import is_hidden
 from graphflow.qos import Qos

@@ -15,8 +15,8 @@ from graphflow.cli.verbs import GraphVerbs, Verb
 from graphflow.cli.words import ValueCommand, pattern_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
+from graphflow.introspect.graph_view import View
 from graphflow.introspect.parameters import RemoteParameters, as_declared, read_value
-from graphflow.introspect.view import View
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.wire.liveliness import Kind
 
@@ -226,7 +226,7 @@ def delete(name: str, parameter: str, timeout: float) -> int:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bool) -> int:
     """Show the type, description and limits of parameters; of all when none is named."""
-    from graphflow.introspect.echo import plain
+    from graphflow.introspect.messages.echo import plain
 
     with View(domain_id()) as view:
         if not parameters and not _is_node(view, name):

@@ -11,7 +11,7 @@ from importlib import metadata
 
 from graphflow import __version__
 from graphflow.domain import domain_id, rendezvous_endpoint
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.matching import complaints
 from graphflow.wire.liveliness import Kind
 from graphflow.wire.profile import wire_profile

@@ -41,7 +41,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     """  # noqa: D301 - click wants the character
     from graphflow.cli.projects.node_lookup import find_class
     from graphflow.domain import domain_id
-    from graphflow.introspect.view import refuse_taken_names
+    from graphflow.introspect.graph_view import refuse_taken_names
     from graphflow.names import Resolver
     from graphflow.rclpy.programs import find_program
     from graphflow.runtime.args import cut_off, parse_ros_args

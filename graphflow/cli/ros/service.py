@@ -17,7 +17,7 @@ from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import GraphflowError, ServiceUnavailable, UsageFault
-from graphflow.introspect.view import View
+from graphflow.introspect.graph_view import View
 from graphflow.machines.matching import shared
 from graphflow.names import expand
 from graphflow.wire.liveliness import Kind
@@ -98,7 +98,7 @@ def _tell_shared(view: View, name: str) -> None:
 def echo(name: str, **options: Any) -> int:
     """Show the calls of a service that has introspection, as they are made. Ctrl-C stops it."""
     from graphflow.cli.messages import echoing
-    from graphflow.introspect.definitions import learn
+    from graphflow.introspect.messages.definitions import learn
 
     full = expand(name, "/", "cli")
     use_project()
@@ -132,8 +132,8 @@ def call(
     as_json: bool,
 ) -> int:
     """Call a service: VALUES are the request in YAML, such as "{a: 2, b: 5}"."""
-    from graphflow.introspect.definitions import learn
-    from graphflow.introspect.echo import plain
+    from graphflow.introspect.messages.definitions import learn
+    from graphflow.introspect.messages.echo import plain
     from graphflow.msgs import registry
     from graphflow.msgs.values import from_plain
 

@@ -17,8 +17,8 @@ from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, messages_in, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, EncodeError, UsageFault
-from graphflow.introspect.elsewhere import nothing_here
-from graphflow.introspect.view import View
+from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.matching import verdict
 from graphflow.names import expand, is_hidden
@@ -180,7 +180,7 @@ def _echo_type(full: str, given: str | None) -> str:
     """The type to listen for: the one in the graph, else the given one."""
     from graphflow.cli.messages.types import agree, check_kind, type_of_word
     from graphflow.errors import SupervisorError
-    from graphflow.introspect.definitions import learn
+    from graphflow.introspect.messages.definitions import learn
 
     try:
         with View(domain_id()) as view:
@@ -321,7 +321,7 @@ def _learn(*topics: str) -> None:
     """Make the types of topics known, as far as they are there."""
     from graphflow.cli.messages.types import use_project
     from graphflow.errors import SupervisorError
-    from graphflow.introspect.definitions import learn
+    from graphflow.introspect.messages.definitions import learn
 
     use_project()
     try:
@@ -361,7 +361,7 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     from graphflow.cli.messages import publishing
     from graphflow.cli.messages.types import agree, check_kind, refuse_turned, type_of_word, use_project
     from graphflow.errors import SupervisorError
-    from graphflow.introspect.definitions import learn
+    from graphflow.introspect.messages.definitions import learn
 
     use_project()
     refuse_turned(name, type_name, "topic pub")

@@ -36,9 +36,9 @@ from graphflow.runtime.endpoints.service_client import DISCOVERY_GRACE, ServiceC
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.mistakes.network.other_domains import alone_here
 from graphflow.runtime.mistakes.network.unserved import Unserved, nobody_acts
+from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, SpeaksRos
 from graphflow.runtime.mistakes.unentered import Unentered
 from graphflow.runtime.part import Host, Part
-from graphflow.runtime.rclpy_words import MadeByNodes, SpeaksRos
 from graphflow.times import to_ns
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.goal_status import states_in

@@ -33,8 +33,8 @@ from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.endpoints.services import ServiceServer
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, SpeaksRos
 from graphflow.runtime.part import Host, Part
-from graphflow.runtime.rclpy_words import MadeByNodes, SpeaksRos
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire import attachment
 from graphflow.wire.goal_status import GoalStates

@@ -19,8 +19,8 @@ from graphflow.qos import Qos
 from graphflow.runtime.call_site import here
 from graphflow.runtime.declarations.checks import check_group, check_name, check_on_event, check_qos, check_type
 from graphflow.runtime.endpoints.service_events import Introspection
+from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, in_our_words
 from graphflow.runtime.parameters.params import Parameters
-from graphflow.runtime.rclpy_words import MadeByNodes, in_our_words
 
 if TYPE_CHECKING:
     from graphflow.runtime.actions.client import GoalClient

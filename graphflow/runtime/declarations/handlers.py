@@ -29,7 +29,7 @@ from graphflow.runtime.declarations.checks import (
 )
 from graphflow.runtime.declarations.declare import HOOK_MARK, Group, Param, ParamHook
 from graphflow.runtime.endpoints.service_events import Introspection
-from graphflow.runtime.rclpy_words import in_our_words
+from graphflow.runtime.mistakes.rclpy_words import in_our_words
 
 M = TypeVar("M", bound=Message)
 F = TypeVar("F", bound=Callable[..., Any])

@@ -11,8 +11,8 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.runtime.mistakes.overruns import Overruns
+from graphflow.runtime.mistakes.rclpy_words import in_our_words
 from graphflow.runtime.part import Host, Part
-from graphflow.runtime.rclpy_words import in_our_words
 
 
 class TimerInfo(NamedTuple):

@@ -21,7 +21,7 @@ from graphflow.names import did_you_mean, nearest
 from graphflow.runtime.importing import importing
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.errors.python_errors import remark_on
-from graphflow.runtime.mistakes.slips import slips
+from graphflow.runtime.mistakes.source.slips import slips
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_options import why_not
 from graphflow.typographic import plain

@@ -242,7 +242,7 @@ class _Launch:
         add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
         self._starter.begin_probe(plan.classes(), plan.root)
-        import graphflow.introspect.view  # noqa: F401 - overlaps with the probe
+        import graphflow.introspect.graph_view  # noqa: F401 - overlaps with the probe
 
         interfaces = read_interfaces(self._starter.probed())
         problems = check(plan, interfaces)
@@ -254,7 +254,7 @@ class _Launch:
     async def _claim_and_supervise(
         self, plan: Plan, domain: int, interfaces: Interfaces, step_types: dict[str, str]
     ) -> int:
-        from graphflow.introspect.view import refuse_taken_names
+        from graphflow.introspect.graph_view import refuse_taken_names
         from graphflow.supervisor import rundir
         from graphflow.supervisor.processes.jobs import first_starts
         from graphflow.transport.config import reaches_out

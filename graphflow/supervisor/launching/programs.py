@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from graphflow.graph.plan import PlannedNode
-from graphflow.introspect.echo import flow
+from graphflow.introspect.messages.echo import flow
 from graphflow.names import split
 from graphflow.workspace.packages import uses_ros
 

@@ -15,7 +15,7 @@ from graphflow.runtime.declarations.declare import Param, Publisher
 from graphflow.runtime.declarations.handlers import subscription, timer
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
-from graphflow.transport.loop import new_event_loop
+from graphflow.transport.event_loop.loop import new_event_loop
 from graphflow.transport.memory import Network
 
 LIMIT = 1.0

@@ -28,7 +28,7 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.ending import StopRequest, catch_signals
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import log_level, setup_console
-from graphflow.runtime.managed import ManagedCore
+from graphflow.runtime.managed.managed_core import ManagedCore
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
@@ -42,7 +42,7 @@ from graphflow.supervisor.launching.classes import add_root, import_class
 from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.orphaned import LOG_VARIABLE, Orphan
 from graphflow.system import end_with_parent
-from graphflow.transport import loop
+from graphflow.transport.event_loop import loop
 
 STOP_SIGNALS = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
 """Signals that the preload process blocks; a worker unblocks them once it can act on them."""

@@ -11,16 +11,16 @@ from textual.widget import Widget
 from textual.widgets import DataTable, Input, Static
 
 from graphflow.errors import EncodeError, GraphflowError
-from graphflow.introspect.echo import block, flow, plain, truncated
+from graphflow.introspect.messages.echo import block, flow, plain, truncated
 from graphflow.msgs import registry
 from graphflow.names import is_hidden
-from graphflow.tui.actions import Action
-from graphflow.tui.form import Form, form_for
-from graphflow.tui.hub import Hub
-from graphflow.tui.lines import Lines
-from graphflow.tui.logs import plain_text
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import plain_text
 from graphflow.tui.panes import Content
-from graphflow.tui.table import FIND, ORDER, Cells, TableView
+from graphflow.tui.widgets.form import Form, form_for
+from graphflow.tui.widgets.line_view import LineView
+from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
 from graphflow.wire.liveliness import Kind
 
 CALL_LIMIT = 10.0
@@ -67,7 +67,7 @@ class Calls(TableView):
         self._type = ""
         self._form: Form | None = None
         self._shell = Static("", classes="shell", markup=False)
-        self._answers = Lines(2000, wraps=True, copies=True)
+        self._answers = LineView(2000, wraps=True, copies=True)
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
@@ -82,14 +82,18 @@ class Calls(TableView):
         return f"call {self.about}" if self._form is not None else "services"
 
     def rows(self) -> dict[str, Cells]:
-        live, ink = self.hub.live, self.ink
+        live, colours = self.hub.live, self.colours
         if live is None:
             return {}
         found: dict[str, Cells] = {}
         for e in live.cache.endpoints(Kind.SERVICE):
             if not self._hidden_too and (is_hidden(e.name) or e.name.endswith(_OF_EVERY_NODE)):
                 continue
-            found[e.name] = (Text(e.name), Text(e.type, style=ink.dim), Text(e.node_name, style=ink.node(e.node_name)))
+            found[e.name] = (
+                Text(e.name),
+                Text(e.type, style=colours.dim),
+                Text(e.node_name, style=colours.node(e.node_name)),
+            )
         return found
 
     def look(self, now: float) -> None:
@@ -185,16 +189,16 @@ class Calls(TableView):
         async def call() -> None:
             assert self.hub.live is not None
             began = time.monotonic()
-            ink = self.ink
-            self._answers.extend([Text(f"▶ {flow(values)}", style=ink.accent)])
+            colours = self.colours
+            self._answers.extend([Text(f"▶ {flow(values)}", style=colours.accent)])
             try:
                 answer = await self.hub.live.ask(lambda g: g.call(name, type_name, message, CALL_LIMIT))
             except GraphflowError as error:
-                self._answers.extend(Text(plain_text(line), style=ink.bad) for line in str(error).split("\n"))
+                self._answers.extend(Text(plain_text(line), style=colours.bad) for line in str(error).split("\n"))
                 return
             lines = block(truncated(plain(answer))).split("\n")
             took = f"◀ after {(time.monotonic() - began) * 1000:.0f} ms"
-            self._answers.extend([Text(took, style=ink.good), *(f"  {plain_text(line)}" for line in lines[:500])])
+            self._answers.extend([Text(took, style=colours.good), *(f"  {plain_text(line)}" for line in lines[:500])])
 
         self.work(call)
 

@@ -14,17 +14,17 @@ from textual.widget import Widget
 from textual.widgets import DataTable, Input, Static
 
 from graphflow.errors import EncodeError, GraphflowError
-from graphflow.introspect.echo import flow, plain, truncated
+from graphflow.introspect.messages.echo import flow, plain, truncated
 from graphflow.msgs import registry
 from graphflow.times import ago
-from graphflow.tui.actions import Action
-from graphflow.tui.dialogs import Item, Pick
-from graphflow.tui.form import Form, form_for
-from graphflow.tui.hub import Hub
-from graphflow.tui.logs import plain_text
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import plain_text
+from graphflow.tui.feeds.topic_monitor import TopicMonitor
 from graphflow.tui.panes import Content
-from graphflow.tui.table import FIND, ORDER, Cells, TableView
-from graphflow.tui.tap import Tap
+from graphflow.tui.widgets.dialogs import Item, Pick
+from graphflow.tui.widgets.form import Form, form_for
+from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
 
 STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "canceled", "aborted")
 _INKS = ("dim", "warn", "accent", "warn", "good", "dim", "bad")
@@ -76,7 +76,7 @@ class Goals(TableView):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._taps: dict[str, list[Tap]] = {}
+        self._taps: dict[str, list[TopicMonitor]] = {}
         self._types: dict[str, str] = {}
         self._goals: dict[str, Goal] = {}
         self._form: Form | None = None
@@ -111,7 +111,10 @@ class Goals(TableView):
         self._types = {name: actions[name][0] for name in wanted if actions[name]}
         for name in wanted:
             if name not in self._taps:
-                status, feedback = Tap(live, f"{name}/_action/status"), Tap(live, f"{name}/_action/feedback")
+                status, feedback = (
+                    TopicMonitor(live, f"{name}/_action/status"),
+                    TopicMonitor(live, f"{name}/_action/feedback"),
+                )
                 status.heard, feedback.heard = partial(self._status, name), partial(self._feedback, name)
                 self._taps[name] = [status, feedback]
         for name in [n for n in self._taps if n not in wanted]:
@@ -146,25 +149,25 @@ class Goals(TableView):
             goal.feedback = plain_text(flow(truncated(plain(message.feedback), 16)))[:FEEDBACK]
 
     def rows(self) -> dict[str, Cells]:
-        ink, now = self.ink, time.monotonic()
+        colours, now = self.colours, time.monotonic()
         found: dict[str, Cells] = {}
         for key, goal in sorted(self._goals.items(), key=lambda item: (item[1].state >= 4, -item[1].began)):
             span = (goal.ended or now) - goal.began
             found[key] = (
-                Text(key[:8], style=ink.dim),
+                Text(key[:8], style=colours.dim),
                 Text(goal.action),
-                Text(f"{_GLYPHS[goal.state]} {STATES[goal.state]}", style=getattr(ink, _INKS[goal.state])),
+                Text(f"{_GLYPHS[goal.state]} {STATES[goal.state]}", style=getattr(colours, _INKS[goal.state])),
                 Text(ago(span), justify="right"),
-                Text(goal.feedback, style=ink.dim),
+                Text(goal.feedback, style=colours.dim),
             )
         for name, type_ in self._types.items():
             if not any(g.action == name for g in self._goals.values()):
                 found[name] = (
                     Text(""),
                     Text(name),
-                    Text("no goal yet", style=ink.dim),
+                    Text("no goal yet", style=colours.dim),
                     "",
-                    Text(f"{type_}  n sends one", style=ink.dim),
+                    Text(f"{type_}  n sends one", style=colours.dim),
                 )
         return found
 

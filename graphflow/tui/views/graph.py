@@ -12,14 +12,14 @@ from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
-from graphflow.introspect.drawing import Box, Cell, Drawing, draw
-from graphflow.introspect.picture import Picture, mermaid, picture
-from graphflow.tui.actions import Action, shown
-from graphflow.tui.hub import Hub
-from graphflow.tui.ink import Ink
-from graphflow.tui.lines import Lines
+from graphflow.introspect.drawing.layered import Box, Cell, Drawing, draw
+from graphflow.introspect.drawing.picture import Picture, mermaid, picture
+from graphflow.tui.commands.actions import Action, shown
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.line_view import LineView
 
 BOXES = 120
 """Boxes that are laid out; a larger graph is collapsed by its namespaces first."""
@@ -27,7 +27,7 @@ SIDEWAYS = 20
 """Columns that one press of an arrow key scrolls."""
 
 
-class Boxes(Lines):
+class Boxes(LineView):
     """The drawn graph, which scrolls both ways."""
 
     wide = 0
@@ -110,27 +110,27 @@ class Graph(View):
                 made = picture(live.cache, self.about, self._collapsed, everything=self._everything)
         bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
         labels = {t: f"{'✖ ' if t in bad else ''}{_label(t, live.numbers.published(t))}" for t in made.topics}
-        wanted = (made, tuple(labels.values()), self._chosen, self.ink)
+        wanted = (made, tuple(labels.values()), self._chosen, self.colours)
         if wanted == self._drawn:
             return
         self._drawn, self._picture = wanted, made
         self._draw(made, labels)
 
     def _draw(self, made: Picture, labels: dict[str, str]) -> None:
-        boxes, ink = self._boxes, self.ink
+        boxes, colours = self._boxes, self.colours
         top, left = boxes.scroll_offset.y, boxes.scroll_offset.x
         if not made.nodes:
-            boxes.replace([Text("no nodes yet", style=ink.dim)])
+            boxes.replace([Text("no nodes yet", style=colours.dim)])
             return
         if len(made.nodes) + len(made.topics) > BOXES:
             many = f"{len(made.nodes)} nodes are too many to draw"
             text = f"{many}; give a namespace: {shown(self.console.prefix)} : graph /NAME"
-            boxes.replace([Text(text, style=ink.warn)])
+            boxes.replace([Text(text, style=colours.warn)])
             return
         parts = {n: Box((n,)) for n in made.nodes} | {t: Box(tuple(labels[t].split("\n")), False) for t in made.topics}
         self._drawing = draw(parts, ((arrow.source, arrow.target) for arrow in made.arrows))
         boxes.wide = max((sum(len(cell.text) for cell in row) for row in self._drawing.rows), default=0)
-        boxes.replace(_rows(self._drawing, made, self._chosen, ink))
+        boxes.replace(_rows(self._drawing, made, self._chosen, colours))
         boxes.scroll_to(x=left, y=top, animate=False, immediate=True)
 
     def _names(self) -> list[str]:
@@ -196,18 +196,24 @@ def _label(topic: str, rate: float | None) -> str:
     return topic if not rate else f"{topic}\n{rate:.1f} Hz"
 
 
-def _rows(drawing: Drawing, made: Picture, chosen: str, ink: Ink) -> Iterator[Text]:
+def _rows(drawing: Drawing, made: Picture, chosen: str, colours: Colours) -> Iterator[Text]:
     """The drawn graph, a text a row."""
     topics = set(made.topics)
     bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
 
     def style(cell: Cell) -> Style:
         if cell.box:
-            base = ink.bad if cell.box in bad & topics else ink.dim if cell.box in topics else ink.node(cell.box)
-            return base + ink.cursor + Style(bold=True) if cell.box == chosen else base
+            base = (
+                colours.bad
+                if cell.box in bad & topics
+                else colours.dim
+                if cell.box in topics
+                else colours.node(cell.box)
+            )
+            return base + colours.cursor + Style(bold=True) if cell.box == chosen else base
         if cell.arrow == chosen:
-            return ink.accent
-        return ink.bad if cell.arrow in bad else ink.dim
+            return colours.accent
+        return colours.bad if cell.arrow in bad else colours.dim
 
     for row in drawing.rows:
         text = Text(no_wrap=True)

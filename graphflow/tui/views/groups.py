@@ -13,19 +13,19 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from graphflow.introspect import concurrency
-from graphflow.introspect.view import View as Graph
+from graphflow.introspect.graph_view import View as Graph
 from graphflow.machines.waits.explain import group_of, headline, title, wanted
 from graphflow.machines.waits.group_fixes import Fix, Thread, fixes
 from graphflow.machines.waits.remedies import remedies
 from graphflow.machines.waits.rings import Deadlock
 from graphflow.machines.waits.wait_graph import FREE, ActivityView, GroupView, WaitGraph
-from graphflow.tui.actions import Action
-from graphflow.tui.dialogs import Item, Pick
-from graphflow.tui.hub import Hub
-from graphflow.tui.lines import Lines
-from graphflow.tui.logs import Record, plain_text
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import Record, plain_text
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.widgets.dialogs import Item, Pick
+from graphflow.tui.widgets.line_view import LineView
 
 ANSWER_LIMIT = 2.0
 """Seconds that a node has to change its groups."""
@@ -44,7 +44,7 @@ class Row(NamedTuple):
     """The report whose line it is, for one that points to the line that /rosout has for it."""
 
 
-class RowLines(Lines):
+class RowLines(LineView):
     """Lines that may point into the source."""
 
     def draw(self, row: Row) -> Iterable[tuple[str, Style]]:
@@ -176,90 +176,105 @@ class Groups(View):
     # what is drawn
 
     def _deadlock_rows(self) -> Iterator[Row]:
-        ink, graph = self.ink, self._graph
+        colours, graph = self.colours, self._graph
         for deadlock, found in zip(self._deadlocks, self._fixes, strict=True):
             for i, line in enumerate(headline(deadlock, graph).split("\n")):
-                yield Row(Text(f" ✖ {line}" if i == 0 else f"   {line.strip()}", style=ink.bad))
+                yield Row(Text(f" ✖ {line}" if i == 0 else f"   {line.strip()}", style=colours.bad))
             yield from self._ring(deadlock)
             for name in deadlock.victims[:10]:
-                yield Row(Text(f"     behind them: {title(graph.activities[name])}", style=ink.dim))
+                yield Row(Text(f"     behind them: {title(graph.activities[name])}", style=colours.dim))
             yield from self._fix_rows(deadlock, found)
             yield Row(Text(""))
 
     def _fix_rows(self, deadlock: Deadlock, found: list[Fix]) -> Iterator[Row]:
         """The ways to end a deadlock: those that a key makes, else those in the code."""
-        ink, graph = self.ink, self._graph
+        colours, graph = self.colours, self._graph
         for i, fix in enumerate(found):
             caution = f"   ({fix.caution})" if fix.caution else ""
-            text = (("   f  ", ink.accent), (fix.title, ink.strong)) if i == 0 else (("   F  ", ink.accent), fix.title)
-            yield Row(Text.assemble(*text, (caution, ink.dim)))
+            text = (
+                (("   f  ", colours.accent), (fix.title, colours.strong))
+                if i == 0
+                else (("   F  ", colours.accent), fix.title)
+            )
+            yield Row(Text.assemble(*text, (caution, colours.dim)))
             if i == 0:
                 regrouping = fix.made_in(graph.regrouping(fix.node))
                 lines = regrouping.lines(fix.node, "")
-                yield Row(Text(f"      $ {fix.command}", style=ink.dim))
-                yield Row(Text(f"      {regrouping.where} {lines[0]}", style=ink.dim))
-                yield from (Row(Text(f"        {line}", style=ink.dim)) for line in lines[1:])
+                yield Row(Text(f"      $ {fix.command}", style=colours.dim))
+                yield Row(Text(f"      {regrouping.where} {lines[0]}", style=colours.dim))
+                yield from (Row(Text(f"        {line}", style=colours.dim)) for line in lines[1:])
         if found:
             yield Row(
-                Text.assemble(("   r  ", ink.accent), ("the whole report, with what ends it in the code", ink.dim))
+                Text.assemble(
+                    ("   r  ", colours.accent),
+                    ("the whole report, with what ends it in the code", colours.dim),
+                )
             )
             return
-        yield Row(Text("   no key ends it while it runs; what does, in the code:", style=ink.warn))
+        yield Row(Text("   no key ends it while it runs; what does, in the code:", style=colours.warn))
         for remedy in remedies(deadlock, graph) or ["see the report: r"]:
             for line in remedy.split("\n"):
-                yield Row(Text(f"   {plain_text(line)}", style=ink.text))
+                yield Row(Text(f"   {plain_text(line)}", style=colours.text))
 
     def _ring(self, deadlock: Deadlock) -> Iterator[Row]:
         """The ring, drawn: each member waits for the one below, the last for the first."""
-        ink, graph, last = self.ink, self._graph, len(deadlock.ring) - 1
+        colours, graph, last = self.colours, self._graph, len(deadlock.ring) - 1
         for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
             activity = graph.activities[name]
             place = _place(activity)
-            bar = ("   ┌▶ ", ink.bad) if i == 0 else ("   │  ", ink.bad)
-            yield Row(Text.assemble(bar, (title(activity), ink.node(activity.node))), place)
+            bar = ("   ┌▶ ", colours.bad) if i == 0 else ("   │  ", colours.bad)
+            yield Row(Text.assemble(bar, (title(activity), colours.node(activity.node))), place)
             held = group_of(activity, graph)
             holds = f"holds group '{held}', " if held else ""
             where = f"   {_short(place)} in {activity.function}" if place else ""
             since = f"for {activity.age:.1f} s"
             text = f"{holds}waits {since} for {wanted(edge, graph)}"
-            yield Row(Text.assemble(("   │    ", ink.bad), (text, ink.text), (where, ink.accent)), place)
+            yield Row(
+                Text.assemble(("   │    ", colours.bad), (text, colours.text), (where, colours.accent)),
+                place,
+            )
             queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
             if queue is not None and group is not None and group.name:
                 needs = f"which {queue.label} of {queue.node} gives: it needs group '{group.name}'"
-                yield Row(Text.assemble(("   │    ", ink.bad), (needs, ink.dim)))
-            yield Row(Text("   └── back to the first" if i == last else "   │  ▼", style=ink.bad))
+                yield Row(Text.assemble(("   │    ", colours.bad), (needs, colours.dim)))
+            yield Row(Text("   └── back to the first" if i == last else "   │  ▼", style=colours.bad))
 
     def _outcome_rows(self) -> Iterator[Row]:
         """The result of the last change, above the deadlocks that are left, which look like those before it."""
-        ink, is_over = self.ink, not self._deadlocks
+        colours, is_over = self.colours, not self._deadlocks
         if self._made and self._outcome:
-            yield Row(Text(f" {'✔' if is_over else '●'} {self._outcome}", style=ink.good if is_over else ink.warn))
+            yield Row(
+                Text(
+                    f" {'✔' if is_over else '●'} {self._outcome}",
+                    style=colours.good if is_over else colours.warn,
+                )
+            )
 
     def _race_rows(self) -> Iterator[Row]:
         """Updates that were lost: the source alone can be changed, so each line points there."""
-        ink = self.ink
+        colours = self.colours
         for report in self.hub.logs.races:
             for i, line in enumerate(report):
                 text = f" ⇄ {line.text}" if i == 0 else f"   {line.text.strip()}"
-                yield Row(Text(text, style=ink.warn if i == 0 else ink.text), told=report[0])
+                yield Row(Text(text, style=colours.warn if i == 0 else colours.text), told=report[0])
             yield Row(Text(""))
 
     def _made_rows(self) -> Iterator[Row]:
-        ink = self.ink
+        colours = self.colours
         if not self._made:
             return
         for fix in self._made:
-            yield Row(Text(f"   done here: {fix.title}; until the graph stops", style=ink.text))
+            yield Row(Text(f"   done here: {fix.title}; until the graph stops", style=colours.text))
         keep = (
-            ("   w  ", ink.accent),
-            ("keep it in the graph file", ink.strong),
-            (", after showing the change", ink.dim),
+            ("   w  ", colours.accent),
+            ("keep it in the graph file", colours.strong),
+            (", after showing the change", colours.dim),
         )
         yield Row(Text.assemble(*keep))
         yield Row(Text(""))
 
     def _group_rows(self, report: concurrency.ConcurrencyReport) -> Iterator[Row]:
-        ink, graph = self.ink, self._graph
+        colours, graph = self.colours, self._graph
         dead = {name for d in self._deadlocks for name in (*d.ring, *d.victims)}
         by_node: dict[str, list[GroupView]] = {}
         for group in graph.groups.values():
@@ -267,7 +282,7 @@ class Groups(View):
                 by_node.setdefault(group.node, []).append(group)
         for stall in report.stalls:
             for line in stall.split("\n"):
-                yield Row(Text(f" {plain_text(line)}", style=ink.warn))
+                yield Row(Text(f" {plain_text(line)}", style=colours.warn))
         idle = 0
         for node in sorted(by_node):
             for group in sorted(by_node[node], key=lambda g: g.name):
@@ -278,15 +293,17 @@ class Groups(View):
                     continue
                 limit = "no limit" if group.limit is None else f"limit {group.limit}"
                 head = Text.assemble(
-                    (f" {node}", ink.node(node)), (f"  {group.name} ", ink.strong), (f"{limit} ", ink.dim)
+                    (f" {node}", colours.node(node)),
+                    (f"  {group.name} ", colours.strong),
+                    (f"{limit} ", colours.dim),
                 )
-                head.append(_slots(len(holders), group.limit), style=ink.bad if queues else ink.good)
+                head.append(_slots(len(holders), group.limit), style=colours.bad if queues else colours.good)
                 yield Row(head)
                 for activity in holders:
                     yield self._activity_row(activity, "holds it", activity.id in dead)
                 for queue in queues:
                     lost = f", {queue.dropped} dropped" if queue.dropped else ""
-                    yield Row(Text(f"     {queue.label}: {queue.waiting} queued{lost}", style=ink.warn))
+                    yield Row(Text(f"     {queue.label}: {queue.waiting} queued{lost}", style=colours.warn))
         others = [
             a
             for a in graph.activities.values()
@@ -296,34 +313,37 @@ class Groups(View):
             and (not self.about or a.node == self.about)
         ]
         if others:
-            yield Row(Text(" in no group", style=ink.dim))
+            yield Row(Text(" in no group", style=colours.dim))
         for activity in sorted(others, key=lambda a: -a.age):
             yield self._activity_row(activity, "", activity.id in dead)
         if not (self._deadlocks or self.hub.logs.races or self._made):
-            yield Row(Text(" no deadlock; for updates that are lost: graphflow up --races", style=ink.dim))
+            yield Row(Text(" no deadlock; for updates that are lost: graphflow up --races", style=colours.dim))
         if not by_node and not others:
-            yield Row(Text(" no groups: each handler queues behind itself only", style=ink.dim))
+            yield Row(Text(" no groups: each handler queues behind itself only", style=colours.dim))
         elif idle:
             yield Row(
                 Text(
                     f" {idle} group{'s' if idle > 1 else ''} idle; a shows {'them' if idle > 1 else 'it'}",
-                    style=ink.dim,
+                    style=colours.dim,
                 )
             )
 
     def _activity_row(self, activity: ActivityView, deed: str, is_dead: bool) -> Row:
-        ink = self.ink
+        colours = self.colours
         place = _place(activity)
-        text = Text.assemble((f"     {activity.label}", ink.bad if is_dead else ink.text))
+        text = Text.assemble((f"     {activity.label}", colours.bad if is_dead else colours.text))
         if deed:
-            text.append(f" {deed}", style=ink.dim)
+            text.append(f" {deed}", style=colours.dim)
         waits = concurrency.words(activity.wait, self._graph)
         if waits:
-            text.append(f", awaits {waits}, {activity.age:.1f} s", style=ink.warn if activity.age > 1.0 else ink.text)
+            text.append(
+                f", awaits {waits}, {activity.age:.1f} s",
+                style=colours.warn if activity.age > 1.0 else colours.text,
+            )
         else:
-            text.append(" running", style=ink.good)
+            text.append(" running", style=colours.good)
         if place:
-            text.append(f"   {_short(place)}", style=ink.accent)
+            text.append(f"   {_short(place)}", style=colours.accent)
         return Row(text, place)
 
     # actions
@@ -387,7 +407,7 @@ class Groups(View):
             )
             return
         from graphflow.graph.edit import with_group
-        from graphflow.tui.writing import write_nodes
+        from graphflow.tui.widgets.file_changes import write_nodes
 
         made, graph = list(self._made), self._graph
 

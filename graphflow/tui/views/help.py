@@ -10,20 +10,20 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 from textual.widgets import Input
 
-from graphflow.graph.console import known_views
-from graphflow.tui.actions import CONSOLE, Action, keys_of, shown
-from graphflow.tui.hub import Hub
-from graphflow.tui.lines import Lines
+from graphflow.console.views import known_views
+from graphflow.tui.commands.actions import CONSOLE, Action, keys_of, shown
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
 from graphflow.tui.view import View
+from graphflow.tui.widgets.line_view import LineView
 
 KEYS_WIDTH = 22
 """Columns of the keys."""
 _SCROLL = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 
-class KeyLines(Lines):
+class KeyLines(LineView):
     """Keys in a column, and beside it what they do, over several lines if need be."""
 
     def hanging(self, row: Text) -> int | None:
@@ -55,7 +55,7 @@ class Help(View):
 
     def _show(self, wanted: str) -> None:
         rows = list(self._rows(wanted.lower().strip()))
-        self._lines.replace(rows or [Text(f"nothing here has {wanted!r}", style=self.ink.warn)])
+        self._lines.replace(rows or [Text(f"nothing here has {wanted!r}", style=self.colours.warn)])
         self._lines.scroll_home(animate=False, immediate=True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
@@ -68,25 +68,25 @@ class Help(View):
             self._lines.scroll_relative(y=_SCROLL[event.key], animate=False, immediate=True)
 
     def _rows(self, wanted: str) -> Iterator[Text]:
-        ink, prefix = self.ink, self.console.prefix
+        colours, prefix = self.colours, self.console.prefix
         if not wanted:
             yield Text.assemble(
-                ("The prefix is ", ink.text),
-                (shown(prefix), ink.accent),
-                (": press it, let go, then the key.", ink.text),
+                ("The prefix is ", colours.text),
+                (shown(prefix), colours.accent),
+                (": press it, let go, then the key.", colours.text),
             )
         names = [*(name for name in known_views() if name == self._first)]
         for name in names:
             yield from self._view(name, wanted)
         for section, actions in CONSOLE.items():
-            yield from self._section(Text(section, style=ink.strong), actions, wanted)
+            yield from self._section(Text(section, style=colours.strong), actions, wanted)
         for name in known_views():
             if name not in names:
                 yield from self._view(name, wanted)
 
     def _view(self, name: str, wanted: str) -> Iterator[Text]:
-        view, ink = view_class(name), self.ink
-        head = Text.assemble((f"View {name}", ink.strong), (f"   {view.DOC}", ink.dim))
+        view, colours = view_class(name), self.colours
+        head = Text.assemble((f"View {name}", colours.strong), (f"   {view.DOC}", colours.dim))
         yield from self._section(head, view.ACTIONS, wanted, show_empty=not wanted)
 
     def _section(
@@ -99,10 +99,10 @@ class Help(View):
             yield from (Text(""), head, *rows)
 
     def _row(self, keys: str, title: str, shell: str) -> Text:
-        ink = self.ink
-        text = Text.assemble((f"  {keys:{KEYS_WIDTH}}", ink.accent), (f" {title}", ink.text))
+        colours = self.colours
+        text = Text.assemble((f"  {keys:{KEYS_WIDTH}}", colours.accent), (f" {title}", colours.text))
         if shell:
-            text.append(f"   $ {shell}", style=ink.dim)
+            text.append(f"   $ {shell}", style=colours.dim)
         return text
 
     @property

@@ -11,12 +11,12 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 from textual.widgets import Input
 
-from graphflow.tui.actions import Action
-from graphflow.tui.hub import Hub
-from graphflow.tui.lines import KEPT, Lines
-from graphflow.tui.logs import LEVELS, WARNING, Logs, Record
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import LEVELS, WARNING, Logs, Record
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.widgets.line_view import KEPT, LineView
 
 _PLACE = re.compile(r'(?:File "([^"]+)", line (\d+))|((?:[\w./-]+/)?[\w-]+\.(?:py|yaml)):(\d+)')
 _NAME_WIDTH = 18
@@ -24,7 +24,7 @@ MORE_ROOM, MORE_INDENT = 60, 2
 """Columns beside the names that the further lines of a report need; with fewer, they begin at that column."""
 
 
-class LogLines(Lines):
+class LogLines(LineView):
     """The records, each on one line."""
 
     HAS_SEARCH = False
@@ -45,28 +45,28 @@ class LogLines(Lines):
         return MORE_INDENT, " " * ((len(row.text) - len(text)) // 2) + text
 
     def draw(self, row: Record) -> Iterable[tuple[str, Style]]:
-        ink, log = self.ink, self._log
+        colours, log = self.colours, self._log
         indent, text = self._indented(row)
         if row.is_more:
-            yield " " * indent, ink.dim
+            yield " " * indent, colours.dim
         else:
             if log.size.width > 60:
-                yield f"{time.strftime('%H:%M:%S', time.localtime(row.stamp))} ", ink.dim
+                yield f"{time.strftime('%H:%M:%S', time.localtime(row.stamp))} ", colours.dim
             if log.shows_names:
                 name = row.node if len(row.node) <= log.name_width else "…" + row.node[1 - log.name_width :]
-                yield f"{name.ljust(log.name_width)} ", ink.node(row.node)
+                yield f"{name.ljust(log.name_width)} ", colours.node(row.node)
             if row.level >= 2:
-                yield f"{LEVELS[row.level]} ", ink.level(row.level)
-        style = ink.level(row.level)
+                yield f"{LEVELS[row.level]} ", colours.level(row.level)
+        style = colours.level(row.level)
         found = log.pattern.search(text) if log.pattern is not None else None
         if found is None or found.end() == found.start():
             yield text, style
         else:
             yield text[: found.start()], style
-            yield found.group(), ink.match
+            yield found.group(), colours.match
             yield text[found.end() :], style
         if row.times > 1:
-            yield f"  x{row.times}", ink.accent
+            yield f"  x{row.times}", colours.accent
 
 
 class Log(View):

@@ -14,14 +14,14 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 from textual.widgets import Input
 
-from graphflow.tui.actions import Action, shown
-from graphflow.tui.completion import Completer, completed, nothing_to_complete
-from graphflow.tui.history import without_program
-from graphflow.tui.hub import Hub
-from graphflow.tui.lines import Lines
-from graphflow.tui.logs import plain_text
+from graphflow.tui.commands.actions import Action, shown
+from graphflow.tui.commands.completion import Completer, completed, nothing_to_complete
+from graphflow.tui.commands.history import without_program
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import plain_text
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.widgets.line_view import LineView
 
 CHUNK = 1 << 16
 WAITING = 2_000
@@ -46,7 +46,7 @@ class Prompt(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._lines = Lines(10_000, wraps=True, copies=True)
+        self._lines = LineView(10_000, wraps=True, copies=True)
         self._input = Input(placeholder="a command, such as: topic list", classes="line")
         self._completer = Completer(hub)
         self._runs_at_once = bool(self.options.pop("run", False))
@@ -69,9 +69,9 @@ class Prompt(View):
             self._run(self.about, at_once=True)
         elif self.about:  # it came back with the windows: what it did need not be wanted twice
             self._input.value = self.about
-            self._lines.extend([Text("enter runs this again", style=self.ink.dim)])
+            self._lines.extend([Text("enter runs this again", style=self.colours.dim)])
         else:
-            self._lines.extend(Text(line, style=self.ink.dim) for line in WELCOME)
+            self._lines.extend(Text(line, style=self.colours.dim) for line in WELCOME)
 
     @property
     def title(self) -> str:
@@ -89,8 +89,8 @@ class Prompt(View):
     def look(self, now: float) -> None:
         if not self._fresh:
             return
-        ink = self.ink
-        rows = [Text(text, style=getattr(ink, style)) for text, style in self._fresh]
+        colours = self.colours
+        rows = [Text(text, style=getattr(colours, style)) for text, style in self._fresh]
         self._fresh.clear()
         self._lines.extend(rows)
 
@@ -133,7 +133,7 @@ class Prompt(View):
         if len(choices) > 1 and choices != self._offered:
             self._offered = choices
             shown = "  ".join(choices[:60]) + (f"  ... {len(choices)} in all" if len(choices) > 60 else "")
-            self._lines.extend([Text(shown, style=self.ink.dim)])
+            self._lines.extend([Text(shown, style=self.colours.dim)])
 
     # what runs
 
@@ -149,16 +149,16 @@ class Prompt(View):
     async def _stream(self, text: str) -> None:
         self._was_interrupted = False
         self._lines.action_bottom()
-        self._lines.extend([Text(f"$ graphflow {text}", style=self.ink.accent)])
+        self._lines.extend([Text(f"$ graphflow {text}", style=self.colours.accent)])
         self._lost = 0
         try:
             words = shlex.split(text)
         except ValueError as error:
-            self._lines.extend([Text(f"{error}: check the quotes", style=self.ink.bad)])
+            self._lines.extend([Text(f"{error}: check the quotes", style=self.colours.bad)])
             return
         refusal = _refusal(words, shown(self.console.prefix))
         if refusal:
-            self._lines.extend([Text(refusal, style=self.ink.warn)])
+            self._lines.extend([Text(refusal, style=self.colours.warn)])
             return
         self.console.did(f"graphflow {text}")
         env = {**os.environ, "GRAPHFLOW_ENDS_WITH": str(os.getpid()), "COLUMNS": str(max(40, self.size.width - 1))}

@@ -14,12 +14,12 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from graphflow.reading import found_bytes
-from graphflow.tui.actions import Action
-from graphflow.tui.hub import Hub
-from graphflow.tui.lines import Lines
-from graphflow.tui.logs import plain_text
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import plain_text
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.widgets.line_view import LineView
 
 LONGEST = 1 << 20
 """Bytes of a file that are shown."""
@@ -45,7 +45,7 @@ class Source(View):
         name, _, line = self.about.rpartition(":")
         self._line = int(line) if line.isdecimal() else 1
         self._file = find_file(name if line.isdecimal() else self.about, self._roots())
-        self._lines = Lines(50_000)
+        self._lines = LineView(50_000)
         self._lines.follows = False
 
     def _roots(self) -> list[Path]:
@@ -61,22 +61,22 @@ class Source(View):
 
     def on_mount(self) -> None:
         if self._file is None:
-            self._lines.replace([Text(f"there is no file {self.about} here", style=self.ink.warn)])
+            self._lines.replace([Text(f"there is no file {self.about} here", style=self.colours.warn)])
             return
         try:
             data = found_bytes(self._file)[:LONGEST]
         except OSError as error:
-            self._lines.replace([Text(f"{self._file}: {error.strerror}", style=self.ink.warn)])
+            self._lines.replace([Text(f"{self._file}: {error.strerror}", style=self.colours.warn)])
             return
         code = "\n".join(plain_text(line) for line in data.decode(errors="replace").split("\n"))
-        theme = "monokai" if self.ink.is_dark else "default"
+        theme = "monokai" if self.colours.is_dark else "default"
         lexer = Syntax.guess_lexer(str(self._file), code)
         rows = Syntax("", lexer, theme=theme, background_color="default").highlight(code).split("\n")
         width = len(str(len(rows)))
         for number, row in enumerate(rows, 1):
             mark = "▶" if number == self._line else " "
-            row.stylize_before(self.ink.text)
-            self._lines.rows.append(Text.assemble((f"{mark}{number:>{width}} ", self.ink.dim), row))
+            row.stylize_before(self.colours.text)
+            self._lines.rows.append(Text.assemble((f"{mark}{number:>{width}} ", self.colours.dim), row))
         self._lines.extend([])
         self.call_after_refresh(self.do_back)
 

@@ -8,8 +8,8 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.widgets import Static
 
-from graphflow.tui.actions import Action
-from graphflow.tui.hub import Hub
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.panes import Content
 from graphflow.tui.views.groups import Groups
 
@@ -40,13 +40,13 @@ class Tour(Groups):
 
     def look(self, now: float) -> None:
         super().look(now)
-        ink = self.ink
-        text = Text(f"{self.options.get('title', '')}\n\n", style=ink.strong)
+        colours = self.colours
+        text = Text(f"{self.options.get('title', '')}\n\n", style=colours.strong)
         said, keys = self._advice()
-        text.append(f"{said}\n", style=ink.text)
+        text.append(f"{said}\n", style=colours.text)
         for key, what in [*keys, ("q", "leave the tour; its graph goes down")]:
-            text.append(f"  {key}", style=ink.accent)
-            text.append(f"  {what}\n", style=ink.text)
+            text.append(f"  {key}", style=colours.accent)
+            text.append(f"  {what}\n", style=colours.text)
         self._guide.update(text)
 
     def _advice(self) -> tuple[str, list[tuple[str, str]]]:

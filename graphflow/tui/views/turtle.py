@@ -12,15 +12,15 @@ from textual.widgets import Static
 
 from graphflow.errors import GraphflowError
 from graphflow.names import is_hidden
-from graphflow.tui.actions import Action
-from graphflow.tui.canvas import WORLD, Drawing, TurtleCanvas, read_picture
-from graphflow.tui.hub import Hub
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.topic_monitor import TopicMonitor
 from graphflow.tui.panes import Content
-from graphflow.tui.tap import Tap
 from graphflow.tui.view import View
+from graphflow.tui.widgets.canvas import WORLD, Drawing, TurtleCanvas, read_picture
 
 if TYPE_CHECKING:
-    from graphflow.introspect.view import View as Graph
+    from graphflow.introspect.graph_view import View as Graph
 
 # What messages need is imported when there is a graph: this view is in the first window that is drawn.
 
@@ -66,7 +66,7 @@ class Turtles(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._taps: dict[str, Tap] = {}
+        self._taps: dict[str, TopicMonitor] = {}
         self._drawing = Drawing()
         self._canvas = TurtleCanvas(self._drawing)
         self._driven = self.about
@@ -123,7 +123,7 @@ class Turtles(View):
             self._drawing.turtles.pop(name, None)
         for name, topic in wanted.items():
             if name not in self._taps:
-                tap = self._taps[name] = Tap(self.hub.live, topic)
+                tap = self._taps[name] = TopicMonitor(self.hub.live, topic)
                 tap.heard = self._heard(name)
                 self.hub.live.publisher(Twist, f"/{name}/cmd_vel")  # so that it is known when a key is pressed
         if self._wanted in self._taps:

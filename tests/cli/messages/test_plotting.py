@@ -12,7 +12,7 @@ import pytest
 from graphflow.bag.contents import Topic
 from graphflow.cli.messages.plotting import PlotOptions, _finished, _show, curves_of, wanted
 from graphflow.errors import UsageFault
-from graphflow.introspect.curves import Curve
+from graphflow.introspect.drawing.curves import Curve
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.sensor_msgs.msg import LaserScan
 from graphflow.msgs.std_msgs.msg import Float64

@@ -15,7 +15,7 @@ from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.mistakes.other_threads import tell_strangers
 from graphflow.system import is_portable
 from graphflow.testing import Graph
-from graphflow.transport.loop import new_event_loop
+from graphflow.transport.event_loop.loop import LOOP_VARIABLE, new_event_loop
 from tests.runtime.cast import Talker
 
 
@@ -110,8 +110,9 @@ WAY = "changes something of the event loop's, which notices it when something el
 
 
 @pytest.mark.skipif(is_portable(), reason="asyncio's own loop does not look")
-def test_what_a_thread_does_to_the_loop(caplog: pytest.LogCaptureFixture) -> None:
+def test_what_a_thread_does_to_the_loop(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     """Is told once with its line and the way, whether asyncio's code is between or not."""
+    monkeypatch.setenv(LOOP_VARIABLE, "asyncio")
 
     async def main() -> None:
         loop = asyncio.get_running_loop()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.graph.console import VIEWS
-from graphflow.tui.actions import console_actions, keys_of
+from graphflow.console.views import VIEWS
+from graphflow.tui.commands.actions import console_actions, keys_of
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
 from tests.tui.stage import stage

@@ -181,7 +181,7 @@ def written(folder: Path, node: str, lines: list[str]) -> None:
 
 async def test_a_quiet_node_in_a_flood(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its own log has all its lines, read from its file; the merged one says that older lines are gone."""
-    monkeypatch.setattr("graphflow.tui.logs.RECORDS", 50)
+    monkeypatch.setattr("graphflow.tui.feeds.log_feed.RECORDS", 50)
     written(tmp_path, "quiet", [f"word {i}" for i in range(10)])
     async with stage(Content("log", "/quiet"), Content("log"), nodes=("/quiet",), folder=tmp_path) as s:
         s.console.hub.logs.records = deque(maxlen=50)

@@ -14,9 +14,9 @@ from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from graphflow.rclpy import tracebacks
+from graphflow.rclpy.hints import tracebacks
 from rclpy.context import Context
-from rclpy.impl.spun import check_executor, check_future, check_node, tell_unused
+from rclpy.impl.mistakes.spin_arguments import check_executor, check_future, check_node, tell_unused
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -224,6 +224,6 @@ def _take_out(node: Node, executor: Executor, former: Executor | None, what: str
     """Spin a node no more that was added for `what`."""
     executor.remove_node(node)
     if former is not None and former is not executor:
-        from rclpy.impl.taken_out import watch
+        from rclpy.impl.watches.orphans import watch
 
         watch(node, former, what)

@@ -8,17 +8,17 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import ServerLost
-from graphflow.rclpy import messages
+from graphflow.rclpy.messages import classes
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.service_events import ServiceEvent
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import Handle
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.task import Future
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.life import Life
+    from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.endpoints.threaded import Answered, ThreadedClient
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
@@ -40,7 +40,7 @@ class Client(ServiceEnd):
         qos_profile: QoSProfile,
         callback_group: CallbackGroup,
         *,
-        life: Life,
+        life: ContextState,
         handle: Handle,
         changed: dict[Wake, None],
     ) -> None:
@@ -91,7 +91,7 @@ class Client(ServiceEnd):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: a request is made by {made}")
         with self._handle, self._lock:
             future: Future[Any] = Future()
-            payload = messages.encode(request)
+            payload = classes.encode(request)
             sequence = self._endpoint.send(payload)
             self._pending[sequence] = future
         self._endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
@@ -143,7 +143,7 @@ class Client(ServiceEnd):
             return
         future._is_set_here()
         if answered.error is None:
-            response = messages.decode(self.srv_type.Response, answered.payload)
+            response = classes.decode(self.srv_type.Response, answered.payload)
             self._endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)
             future.set_result(response)
         elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that

@@ -14,7 +14,7 @@ from typing import Any, Self
 from weakref import WeakMethod, ref
 
 from graphflow.errors import GraphflowError
-from graphflow.rclpy.life import Life
+from graphflow.rclpy.context_state import ContextState
 from graphflow.runtime.args import cut_off, meant, missed
 from graphflow.runtime.logs.rosout import log_level, setup_console
 from graphflow.runtime.mistakes import unrun
@@ -34,7 +34,7 @@ class Context(AbstractContextManager["Context"]):
     def __init__(self) -> None:
         self._lock = threading.RLock()
         self._callbacks: list[Callable[[], Any]] = []
-        self._life: Life | None = None
+        self._life: ContextState | None = None
         self._handle: Handle | None = None
 
     @property
@@ -42,7 +42,7 @@ class Context(AbstractContextManager["Context"]):
         return self._handle
 
     @property
-    def life(self) -> Life | None:
+    def life(self) -> ContextState | None:
         """graphflow's: what nodes, executors and sleeps ask. None before `init`."""
         return self._life
 
@@ -68,7 +68,7 @@ class Context(AbstractContextManager["Context"]):
             if self._life is not None and self._life.is_ok:
                 raise RuntimeError("Context.init() must only be called once")
             try:
-                life = Life(words, domain_id)
+                life = ContextState(words, domain_id)
                 if life.args.unknown:
                     unknown = life.args.unknown
                     hint = cut_off(unknown[0], words) or meant(unknown[0])

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.runtime.endpoints.events import QosEvent
 from rclpy._rclpy_pybind11 import UnsupportedEventTypeError
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSPolicyKind
 from rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.held import NodeBell
+    from graphflow.rclpy.node_bridge import NodeBell
     from rclpy.callback_groups import CallbackGroup
 
 __all__ = [

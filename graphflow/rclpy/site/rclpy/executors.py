@@ -13,7 +13,8 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, Self
 from weakref import WeakSet
 
-from rclpy.impl.passing import passed_on
+from rclpy.impl.mistakes.spin_arguments import check_node, is_node, tell
+from rclpy.impl.reexports import passed_on
 from rclpy.impl.spinning import (
     POLL,
     ConditionReachedException,
@@ -23,7 +24,6 @@ from rclpy.impl.spinning import (
     Spinning,
     TimeoutException,
 )
-from rclpy.impl.spun import check_node, is_node, tell
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.handle import Handle
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.held import NodeBell
+    from graphflow.rclpy.node_bridge import NodeBell
     from rclpy.context import Context
 
 

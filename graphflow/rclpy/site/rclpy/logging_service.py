@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy.impl.logging_severity import LoggingSeverity
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.logging import get_logger_level, set_logger_level
 
 

@@ -11,9 +11,10 @@ from typing import Any, Self
 from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
 from graphflow.names import Resolver
-from graphflow.rclpy import held, messages
-from graphflow.rclpy.held import HeldNode, NodeBell
-from graphflow.rclpy.life import Life, parse_only_ros
+from graphflow.rclpy import node_bridge
+from graphflow.rclpy.context_state import ContextState, parse_only_ros
+from graphflow.rclpy.messages import classes
+from graphflow.rclpy.node_bridge import HeldNode, NodeBell
 from graphflow.runtime.endpoints import threaded
 from rclpy._rclpy_pybind11 import NodeNameNonExistentError, RCLInvalidROSArgsError, UnknownROSArgsError
 from rclpy.callback_groups import CallbackGroup
@@ -27,25 +28,20 @@ from rclpy.executors import Executor
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.handle import Handle
-from rclpy.impl.arguments import explained
+from rclpy.impl.deadlock.waiting import attend
 from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
-from rclpy.impl.inner import Holdings, Inner, Known, none
+from rclpy.impl.internals import Holdings, Internals, Known, none
+from rclpy.impl.mistakes.arguments import explained
 from rclpy.impl.overrides import as_parameters
 from rclpy.impl.parameter_methods import ParameterMethods
 from rclpy.impl.parameters import NodeParameters
-from rclpy.impl.passing import passed_on
 from rclpy.impl.rcutils_logger import RcutilsLogger
-from rclpy.impl.waiting import attend
+from rclpy.impl.reexports import passed_on
 from rclpy.logging_service import LoggingService
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import (
-    QoSProfile,
-    qos_profile_services_default,
-    to_graphflow,
-    validated,
-)
+from rclpy.qos import QoSProfile, qos_profile_services_default, to_graphflow, validated
 from rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
 from rclpy.service import Service
 from rclpy.subscription import Subscription
@@ -102,14 +98,14 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         validate_namespace(space)
         try:
             names = Resolver(node_name, space, remaps)
-            values = held.overrides_for(life.args, names) if use_global_arguments else {}
-            values |= held.overrides_for(own, names)
+            values = node_bridge.overrides_for(life.args, names) if use_global_arguments else {}
+            values |= node_bridge.overrides_for(own, names)
         except GraphflowError as error:
             raise RCLInvalidROSArgsError(str(error)) from None
         bell = NodeBell()
         has_rosout = enable_rosout and own.has_rosout and life.args.has_rosout
-        node = held.open_node(life, node_name, space, remaps, rosout=has_rosout)
-        inner = self._graphflow = Inner(context, life, node, bell)
+        node = node_bridge.open_node(life, node_name, space, remaps, rosout=has_rosout)
+        inner = self._graphflow = Internals(context, life, node, bell)
         life.nodes[self] = partial(_destroy, weakref.ref(self))
         self._graphflow_handle_of_node = Handle(partial(_close, life, node))
         overrides = as_parameters(values) | {p.name: p for p in parameter_overrides or ()}
@@ -236,7 +232,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
         told = dispatcher(handlers)
         with self.handle:
-            endpoint = held.add(
+            endpoint = node_bridge.add(
                 inner.node, lambda core: threaded.ThreadedPublisher(core, msg_type, name, to_graphflow(qos), told)
             )
         made: Publisher = publisher_class(
@@ -284,7 +280,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
         told, mark = dispatcher(handlers), _Mark(inner.bell)
         with self.handle:
-            endpoint = held.add(
+            endpoint = node_bridge.add(
                 inner.node,
                 lambda core: threaded.ThreadedSubscription(
                     core, msg_type, name, to_graphflow(qos), inner.bell, mark, told
@@ -329,7 +325,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         """A client of a service. Its answers need a place in its group."""
         group = callback_group or self.default_callback_group
         name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
-        type_ = registry.interface_class(messages.type_name(srv_type))
+        type_ = registry.interface_class(classes.type_name(srv_type))
         mark, changed = _Mark(inner.bell), dict[Any, None]()
 
         def servers_changed() -> None:
@@ -341,7 +337,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             return threaded.ThreadedClient(core, type_, name, profile, inner.bell, mark, servers_changed)
 
         with self.handle:
-            endpoint = held.add(inner.node, make)
+            endpoint = node_bridge.add(inner.node, make)
         handle = self._graphflow_withdraws(endpoint)
         made = Client(
             self.context,
@@ -372,10 +368,10 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         """Have `callback(request, response)` answer the requests of a service; it returns the response."""
         group = callback_group or self.default_callback_group
         name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
-        type_ = registry.interface_class(messages.type_name(srv_type))
+        type_ = registry.interface_class(classes.type_name(srv_type))
         mark = _Mark(inner.bell)
         with self.handle:
-            endpoint = held.add(
+            endpoint = node_bridge.add(
                 inner.node,
                 lambda core: threaded.ThreadedService(core, type_, name, to_graphflow(qos_profile), inner.bell, mark),
             )
@@ -486,14 +482,14 @@ def _destroy(reference: Callable[[], Node | None]) -> None:
         node.destroy_node()
 
 
-def _close(life: Life, node: HeldNode) -> None:
+def _close(life: ContextState, node: HeldNode) -> None:
     if life.is_ok:
-        held.close_node(node)
+        node_bridge.close_node(node)
 
 
-def _remove(life: Life, endpoint: Any) -> None:
+def _remove(life: ContextState, endpoint: Any) -> None:
     if life.is_ok and endpoint.is_open:
-        held.remove(endpoint)
+        node_bridge.remove(endpoint)
 
 
 def __getattr__(name: str) -> Any:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from graphflow.errors import GraphflowError
 from graphflow.graph import params_file
 from graphflow.markup.source import parse_value
-from rclpy.impl.passing import passed_on
-from rclpy.impl.value_fields import FIELDS, check
+from rclpy.impl.mistakes.value_fields import FIELDS, check
+from rclpy.impl.reexports import passed_on
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMessage

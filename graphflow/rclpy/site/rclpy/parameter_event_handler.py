@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.parameter_client import on_parameter_event
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from graphflow.rclpy import messages
+from graphflow.rclpy.messages import classes
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.duration import Duration
 from rclpy.handle import Handle
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.life import Life
+    from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.endpoints.threaded import ThreadedPublisher
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import EventHandler, PublisherEventCallbacks
@@ -32,7 +32,7 @@ class Publisher:
         event_callbacks: PublisherEventCallbacks,
         callback_group: CallbackGroup,
         *,
-        life: Life,
+        life: ContextState,
         handle: Handle,
         event_handlers: list[EventHandler],
     ) -> None:
@@ -50,7 +50,7 @@ class Publisher:
         """
         with self._handle:
             if isinstance(msg, self.msg_type):
-                payload = messages.encode(msg)
+                payload = classes.encode(msg)
             elif isinstance(msg, bytes):
                 payload = msg
             else:

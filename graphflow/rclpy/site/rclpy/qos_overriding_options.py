@@ -9,7 +9,7 @@ from rcl_interfaces.msg import SetParametersResult as QosCallbackResult
 
 from rclpy.duration import Duration
 from rclpy.exceptions import ParameterAlreadyDeclaredException
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSPolicyEnum, QoSPolicyKind, QoSProfile
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from graphflow.rclpy import messages
+from graphflow.rclpy.messages import classes
 
 
 def serialize_message(message: Any) -> bytes:
     """A message as CDR, with its header of four bytes. Raises EncodeError if a field does not fit."""
-    return messages.encode(message)
+    return classes.encode(message)
 
 
 def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
     """The message of a class that CDR holds. Raises DecodeError if it holds none."""
-    return messages.decode(message_type, bytes(serialized_message))
+    return classes.decode(message_type, bytes(serialized_message))

@@ -8,15 +8,15 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.errors import DecodeError
-from graphflow.rclpy import messages
+from graphflow.rclpy.messages import classes
 from graphflow.runtime.endpoints.service_events import ServiceEvent
 from rclpy.handle import Handle
-from rclpy.impl.arguments import must_return
-from rclpy.impl.passing import passed_on
+from rclpy.impl.mistakes.arguments import must_return
+from rclpy.impl.reexports import passed_on
 from rclpy.impl.service_end import ServiceEnd
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.life import Life
+    from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.endpoints.threaded import Asked, ThreadedService
     from rclpy.callback_groups import CallbackGroup
     from rclpy.qos import QoSProfile
@@ -51,7 +51,7 @@ class Service(ServiceEnd):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         *,
-        life: Life,
+        life: ContextState,
         handle: Handle,
     ) -> None:
         self.srv_type, self.srv_name, self.callback = srv_type, srv_name, callback
@@ -64,7 +64,7 @@ class Service(ServiceEnd):
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
         with self._handle:
-            payload = messages.encode(response)
+            payload = classes.encode(response)
             self._endpoint.answer(header.asked, payload)
             self._endpoint.tell(ServiceEvent.RESPONSE_SENT, header.asked, payload)
 
@@ -79,7 +79,7 @@ class Service(ServiceEnd):
 
     def _request(self, asked: Asked) -> Any:
         try:
-            request = messages.decode(self.srv_type.Request, asked.payload)
+            request = classes.decode(self.srv_type.Request, asked.payload)
             self._endpoint.tell(ServiceEvent.REQUEST_RECEIVED, asked, asked.payload)
             return request
         except DecodeError as error:
@@ -103,7 +103,7 @@ class Service(ServiceEnd):
 
     def _take_request(self, request_type: Any) -> tuple[Any, RequestHeader | None]:
         asked = self._endpoint.take()
-        return (None, None) if asked is None else (messages.decode(request_type, asked.payload), RequestHeader(asked))
+        return (None, None) if asked is None else (classes.decode(request_type, asked.payload), RequestHeader(asked))
 
 
 def __getattr__(name: str) -> Any:

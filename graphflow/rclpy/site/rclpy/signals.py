@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any
 from weakref import WeakSet
 
-from graphflow.rclpy import tracebacks
+from graphflow.rclpy.hints import tracebacks
 from rclpy._rclpy_pybind11 import SignalHandlerOptions
 from rclpy.context import Context
 

@@ -10,9 +10,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from graphflow.errors import DecodeError
-from graphflow.rclpy import messages
+from graphflow.rclpy.messages import classes
 from rclpy.handle import Handle
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 
 if TYPE_CHECKING:
     from graphflow.runtime.endpoints.threaded import Taken, ThreadedSubscription
@@ -103,7 +103,7 @@ class Subscription:
             message: Any = taken.payload
         else:
             try:
-                message = messages.decode(self.msg_type, taken.payload)
+                message = classes.decode(self.msg_type, taken.payload)
             except DecodeError as error:
                 self._endpoint.count_malformed(error)
                 return ()
@@ -125,7 +125,7 @@ class Subscription:
         taken = self._endpoint.take()
         if taken is None:
             return None
-        return (taken.payload if raw else messages.decode(msg_type, taken.payload)), info_of(taken)
+        return (taken.payload if raw else classes.decode(msg_type, taken.payload)), info_of(taken)
 
     def destroy(self) -> None:
         """Withdraw it. `Node.destroy_subscription` is what to call."""

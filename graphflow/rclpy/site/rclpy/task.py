@@ -10,8 +10,8 @@ import weakref
 from collections.abc import Callable, Generator
 from typing import Any, Generic, Protocol, TypeVar
 
-from rclpy.impl import early_results
 from rclpy.impl.callers import caller
+from rclpy.impl.mistakes import early_results
 
 T = TypeVar("T")
 

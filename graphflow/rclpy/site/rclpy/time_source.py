@@ -9,15 +9,16 @@ import threading
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from graphflow.rclpy import held, messages
-from graphflow.rclpy.held import NodeBell
-from graphflow.rclpy.life import LOOP
+from graphflow.rclpy import node_bridge
+from graphflow.rclpy.context_state import LOOP
+from graphflow.rclpy.messages import classes
+from graphflow.rclpy.node_bridge import NodeBell
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.threaded import ThreadedSubscription
 from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy, to_graphflow
 from rclpy.time import Time
@@ -157,7 +158,7 @@ class _Hearing:
             made.is_inner = True
             return made
 
-        self._endpoint = held.add(node._graphflow.node, make)
+        self._endpoint = node_bridge.add(node._graphflow.node, make)
         threading.Thread(target=self._listen, name="graphflow-clock", daemon=True).start()
 
     def _listen(self) -> None:
@@ -166,7 +167,7 @@ class _Hearing:
             self._bell.attend()
             while (taken := self._endpoint.take()) is not None and not self._is_closed:
                 try:
-                    self._source.clock_callback(messages.decode(self._type, taken.payload))
+                    self._source.clock_callback(classes.decode(self._type, taken.payload))
                 except InvalidHandle:  # a clock that was destroyed
                     continue
 

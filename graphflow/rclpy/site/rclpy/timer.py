@@ -14,12 +14,12 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.handle import Handle
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.held import NodeBell
+    from graphflow.rclpy.node_bridge import NodeBell
     from rclpy.context import Context
 
 

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Sequence
 
 from graphflow.errors import GraphflowError
-from graphflow.rclpy.life import parse_only_ros
+from graphflow.rclpy.context_state import parse_only_ros
 from rclpy._rclpy_pybind11 import RCLInvalidROSArgsError
 from rclpy.constants import S_TO_NS
 from rclpy.context import Context

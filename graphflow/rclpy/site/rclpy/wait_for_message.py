@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from graphflow.rclpy import held
-from graphflow.rclpy.held import NodeBell
+from graphflow.rclpy import node_bridge
+from graphflow.rclpy.node_bridge import NodeBell
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.threaded import ThreadedSubscription
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, to_graphflow, validated
 from rclpy.serialization import deserialize_message
 from rclpy.type_support import check_is_valid_msg_type
@@ -40,7 +40,7 @@ def wait_for_message(
     check_is_valid_msg_type(msg_type)
     life, wake, name = node.context.life, Wake(), node.resolve_topic_name(topic)
     bell, qos = _Waking(wake), to_graphflow(validated(qos_profile))
-    endpoint = held.add(
+    endpoint = node_bridge.add(
         node._graphflow.node, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing)
     )
     life.on_end(wake)
@@ -56,7 +56,7 @@ def wait_for_message(
     finally:
         life.forget(wake)
         if life.is_ok:
-            held.remove(endpoint)
+            node_bridge.remove(endpoint)
 
 
 def _nothing() -> None:

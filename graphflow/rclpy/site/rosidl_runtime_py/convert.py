@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from graphflow.rclpy.values import WORDS
+from graphflow.rclpy.messages.values import WORDS
 from graphflow.wire.schema import FieldType
 
 

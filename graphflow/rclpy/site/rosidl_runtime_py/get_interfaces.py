@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from graphflow.msgs import registry
-from graphflow.rclpy import finder
+from graphflow.rclpy.messages import finder
 
 
 def get_interface_packages() -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from graphflow.rclpy.messages import StrictMessage, message_class
+from graphflow.rclpy.messages.classes import StrictMessage, message_class
 
 
 def set_message_fields(

@@ -12,8 +12,8 @@ from tf2_msgs.srv import FrameGraph
 from tf2_py import BufferCore, LookupException
 
 from rclpy.duration import Duration
-from rclpy.impl.buffers import know_buffer
-from rclpy.impl.unfilled import Unfilled
+from rclpy.impl.deadlock.buffers import know_buffer
+from rclpy.impl.watches.unfilled import Unfilled
 from rclpy.task import Future
 from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
 

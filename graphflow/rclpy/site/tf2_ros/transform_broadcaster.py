@@ -8,7 +8,7 @@ from typing import Any
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-from rclpy.impl.nameless_frames import check
+from rclpy.impl.mistakes.unnamed_frames import check
 from rclpy.qos import QoSProfile
 
 

@@ -13,7 +13,7 @@ from types import CodeType, FrameType
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
 from graphflow.runtime.mistakes.errors import constructor_errors
-from graphflow.runtime.rclpy_words import SpeaksRos, translation
+from graphflow.runtime.mistakes.rclpy_words import SpeaksRos, translation
 
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from graphflow.rclpy.life import LOOP
+from graphflow.rclpy.context_state import LOOP
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.type_description_service import START_TYPE_DESCRIPTION_SERVICE_PARAM

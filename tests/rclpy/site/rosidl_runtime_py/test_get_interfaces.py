@@ -15,7 +15,7 @@ from rosidl_runtime_py import (
 )
 
 from graphflow.msgs import registry
-from graphflow.rclpy import finder
+from graphflow.rclpy.messages import finder
 
 
 def test_by_kind_and_package() -> None:

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Any
 from graphflow.errors import ServerLost
 from graphflow.machines.goal import GoalStatus as Status
 from graphflow.msgs import registry
-from graphflow.rclpy import held, messages
+from graphflow.rclpy import node_bridge
+from graphflow.rclpy.messages import classes
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.threaded import ThreadedClient, ThreadedSubscription
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
-from rclpy.impl.arguments import explained
 from rclpy.impl.callers import caller
-from rclpy.impl.passing import passed_on
+from rclpy.impl.mistakes.arguments import explained
+from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
@@ -125,9 +126,9 @@ class ActionClient(Waitable):
         mark = partial(node._graphflow.bell.mark, self)
 
         def client(carrier: Any, part: str, qos: QoSProfile) -> Any:
-            type_ = registry.interface_class(messages.type_name(carrier))
+            type_ = registry.interface_class(classes.type_name(carrier))
             full = f"{name}/_action/{part}"
-            return held.add(
+            return node_bridge.add(
                 node._graphflow.node,
                 lambda core: ThreadedClient(
                     core, type_, full, to_graphflow(qos), node._graphflow.bell, mark, self._graphflow_look
@@ -144,7 +145,7 @@ class ActionClient(Waitable):
                 told.in_order = part == "feedback"
                 return told
 
-            return held.add(node._graphflow.node, make)
+            return node_bridge.add(node._graphflow.node, make)
 
         self._graphflow_goals = client(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
         self._graphflow_cancels = client(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
@@ -212,13 +213,13 @@ class ActionClient(Waitable):
             future.set_exception(answered.error)
 
     def _graphflow_heard_feedback(self, payload: bytes) -> None:
-        message = messages.decode(self._action_type.Impl.FeedbackMessage, payload)
+        message = classes.decode(self._action_type.Impl.FeedbackMessage, payload)
         callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))
         if callback is not None:
             callback(message)
 
     def _graphflow_heard_status(self, payload: bytes) -> None:
-        message = messages.decode(self._action_type.Impl.GoalStatusMessage, payload)
+        message = classes.decode(self._action_type.Impl.GoalStatusMessage, payload)
         for row in message.status_list:
             key = bytes(row.goal_info.goal_id.uuid)
             handle = self._goal_handles.get(key)
@@ -233,7 +234,7 @@ class ActionClient(Waitable):
         future: Future[Any] = Future()
         with self._graphflow_lock:
             with sending():
-                sequence = client.send(messages.encode(request))
+                sequence = client.send(classes.encode(request))
             self._graphflow_waiting[client, sequence] = (future, made)
         return future
 
@@ -288,7 +289,7 @@ class ActionClient(Waitable):
             self._feedback_callbacks[key] = feedback_callback
 
         def made(payload: bytes) -> ClientGoalHandle:
-            response = messages.decode(carrier.Response, payload)
+            response = classes.decode(carrier.Response, payload)
             handle = ClientGoalHandle(self, goal_id, response)
             if handle.accepted:
                 self._goal_handles[key] = handle
@@ -307,7 +308,7 @@ class ActionClient(Waitable):
         request = CancelGoal.Request()
         request.goal_info.goal_id = goal_handle.goal_id
         return self._graphflow_send(
-            self._graphflow_cancels, request, lambda payload: messages.decode(CancelGoal.Response, payload)
+            self._graphflow_cancels, request, lambda payload: classes.decode(CancelGoal.Response, payload)
         )
 
     def _graphflow_result_of(self, goal_handle: ClientGoalHandle) -> Future[Any]:
@@ -319,7 +320,7 @@ class ActionClient(Waitable):
         def made(payload: bytes) -> Any:
             self._feedback_callbacks.pop(key, None)
             self._goal_handles.pop(key, None)
-            response = messages.decode(carrier.Response, payload)
+            response = classes.decode(carrier.Response, payload)
             goal_handle._status = response.status
             return response
 
@@ -365,7 +366,7 @@ class ActionClient(Waitable):
                 self._graphflow_feedback,
                 self._graphflow_status,
             ):
-                held.remove(endpoint)
+                node_bridge.remove(endpoint)
 
 
 def __getattr__(name: str) -> Any:

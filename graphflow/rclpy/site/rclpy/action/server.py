@@ -16,15 +16,16 @@ from typing import TYPE_CHECKING, Any
 from graphflow.machines.goal import CancelCode
 from graphflow.machines.goal import GoalStatus as Status
 from graphflow.msgs import registry
-from graphflow.rclpy import held, messages
-from graphflow.rclpy.life import LOOP
-from graphflow.rclpy.tracebacks import shorten
+from graphflow.rclpy import node_bridge
+from graphflow.rclpy.context_state import LOOP
+from graphflow.rclpy.hints.tracebacks import shorten
+from graphflow.rclpy.messages import classes
 from graphflow.runtime.endpoints.threaded import Asked, ThreadedPublisher, ThreadedService
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending
-from rclpy.impl.arguments import described, explained, must_return
-from rclpy.impl.passing import passed_on
+from rclpy.impl.mistakes.arguments import described, explained, must_return
+from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
 from rclpy.time import Time
@@ -205,8 +206,8 @@ class ActionServer(Waitable):
         self._graphflow_is_open = False  # another thread may be spinning the node
 
         def service(carrier: Any, part: str, qos: QoSProfile) -> Any:
-            type_ = registry.interface_class(messages.type_name(carrier))
-            return held.add(
+            type_ = registry.interface_class(classes.type_name(carrier))
+            return node_bridge.add(
                 node._graphflow.node,
                 lambda core: ThreadedService(
                     core, type_, f"{name}/_action/{part}", to_graphflow(qos), node._graphflow.bell, mark
@@ -214,7 +215,7 @@ class ActionServer(Waitable):
             )
 
         def publisher(carrier: Any, part: str, qos: QoSProfile) -> Any:
-            return held.add(
+            return node_bridge.add(
                 node._graphflow.node,
                 lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos)),
             )
@@ -261,7 +262,7 @@ class ActionServer(Waitable):
 
     async def _graphflow_goal(self, asked: Asked) -> None:
         carrier = self._action_type.Impl.SendGoalService
-        request = messages.decode(carrier.Request, asked.payload)
+        request = classes.decode(carrier.Request, asked.payload)
         key = bytes(request.goal_id.uuid)
         is_known = key in self._goal_handles
         answer: Any = None
@@ -275,7 +276,7 @@ class ActionServer(Waitable):
                 shorten(error)
                 traceback.print_exception(error)
                 with sending():
-                    self._graphflow_goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
+                    self._graphflow_goals.answer(asked, classes.encode(carrier.Response(accepted=False)))
                 raise
             if not isinstance(answer, GoalResponse):
                 way = must_return(self._goal_callback, "GoalResponse.ACCEPT", answer)
@@ -291,7 +292,7 @@ class ActionServer(Waitable):
                 self._goal_handles[key] = handle
             self._graphflow_publish_status()
         with sending():
-            self._graphflow_goals.answer(asked, messages.encode(carrier.Response(accepted=accepted, stamp=stamp)))
+            self._graphflow_goals.answer(asked, classes.encode(carrier.Response(accepted=accepted, stamp=stamp)))
         if handle is not None:
             await await_or_execute(self._handle_accepted_callback, handle)
 
@@ -342,7 +343,7 @@ class ActionServer(Waitable):
         from action_msgs.msg import GoalInfo
         from action_msgs.srv import CancelGoal
 
-        request = messages.decode(CancelGoal.Request, asked.payload)
+        request = classes.decode(CancelGoal.Request, asked.payload)
         code, wanted = self._graphflow_to_cancel(request.goal_info)
         response = CancelGoal.Response(return_code=int(code))
         for goal in wanted:
@@ -357,7 +358,7 @@ class ActionServer(Waitable):
         if wanted and not response.goals_canceling:
             response.return_code = int(CancelCode.REJECTED)
         with sending():
-            self._graphflow_cancels.answer(asked, messages.encode(response))
+            self._graphflow_cancels.answer(asked, classes.encode(response))
 
     def _graphflow_to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
         """The goals that a request means: one by its id, those up to a time, or all. Source: CancelGoal.srv."""
@@ -380,12 +381,12 @@ class ActionServer(Waitable):
 
     async def _graphflow_result(self, asked: Asked) -> None:
         carrier = self._action_type.Impl.GetResultService
-        request = messages.decode(carrier.Request, asked.payload)
+        request = classes.decode(carrier.Request, asked.payload)
         goal = self._goal_handles.get(bytes(request.goal_id.uuid))
         if goal is None:
             self._logger.debug("Sending result response for unknown goal ID")
             with sending():
-                self._graphflow_results.answer(asked, messages.encode(carrier.Response(status=int(Status.UNKNOWN))))
+                self._graphflow_results.answer(asked, classes.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
         goal._graphflow_asked.append(asked)
         goal._result._when_done(partial(self._graphflow_answer_result, asked, goal._result))  # no reference to the goal
@@ -393,7 +394,7 @@ class ActionServer(Waitable):
     def _graphflow_answer_result(self, asked: Asked, result: Future[Any]) -> None:
         if self._graphflow_is_open:
             with sending():
-                self._graphflow_results.answer(asked, messages.encode(result.result()))
+                self._graphflow_results.answer(asked, classes.encode(result.result()))
 
     def notify_goal_done(self) -> None:
         """A goal has ended: results are kept from then on for their time."""
@@ -414,7 +415,7 @@ class ActionServer(Waitable):
         if self._graphflow_is_open:
             message = self._action_type.Impl.GoalStatusMessage(status_list=rows)
             with sending():
-                self._graphflow_status.put(messages.encode(message))
+                self._graphflow_status.put(classes.encode(message))
 
     def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
         """Publish feedback on a goal. Raises TypeError if it is none of the action's."""
@@ -424,7 +425,7 @@ class ActionServer(Waitable):
         message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
         if self._graphflow_is_open:
             with sending():
-                self._graphflow_feedback.put(messages.encode(message))
+                self._graphflow_feedback.put(classes.encode(message))
 
     # callbacks
 
@@ -461,7 +462,7 @@ class ActionServer(Waitable):
                 self._graphflow_feedback,
                 self._graphflow_status,
             ):
-                held.remove(endpoint)
+                node_bridge.remove(endpoint)
 
 
 def __getattr__(name: str) -> Any:

@@ -7,8 +7,8 @@ from typing import Any
 from rclpy.client import Client
 from rclpy.exceptions import InvalidHandle
 from rclpy.guard_condition import GuardCondition
-from rclpy.impl.inner import Inner
-from rclpy.impl.undestroyed import tell
+from rclpy.impl.internals import Internals
+from rclpy.impl.mistakes.undestroyed import tell
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 from rclpy.subscription import Subscription
@@ -18,7 +18,7 @@ from rclpy.timer import Rate, Timer
 class DestroyMethods:
     """A node's methods that destroy; for `Node` to derive from. Each returns whether the thing was the node's."""
 
-    _graphflow: Inner
+    _graphflow: Internals
 
     def _graphflow_look_again(self) -> None:
         """Have the executor see what there is."""

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from graphflow.machines.cache import GraphCache
-from graphflow.rclpy.life import LOOP
+from graphflow.rclpy.context_state import LOOP
 from graphflow.wire.liveliness import Kind
 from rclpy._rclpy_pybind11 import NodeNameNonExistentError
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.handle import Handle
-from rclpy.impl.inner import Inner
+from rclpy.impl.internals import Internals
 from rclpy.qos import from_graphflow
 from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from rclpy.type_hash import TypeHash
@@ -24,7 +24,7 @@ from rclpy.validate_node_name import validate_node_name
 class GraphMethods:
     """A node's methods for the graph; for `Node` to derive from."""
 
-    _graphflow: Inner
+    _graphflow: Internals
     _graphflow_handle_of_node: Handle
 
     def _graphflow_graph(self, look: Callable[[GraphCache], Any]) -> Any:

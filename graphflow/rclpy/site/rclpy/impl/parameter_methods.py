@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graphflow.analysis.user_code import place_in
-from graphflow.rclpy import held
-from graphflow.rclpy.hints import hint
-from graphflow.rclpy.life import LOOP
+from graphflow.rclpy import node_bridge
+from graphflow.rclpy.context_state import LOOP
+from graphflow.rclpy.hints.lookup import hint
 from graphflow.rclpy.parameter_answers import ParameterAnswers
-from rclpy.impl.arguments import explained
 from rclpy.impl.callers import caller
-from rclpy.impl.inner import Inner, Known
+from rclpy.impl.internals import Internals, Known
+from rclpy.impl.mistakes.arguments import explained
 from rclpy.impl.parameters import RELATIVE_TOLERANCE
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameter_events, qos_profile_parameters
@@ -31,7 +31,7 @@ class ParameterMethods:
 
     PARAM_REL_TOL = RELATIVE_TOLERANCE
     _parameters = Known(lambda node: node._graphflow.parameters.with_prefix(""))
-    _graphflow: Inner
+    _graphflow: Internals
 
     @property
     def _graphflow_as_node(self) -> Any:
@@ -48,7 +48,7 @@ class ParameterMethods:
         if not self.has_parameter("start_type_description_service"):
             self.declare_parameter("start_type_description_service", True)
         if self.get_parameter("start_type_description_service").value:
-            LOOP.call(held.describe_types, inner.node)
+            LOOP.call(node_bridge.describe_types, inner.node)
         if has_services:
             answers = ParameterAnswers(inner.parameters)
             LOOP.call(answers.serve, inner.core)

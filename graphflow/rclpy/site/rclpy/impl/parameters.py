@@ -20,7 +20,7 @@ from rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from rclpy.impl.arguments import must_return
+from rclpy.impl.mistakes.arguments import must_return
 from rclpy.impl.overrides import remark
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 from rclpy.validate_parameter_name import validate_parameter_name

@@ -9,7 +9,7 @@ from rclpy.handle import Handle
 from rclpy.qos import to_graphflow
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.life import Life
+    from graphflow.rclpy.context_state import ContextState
     from rclpy.clock import Clock
     from rclpy.qos import QoSProfile
     from rclpy.service_introspection import ServiceIntrospectionState
@@ -19,7 +19,7 @@ class ServiceEnd:
     """A client or server of a service."""
 
     _endpoint: Any
-    _life: Life
+    _life: ContextState
     _handle: Handle
 
     def configure_introspection(

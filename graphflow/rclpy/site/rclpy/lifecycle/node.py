@@ -18,8 +18,8 @@ from graphflow.machines.lifecycle import (
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
-from rclpy.impl.arguments import described, must_return
-from rclpy.impl.passing import passed_on
+from rclpy.impl.mistakes.arguments import described, must_return
+from rclpy.impl.reexports import passed_on
 from rclpy.lifecycle.managed_entity import ManagedEntity
 from rclpy.lifecycle.publisher import LifecyclePublisher
 from rclpy.node import Node

@@ -7,7 +7,7 @@ from typing import Any
 
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
-from rclpy.impl.passing import passed_on
+from rclpy.impl.reexports import passed_on
 from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.publisher import Publisher
 

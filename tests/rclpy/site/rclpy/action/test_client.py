@@ -9,7 +9,7 @@ import pytest
 from example_interfaces.action import Fibonacci
 
 import rclpy
-from graphflow.rclpy import held
+from graphflow.rclpy import node_bridge
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
@@ -50,7 +50,7 @@ def test_both_ends_are_made_while_the_node_is_spun(node: Node, spin: Spinner, mo
     client = ActionClient(node, Fibonacci, "fib")
     future = client.send_goal_async(Fibonacci.Goal())
     spin(future.done)
-    real = held.add
+    real = node_bridge.add
 
     def add(*args: Any) -> Any:
         endpoint = real(*args)
@@ -58,7 +58,7 @@ def test_both_ends_are_made_while_the_node_is_spun(node: Node, spin: Spinner, mo
             spin.executor.spin_once(timeout_sec=0.01)
         return endpoint
 
-    monkeypatch.setattr(held, "add", add)
+    monkeypatch.setattr(node_bridge, "add", add)
     for _ in range(3):
         ActionClient(node, Fibonacci, "fib")
         ActionServer(node, Fibonacci, "fib", succeed)

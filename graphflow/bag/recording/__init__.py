@@ -1,0 +1,1 @@
+"""Recording topics of a running graph into a bag. Begin with `recorder`."""

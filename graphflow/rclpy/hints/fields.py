@@ -1,0 +1,177 @@
+"""Next steps for errors about messages: fields that they have not, and values that do not fit."""
+
+from __future__ import annotations
+
+import re
+import reprlib
+from collections.abc import Iterator
+from types import FrameType
+from typing import Any
+
+from graphflow.names import nearest
+from graphflow.rclpy.hints.frames import PATH, lacking, line_of, named, own
+from graphflow.rclpy.messages import values
+from graphflow.rclpy.messages.classes import StrictMessage
+
+_FIELD = re.compile(r"The '(\w+)' field must be (?:a sub message )?of type '(\w+)'")
+_ELEMENTS = re.compile(r" (?:set|sequence).* of type '(int|float|str|bool)'")
+_PLAIN = (bool, int, float, str)
+_RECKONED = re.compile(r"operand|can only concatenate|not supported between|argument must be|required, not")
+_RANGE_OR_LIST = re.compile(r"The '\w+' field must be (an? |string value)")
+
+
+def missing_field(error: BaseException, frames: list[FrameType]) -> str:
+    """The fields of a message that is asked for another."""
+    absent = lacking(error, frames)
+    if absent is not None and isinstance(absent[0], StrictMessage):
+        return _fields(type(absent[0]), absent[1])
+    found = re.match(r"Invalid arguments passed to constructor: (\w+)", str(error))
+    made = [frame.f_locals["SELF"] for frame in frames if "SELF" in frame.f_locals]
+    if found is not None and made:
+        return _fields(type(made[-1]), found[1])
+    return ""
+
+
+def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
+    """How a field is given what it takes, where a value of another type was given."""
+    found = _FIELD.match(str(error))
+    checks = [f.f_locals for f in frames if f.f_code.co_filename == values.__file__ and "value" in f.f_locals]
+    if not isinstance(error, AssertionError) or not checks:
+        return ""
+    if found is None:
+        return _given(checks, str(error)) if _RANGE_OR_LIST.match(str(error)) else ""
+    name, kind = found.groups()
+    value, cls = checks[-1]["value"], checks[-1].get("cls")
+    set_ = re.match(rf"\s*([\w.\[\]]*\b{name})\s*=(?!=)\s*([^#;]+)", line_of(frames))
+    target, given = (set_[1], set_[2].strip()) if set_ is not None else (name, "...")
+    if type(value).__name__ == "Parameter":
+        return f"a parameter has its value in .value: {target} = {given}.value"
+    if isinstance(cls, type) and issubclass(cls, StrictMessage):
+        return _part(target, given, value, cls)
+    if isinstance(value, StrictMessage) and hasattr(value, "data"):
+        return f"{given} is a message: write {target} = {given}.data"
+    if kind in ("float", "int") and isinstance(shape := getattr(value, "shape", None), tuple):
+        return _of_array(target, given, kind, shape)
+    if kind == "float" and isinstance(value, int):
+        return f"{target} is a float: write {value}.0" if given == str(value) else f"write {target} = float({given})"
+    if kind == "int" and isinstance(value, float):
+        return f"{target} is an int: write int(...){' or //' if '/' in given else ''}"
+    is_made = kind == "str" or (kind in ("int", "float") and isinstance(value, str))
+    if is_made and value is not None:
+        return f"write {target} = {kind}({given})"
+    return f"it was given {reprlib.repr(value)}: write True or False" if kind == "bool" else ""
+
+
+def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str:
+    """How a number is made of one of NumPy's, or of an array of them."""
+    if not shape:
+        return f"write {target} = {kind}({given})"
+    whole = given if PATH.fullmatch(given) else f"({given})"
+    what = f"{target} is {'an int' if kind == 'int' else 'a float'}, and was given an array of shape {shape}"
+    is_one = all(size == 1 for size in shape)
+    way = (
+        f"{kind}({whole}[{', '.join('0' for _ in shape)}])" if is_one else f"one of its elements, {kind}({whole}[...])"
+    )
+    return f"{what}: write {way}"
+
+
+def _given(checks: list[dict[str, Any]], text: str) -> str:
+    """Show a value that is out of its field's range, or a list with an element of the wrong type."""
+    last, kind = checks[-1], _ELEMENTS.search(text)
+    if "items" in last:
+        if dimensions := getattr(last["item"], "ndim", 0):
+            flat = "tobytes()" if last["item"].dtype.itemsize == 1 else "ravel().tolist()"
+            return f"the array has {dimensions + 1} dimensions, and the field one: write array.{flat}"
+        way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and isinstance(last["item"], _PLAIN) else ""
+        return f"one of its elements is {reprlib.repr(last['item'])}{way}"
+    value = last["value"]
+    way = f": a list is wanted, write [{value!r}]" if kind is not None and type(value).__name__ == kind[1] else ""
+    return f"it was given {reprlib.repr(value)}{way}"
+
+
+def _part(target: str, given: str, value: object, cls: type[StrictMessage]) -> str:
+    """How a field is set that is a message itself."""
+    if type(value).__module__ in ("rclpy.time", "rclpy.duration") and type(value).__name__ == cls.__name__:
+        return f"write {target} = {given}.to_msg()"
+    if cls.__name__ == "Time" and isinstance(value, float) and "time.time()" in given:
+        return f"write {target} = self.get_clock().now().to_msg()"
+    if value is cls:
+        return f"that is a class and no message: write {target} = {cls.__name__}()"
+    fields = cls.SCHEMA.fields
+    if isinstance(value, StrictMessage) or not fields:
+        return f"{target} is a {cls.__name__}, and was given a {type(value).__name__}"
+    return f"{target} is a {cls.__name__}: set its fields, as in {target}.{fields[0].name} = ..."
+
+
+def no_message(error: BaseException, frames: list[FrameType]) -> str:
+    """How a message is made, where its class was given in its place."""
+    found = re.fullmatch(r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]*\._Generated'>", str(error))
+    if found is not None:
+        return f"that is a class and no message: write {found[1].replace('_', '.')}()"
+    last = frames[-1].f_locals if frames else {}
+    cls, given = getattr(last.get("self"), "msg_type", None), last.get("msg")
+    is_plain = isinstance(given, (bool, int, float, str)) and str(error).startswith("Expected <class ")
+    if is_plain and isinstance(cls, type) and issubclass(cls, StrictMessage):
+        fields = cls.SCHEMA.fields
+        if len(fields) == 1 and isinstance(getattr(cls(), fields[0].name), type(given)):
+            return f"write {cls.__name__}({fields[0].name}={given!r})"
+    return ""
+
+
+def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
+    """The part to take of a message that was reckoned with as if it were a value."""
+    users = own(frames)
+    if not isinstance(error, TypeError) or not users or not _RECKONED.search(str(error)):
+        return ""
+    if "'property'" in str(error) or "'member_descriptor'" in str(error):
+        return _class_as_message(line_of(frames), users[-1])
+    for path in PATH.findall(line_of(frames)):
+        thing = named(path, users[-1])
+        name = type(thing).__name__
+        if not isinstance(thing, StrictMessage) or not re.search(rf"['\"]{name}['\"]", str(error)):
+            continue
+        if name == "ParameterValue":
+            return f"{path} is a ParameterValue: write get_parameter('name').value in place of .get_parameter_value()"
+        fields = thing.SCHEMA.fields
+        if fields:
+            return f"{path} is a {name}, a message: take its field, {path}.{fields[0].name}"
+    return ""
+
+
+def _class_as_message(line: str, frame: FrameType) -> str:
+    """How a message is made in place of its class, of which a line takes a field."""
+    for path in PATH.findall(line):
+        owner = path.rpartition(".")[0]
+        cls = named(owner, frame) if owner else None
+        if isinstance(cls, type) and issubclass(cls, StrictMessage):
+            is_kept = owner != cls.__name__
+            return (
+                f"{owner} is {'the' if is_kept else 'a'} class{f' {cls.__name__}' if is_kept else ''}, and no message: "
+                + (
+                    f"write {owner} = {cls.__name__}()"
+                    if is_kept
+                    else f"write {cls.__name__}(), or name the message that is meant"
+                )
+            )
+    return ""
+
+
+def _fields(cls: type[StrictMessage], name: str) -> str:
+    names = [field.name for field in cls.SCHEMA.fields]
+    below = next(_paths(cls, name), "")
+    if below:
+        return f"it is further down: .{below}"
+    near = nearest(name, names)
+    listed = ", ".join(names) or "no fields"
+    return f"{cls.__name__} has {listed}" + (f"; did you mean {near!r}?" if near is not None else "")
+
+
+def _paths(cls: type[StrictMessage], name: str) -> Iterator[str]:
+    """The ways to a field of that name in a message's parts, and in parts of those."""
+    for field in cls.SCHEMA.fields:
+        if field.type.is_primitive or field.type.array:
+            continue
+        part = type(getattr(cls(), field.name))
+        if any(inner.name == name for inner in part.SCHEMA.fields):
+            yield f"{field.name}.{name}"
+        yield from (f"{field.name}.{path}" for path in _paths(part, name))

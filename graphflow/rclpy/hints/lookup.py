@@ -1,0 +1,105 @@
+"""The next step for errors of programs: one place, that is asked when an error is shown and not before.
+
+The errors stay those that ROS 2 raises, in its words; what is added here is a sentence. Most are rows of two tables, by
+attribute and by text; the others follow from what is at hand: a message's fields, a call's arguments, a callback.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from contextlib import suppress
+from types import FrameType
+
+from graphflow.analysis.hiding import hidden
+from graphflow.analysis.user_code import parts_of
+from graphflow.names import nearest
+from graphflow.rclpy.hints.calls import called_value, wrong_call
+from graphflow.rclpy.hints.fields import message_as_value, missing_field, no_message, wrong_value
+from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
+from graphflow.rclpy.hints.names import missing_name, misspelt_init, unknown_name, unset
+from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
+from graphflow.rclpy.messages.classes import StrictMessage
+
+
+def hint(error: BaseException) -> str:
+    """The next step; empty where there is nothing to add."""
+    frames = [part.tb_frame for part in parts_of(error.__traceback__)]
+    for rule in _RULES:
+        # Rules look at the program's objects, whose attributes and texts may raise; the error itself must be shown.
+        with suppress(Exception):
+            if found := rule(error, frames):
+                return found
+    return ""
+
+
+def _text(error: BaseException, _: list[FrameType]) -> str:
+    for pattern, sentence in TEXTS.items():
+        found = re.search(pattern, str(error))
+        if found is not None:
+            return sentence.format(*(group for group in found.groups() if group is not None))
+    return ""
+
+
+def _stamp(error: BaseException, frames: list[FrameType]) -> str:
+    """How a time is made of a message, where one is reckoned with."""
+    users = own(frames)
+    if (
+        not isinstance(error, TypeError)
+        or not users
+        or not re.search(r"(operand|between).*'(Time|Duration)'", str(error))
+    ):
+        return ""
+    for path in PATH.findall(line_of(frames)):
+        thing = named(path, users[-1])
+        if isinstance(thing, StrictMessage) and type(thing).__name__ in ("Time", "Duration"):
+            kind = type(thing).__name__
+            return f"{path} is a message: write rclpy.{kind.lower()}.{kind}.from_msg({path})"
+    return ""
+
+
+def _attribute(error: BaseException, frames: list[FrameType]) -> str:
+    found = lacking(error, frames)
+    if found is None:
+        return ""
+    thing, name = found
+    words = [f"{cls.__name__}.{name}" for cls in type(thing).__mro__ if not is_defined_by_user(cls)]
+    words += [f"T.{name}"] if hasattr(type(thing), "default_callback_group") else []
+    for known, sentence in ATTRIBUTES.items():
+        if not set(words).isdisjoint(known.split()):
+            return sentence
+    if isinstance(thing, list) and thing and type(thing[0]).__name__ == "Parameter":
+        return f"that is a list of parameters: for parameter in parameters, and parameter.{name}"
+    if thing is None and ".result()" in line_of(frames):
+        return "future.result() is None until the future is done: add_done_callback(...), or spin until it is"
+    if type(thing).__name__ in ("Future", "Run", "Task") and not is_defined_by_user(type(thing)):
+        return f"the answer has it: future.result().{name}, once the future is done: add_done_callback(...)"
+    if type(thing).__name__ == "ServerGoalHandle" and not is_defined_by_user(type(thing)):
+        return f"the goal has it: goal_handle.request.{name}"
+    if error.__class__ is AttributeError and type(thing).__module__ == "rclpy.qos":
+        near = nearest(name, [word for word in dir(thing) if not word.startswith("_")])
+        return f"did you mean {near!r}?" if near is not None else ""
+    return ""
+
+
+def _hidden(error: BaseException, _: list[FrameType]) -> str:
+    return hidden(error)
+
+
+_RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
+    _hidden,
+    missing_field,
+    wrong_value,
+    no_message,
+    _attribute,
+    missing_name,
+    unknown_name,
+    unset,
+    misspelt_init,
+    wrong_call,
+    called_value,
+    _stamp,
+    _text,
+    message_as_value,
+)
+"""Asked in this order."""

@@ -1,0 +1,180 @@
+"""Next steps for errors about names: what a module has not, and where it is."""
+
+from __future__ import annotations
+
+import dis
+import pkgutil
+import re
+import sys
+from collections.abc import Iterator
+from enum import EnumType
+from importlib import import_module
+from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
+
+from graphflow.analysis.user_code import is_users, short_place
+from graphflow.msgs import registry
+from graphflow.msgs.registry import KINDS
+from graphflow.names import nearest
+from graphflow.rclpy.hints.frames import PATH, line_of, named, own
+
+
+def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
+    """Where a name is that is imported from elsewhere."""
+    found = re.match(r"cannot import name '(\w+)' from '([\w.]+)'", str(error))
+    if not isinstance(error, ImportError) or found is None:
+        return ""
+    name, module = found.groups()
+    return _where(name, module)
+
+
+def _where(name: str, module: str) -> str:
+    """Where the name is that a module has not."""
+    package, _, kind = module.partition(".")
+    if kind in KINDS:
+        if " must be " in (wrong := registry.misplaced(package, name)):
+            return wrong.removeprefix("; ")
+        known = [f"{p}.{k}" for p in registry.packages() for k in KINDS if name in registry.names_in(p, k)]
+        known.sort(key=lambda where: (not where.startswith(f"{package}."), where))
+        if known:
+            return f"{name} is in {' and '.join(known[:3])}: from {known[0]} import {name}"
+        near = nearest(name, registry.names_in(package, kind))
+        return f"did you mean {near!r}?" if near is not None else ""
+    if package in registry.packages():
+        kinds = [kind for kind in KINDS if name in registry.names_in(package, kind)]
+        return f"{name} is in {package}.{kinds[0]}: from {package}.{kinds[0]} import {name}" if kinds else ""
+    return _in_rclpy(name, module) if package == "rclpy" else ""
+
+
+def _of_callback(path: str, name: str, frame: FrameType) -> str:
+    """What is to be cancelled and the like, where that is asked of its callback."""
+    owner, _, method = path.rpartition(".")
+    thing = {**frame.f_globals, **frame.f_locals}.get(owner)
+    kept = [
+        attribute
+        for attribute, value in getattr(thing, "__dict__", {}).items()
+        if getattr(getattr(value, "callback", None), "__name__", "") == method
+    ]
+    way = f"write {owner}.{kept[0]}.{name}()" if kept else f"keep what create_timer(...) returns, and call its {name}()"
+    return f"{path} is a callback, which has no {name}: {way}"
+
+
+def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
+    """The name that was meant by one that is not bound, or by an attribute that a module or a node has not."""
+    users = own(frames)
+    if not users:
+        return ""
+    if isinstance(error, NameError):
+        found = re.search(r"(?:name|variable) '(\w+)'", str(error))
+        return _unbound(found[1], users[-1]) if found is not None else ""
+    if not isinstance(error, AttributeError) or error.name is None:
+        return ""
+    if isinstance(error.obj, ModuleType):
+        return _where(error.name, error.obj.__name__)
+    if isinstance(error.obj, tuple) and (path := _path_of(error.name, line_of(frames))):
+        return f"{path} is a tuple, by a comma behind what it is set to: leave the comma out"
+    if isinstance(error.obj, (FunctionType, MethodType)) and (path := _path_of(error.name, line_of(frames))):
+        if error.name in ("cancel", "reset", "destroy"):
+            return _of_callback(path, error.name, users[-1])
+        return f"{path} is a function: call it, as in {path}().{error.name}"
+    for method in _functions(type(error.obj)):
+        inner = next((c for c in method.co_consts if isinstance(c, CodeType) and c.co_name == error.name), None)
+        if inner is not None:
+            place = short_place(inner.co_filename, inner.co_firstlineno)
+            return f"{error.name} ({place}) is inside {method.co_name}: indent it as {method.co_name} itself is"
+    for method in _functions(type(error.obj)):
+        if error.name in method.co_varnames[method.co_argcount :]:
+            place = short_place(method.co_filename, method.co_firstlineno)
+            return f"{error.name} is a local variable of {method.co_name} ({place}): write self.{error.name} there"
+    return ""
+
+
+def misspelt_init(error: BaseException, frames: list[FrameType]) -> str:
+    """The method of a class that should be its `__init__`, where that of `Node` is called without a name."""
+    users = own(frames)
+    if not users or not re.search(r"__init__\(\) missing \d+ required positional argument", str(error)):
+        return ""
+    for path in PATH.findall(line_of(frames)):
+        cls = named(path, users[-1])
+        if isinstance(cls, type) and "__init__" not in vars(cls):
+            for name, method in vars(cls).items():
+                if name.strip("_") in ("init", "int", "ini") and (code := getattr(method, "__code__", None)):
+                    place = short_place(code.co_filename, code.co_firstlineno)
+                    return f"{cls.__name__} has {name} ({place}): write __init__"
+    return ""
+
+
+def _path_of(attribute: str, line: str) -> str:
+    """The owner of an attribute that a line reads: `self.pub` of `self.pub.publish(m)`."""
+    paths = [path.rpartition(".") for path in PATH.findall(line)]
+    return next((owner for owner, _, name in paths if name == attribute and owner), "")
+
+
+def _unbound(name: str, frame: FrameType) -> str:
+    """The name that was meant by one that is not bound in a frame."""
+    if frame.f_code.co_name == name and "__qualname__" in frame.f_locals:
+        return f"this line is inside class {name}: indent it less"
+    node = frame.f_locals.get("self")
+    if node is not None and (name in vars(node) or hasattr(type(node), name)):
+        return f"write self.{name}"
+    return ""
+
+
+def unset(error: BaseException, frames: list[FrameType]) -> str:
+    """The method that sets an attribute which is None as yet."""
+    users = own(frames)
+    if not isinstance(error, AttributeError) or not str(error).startswith("'NoneType' object") or not users:
+        return ""
+    frame = users[-1]
+    for path in PATH.findall(line_of(frames)):
+        first, *rest = path.split(".")
+        node = frame.f_locals.get(first)
+        if first != "self" or len(rest) < 2 or rest[1] != error.name or vars(node).get(rest[0], node) is not None:
+            continue
+        for code in _functions(type(node)):
+            sets = any(s.opname == "STORE_ATTR" and s.argval == rest[0] for s in dis.get_instructions(code))
+            if sets and code is not frame.f_code and code.co_name != "__init__":
+                place = short_place(code.co_filename, code.co_firstlineno)
+                name = f"self.{rest[0]}"
+                return f"{name} is None until {code.co_name} ({place}) sets it: write if {name} is None: return"
+    return ""
+
+
+def _functions(cls: type) -> Iterator[CodeType]:
+    """The code of a class's methods that is the user's."""
+    for owner in cls.__mro__:
+        for value in vars(owner).values():
+            code = getattr(value, "__code__", None)
+            if isinstance(code, CodeType) and is_users(code.co_filename):
+                yield code
+
+
+FORMER = {
+    "rclpy.init_node": "write rclpy.init(), and node = rclpy.create_node('name')",
+    "rclpy.Publisher": "write node.create_publisher(Type, 'topic', 10)",
+    "rclpy.Subscriber": "write node.create_subscription(Type, 'topic', callback, 10)",
+    "rclpy.Rate": "write node.create_rate(10.0), or make a timer",
+    "rclpy.sleep": "make a timer: node.create_timer(1.0, callback)",
+    "rclpy.is_shutdown": "write not rclpy.ok()",
+    "rclpy.loginfo": "write node.get_logger().info(...)",
+    "rclpy.get_param": "write node.declare_parameter('name', 1.0).value",
+}
+"""Names of ROS 1's rospy."""
+
+
+def _in_rclpy(name: str, asked: str) -> str:
+    """The module of rclpy's that a name is from, or what it is called there."""
+    if f"{asked}.{name}" in FORMER:
+        return FORMER[f"{asked}.{name}"]
+    held = vars(sys.modules[asked]) if asked in sys.modules else {}
+    there = [word for word in held if word.lower() == name.lower() and not isinstance(held[word], ModuleType)]
+    if there:
+        return f"did you mean {there[0]!r}?"
+    enums = [cls for cls in held.values() if isinstance(cls, EnumType) and cls.__module__ == asked]
+    enums = [cls for cls in enums if name in cls.__members__]
+    if enums and asked != "rclpy":
+        return f"{name} is a value of {enums[0].__name__}: import that, and write {enums[0].__name__}.{name}"
+    modules = [f"rclpy.{found.name}" for found in pkgutil.iter_modules(sys.modules["rclpy"].__path__)]
+    homes = {module: str(getattr(getattr(import_module(module), name, None), "__module__", "")) for module in modules}
+    known = [module for module, home in homes.items() if home == module]
+    known += [module for module, home in homes.items() if home.startswith(f"{module}.")]
+    return f"{name} is in {known[0]}: from {known[0]} import {name}" if known else ""

@@ -1,0 +1,83 @@
+"""Tracebacks of programs, without the frames by which graphflow runs their callbacks."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from types import TracebackType
+
+from graphflow.analysis.user_code import is_ours, is_refusal, is_users, parts_of
+from graphflow.rclpy.hints import lookup
+from graphflow.runtime.mistakes.errors.attribute_errors import explain
+
+
+def install() -> None:
+    """Show errors that end the program or one of its threads this way; nothing where a hook of others is installed."""
+    if sys.excepthook is sys.__excepthook__:
+        sys.excepthook = _show
+    install_in_threads()
+
+
+def install_in_threads() -> None:
+    """Show errors that end a thread this way; nothing where a hook of others is installed."""
+    if threading.excepthook is threading.__excepthook__:
+        threading.excepthook = _show_in_thread
+
+
+def shorten(error: BaseException) -> None:
+    """Leave in an error's traceback, and in those of the errors that led to it, what helps the program's author.
+
+    The user's own frames stay. Of the others those stay that show where an error was raised, unless its text is enough:
+    KeyboardInterrupt, SyntaxError, the errors of rclpy's own, those that graphflow's code raises itself, and those for
+    which there is a next step to tell, which the error gets as a note.
+    """
+    explain(error)
+    hint = lookup.hint(error)
+    note = f"note: {hint}"
+    if hint and note not in getattr(error, "__notes__", ()):
+        error.add_note(note)
+    if hint and isinstance(error, (AttributeError, NameError)):
+        error.name = None  # Python would add a guess of its own
+    seen = set[int]()
+    following: BaseException | None = error
+    while following is not None and id(following) not in seen:
+        seen.add(id(following))
+        following.__traceback__ = _shortened(following, is_clear=bool(hint) and following is error)
+        following = following.__cause__ or following.__context__
+
+
+def _shortened(error: BaseException, *, is_clear: bool) -> TracebackType | None:
+    parts = list(parts_of(error.__traceback__))
+    own = [place for place, part in enumerate(parts) if is_users(part.tb_frame.f_code.co_filename)]
+    if is_clear or _is_clear(error) or (own and is_refusal(parts[-1], "assert")):
+        kept = [parts[place] for place in own]
+    elif own:
+        kept = [p for place, p in enumerate(parts) if place > own[-1] or (place >= own[0] and not _is_ours(p))]
+    else:
+        kept = parts
+    shown: TracebackType | None = None
+    for part in reversed(kept):
+        shown = TracebackType(shown, part.tb_frame, part.tb_lasti, part.tb_lineno)
+    return shown
+
+
+def _is_ours(part: TracebackType) -> bool:
+    return is_ours(part.tb_frame.f_code.co_filename)
+
+
+def _is_clear(error: BaseException) -> bool:
+    """Whether the place in graphflow's code where an error was raised tells nothing."""
+    return isinstance(error, (KeyboardInterrupt, SyntaxError)) or type(error).__module__.startswith("rclpy.")
+
+
+def _show(kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
+    shorten(error)
+    sys.__excepthook__(kind, error, error.__traceback__)
+
+
+def _show_in_thread(args: threading.ExceptHookArgs) -> None:
+    error = args.exc_value
+    if error is not None:
+        shorten(error)
+        args = threading.ExceptHookArgs((args.exc_type, error, error.__traceback__, args.thread))
+    threading.__excepthook__(args)

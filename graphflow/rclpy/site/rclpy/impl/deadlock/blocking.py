@@ -1,0 +1,203 @@
+"""What a callback, or a thread of a program's own, waits for: an answer, a future, an event, a lock."""
+
+from __future__ import annotations
+
+import ast
+import concurrent.futures.thread
+import sys
+import threading
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+from graphflow.analysis.class_source import Unknown
+from graphflow.analysis.frames import Frame, stack_from
+from graphflow.analysis.user_code import is_users
+from rclpy.action.client import ActionClient
+from rclpy.client import Client
+from rclpy.executors import Executor
+from rclpy.impl.deadlock.buffers import BufferWait, buffer_wait
+from rclpy.impl.deadlock.later_servers import tries_forever
+from rclpy.impl.deadlock.locks import Entering, entered_at, function_of
+from rclpy.impl.deadlock.stacks import Level
+from rclpy.task import Future
+from rclpy.timer import Rate, Timer
+
+_FUTURES = (
+    Client.call.__code__,
+    ActionClient._graphflow_block_on.__code__,
+    Executor.spin_until_future_complete.__code__,
+)
+"""Functions that block until a future is done, which they call `future`."""
+_SLEEP = Rate.sleep.__code__
+_OPENINGS = (Client.wait_for_service.__code__, ActionClient.wait_for_server.__code__)
+_SEARCHED = (*_FUTURES, _SLEEP, *_OPENINGS)
+
+_JOIN = threading.Thread.join.__code__
+_RESULT = concurrent.futures.Future.result.__code__
+_POOL = concurrent.futures.thread.__file__
+
+
+class Blocked(NamedTuple):
+    """What code waits for; one of these, or nothing that is known."""
+
+    future: Future[Any] | None = None
+    timer: Timer | None = None
+    lock: Entering | None = None
+    thread: int | None = None
+    """The identity of a thread whose end, or whose work in a pool, is waited for."""
+    buffer: BufferWait | None = None
+    service: str = ""
+    """The full name of a service for whose server it waits; of an action, that of a part of it."""
+    timeout: float | None = None
+    """Seconds until it gives up, from when it began."""
+
+
+def blocked(level: Level) -> Blocked:
+    """What the code of a thread waits for."""
+    for caller, frame in reversed([*pairwise([None, *level.frames])]):
+        assert frame is not None
+        if frame.f_code in _SEARCHED:
+            names = frame.f_locals
+            timeout = names.get("timeout_sec")
+            limit = timeout if isinstance(timeout, (int, float)) and timeout >= 0 else None
+            if frame.f_code is _SLEEP:
+                return Blocked(timer=names["self"]._timer)
+            if frame.f_code in _OPENINGS:
+                return Blocked(service=_service_of(names["self"]), timeout=limit)
+            if names.get("future") is not None:
+                return Blocked(future=names["future"], timeout=limit)
+        if (wait := buffer_wait(frame, caller)) is not None:
+            return Blocked(buffer=wait, timeout=wait.timeout)
+        if frame.f_code in (_JOIN, _RESULT):
+            names = frame.f_locals
+            thread = names["self"].ident if frame.f_code is _JOIN else _worker_of(names["self"])
+            return Blocked(thread=thread, timeout=names.get("timeout"))
+    users = level.innermost
+    if users is None:
+        return Blocked()
+    if (client := _polled_client(users)) is not None:
+        return Blocked(service=_service_of(client))
+    return Blocked(future=_polled(users), lock=entered_at(users) if users is level.frames[-1] else None)
+
+
+def _service_of(client: Client | ActionClient) -> str:
+    endpoint = client._endpoint if isinstance(client, Client) else client._graphflow_goals
+    return str(endpoint.name)
+
+
+def is_private(level: Level) -> bool:
+    """Whether the future that is waited for is known to nobody but rclpy: it is that of a call that blocks."""
+    codes = {frame.f_code for frame in level.frames}
+    return not codes.isdisjoint((Client.call.__code__, ActionClient.send_goal.__code__))
+
+
+def limit_of(level: Level) -> float | None:
+    """The seconds after which a wait for an event, a queue or the like is given up; None for never."""
+    for frame in reversed(level.frames):
+        if is_users(frame.f_code.co_filename):
+            break
+        timeout = frame.f_locals.get("timeout")
+        if isinstance(timeout, (int, float)):
+            return timeout
+    return None
+
+
+def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
+    """The thread of a pool that works for a future."""
+    for thread, innermost in sys._current_frames().items():
+        for frame in stack_from(innermost):
+            if frame.f_code.co_filename == _POOL and getattr(frame.f_locals.get("self"), "future", None) is future:
+                return thread
+    return None
+
+
+# a loop that asks a future whether it is done
+
+
+def _polled(frame: Frame) -> Future[Any] | None:
+    """The future that the innermost loop around a line asks, if that is all that ends the loop."""
+    loop = _loop_around(frame)
+    if loop is None:
+        return None
+    asked = [*_asked(loop.test)]
+    if asked:
+        return _future(asked[0], frame) if len(asked) == 1 and _asks_alone(loop) else None
+    if not (isinstance(loop.test, ast.Constant) or ast.unparse(loop.test) in ("rclpy.ok()", "ok()")):
+        return None
+    choices = [n for n in loop.body if isinstance(n, ast.If) and [*_asked(n.test)]]
+    if (
+        len(choices) != 1
+        or isinstance(choices[0].test, ast.BoolOp)
+        or _leaves([n for n in loop.body if n is not choices[0]])
+    ):
+        return None
+    return _future(next(_asked(choices[0].test)), frame)
+
+
+def _loop_around(frame: Frame) -> ast.While | None:
+    """The innermost loop around a line."""
+    try:
+        function = function_of(frame)
+    except Unknown:
+        return None
+    loops = [n for n in ast.walk(function) if isinstance(n, ast.While) and _spans(n, frame.f_lineno)]
+    return loops[-1] if loops else None
+
+
+def _asked(test: ast.expr) -> Iterator[ast.expr]:
+    """What a condition asks whether it is done."""
+    for node in ast.walk(test):
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner, attr="done"), args=[]):
+                yield owner
+            case ast.Compare(
+                left=ast.Call(func=ast.Attribute(value=owner, attr="result"), args=[]),
+                ops=[ast.Is() | ast.IsNot()],
+                comparators=[ast.Constant(value=None)],
+            ):
+                yield owner
+
+
+def _asks_alone(loop: ast.While) -> bool:
+    """Whether only the answer that a loop asks for, or the end of the program, ends it: no clock and no counter."""
+    is_both = isinstance(loop.test, ast.BoolOp) and isinstance(loop.test.op, ast.And)
+    parts = loop.test.values if is_both else [loop.test]  # type: ignore[attr-defined]
+    others = [part for part in parts if not ast.unparse(part).endswith("ok()") and not [*_asked(part)]]
+    nested = [node for part in parts for node in ast.walk(part) if isinstance(node, ast.BoolOp)]
+    return not (others or nested or _leaves(loop.body))
+
+
+def _leaves(body: list[ast.stmt]) -> bool:
+    """Whether statements may leave the loop that they are in."""
+    return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
+
+
+def _future(expression: ast.expr, frame: Frame) -> Future[Any] | None:
+    found = _value(expression, frame)
+    return found if isinstance(found, Future) else None
+
+
+def _value(expression: ast.expr, frame: Frame) -> Any:
+    """The value of a name, or of an attribute of one; None where that is not known."""
+    match expression:
+        case ast.Name(id=name):
+            return frame.f_locals.get(name, frame.f_globals.get(name))
+        case ast.Attribute(value=ast.Name(id=owner), attr=name):
+            return getattr(frame.f_locals.get(owner), "__dict__", {}).get(name)
+    return None
+
+
+def _polled_client(frame: Frame) -> Client | ActionClient | None:
+    """The client that the innermost loop around a line asks for its server, until that is there."""
+    loop = _loop_around(frame)
+    for node in ast.walk(loop.test) if loop is not None and tries_forever(frame) else ():
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner, attr="service_is_ready" | "server_is_ready")):
+                found = _value(owner, frame)
+                return found if isinstance(found, (Client, ActionClient)) else None
+    return None
+
+
+def _spans(node: ast.stmt, line: int) -> bool:
+    return node.lineno <= line <= (node.end_lineno or line)

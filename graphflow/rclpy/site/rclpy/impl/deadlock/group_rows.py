@@ -1,0 +1,48 @@
+"""Callback groups and executors as plain data, for people to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
+
+from rclpy.executors import Executor
+from rclpy.impl.deadlock.groups import called, is_exclusive, threads_of
+from rclpy.impl.entities import Role, arrived, entities_of
+from rclpy.impl.spinning import Run
+
+
+def group_rows(
+    nodes: Iterable[Any], roles: Mapping[Any, Role], runs: Collection[Run], spun: Collection[Executor]
+) -> dict[str, list[dict[str, Any]]]:
+    """The callback groups of each node, with their callbacks.
+
+    Args:
+        runs: The callbacks under way.
+        spun: The executors that some thread spins.
+    """
+    found: dict[str, list[dict[str, Any]]] = {}
+    for node in nodes:
+        rows: dict[Any, dict[str, Any]] = {}
+        for entity in entities_of(node):
+            role = roles[entity]
+            if role.is_inner:
+                continue
+            row = rows.setdefault(entity.callback_group, _row(entity.callback_group, node))
+            running = sum(run.entity is entity for run in runs)
+            numbers = {"running": running, "waiting": arrived(entity)[1], "runs": None, "errors": 0}
+            row["handlers"].append({"handler": role.handler, "kind": role.kind, **numbers})
+        executor = node.executor
+        if executor is not None:
+            limit = threads_of(executor)
+            name = f"{type(executor).__name__}{'' if executor in spun else ' (not spinning)'}"
+        else:
+            limit, name = 0, "no executor"
+        about = {"name": name, "limit": limit, "when_full": "wait", "thread": False, "sort": "executor"}
+        found[str(node._graphflow.node.full_name)] = [*rows.values(), {**about, "handlers": []}]
+    return found
+
+
+def _row(group: Any, node: Any) -> dict[str, Any]:
+    """A callback group as plain data, with nothing in it yet."""
+    about = {"name": called(group, node), "limit": 1 if is_exclusive(group) else None, "when_full": "wait"}
+    return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}

@@ -1,0 +1,101 @@
+"""What a node of rclpy's has, under one name that no subclass writes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy.context_state import ContextState
+from graphflow.rclpy.node_bridge import HeldNode, NodeBell
+from graphflow.runtime.node_core import core_of
+from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from rclpy.client import Client
+from rclpy.clock import ROSClock
+from rclpy.context import Context
+from rclpy.guard_condition import GuardCondition
+from rclpy.impl.mistakes.arguments import Unmade
+from rclpy.impl.parameters import NodeParameters
+from rclpy.logging import get_logger
+from rclpy.publisher import Publisher
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.time_source import TimeSource
+from rclpy.timer import Timer
+
+if TYPE_CHECKING:
+    from rclpy.waitable import Waitable
+
+
+class Internals:
+    """What a node has, under one name that no subclass writes."""
+
+    def __init__(self, context: Context, life: ContextState, node: HeldNode, bell: NodeBell) -> None:
+        self.context, self.life, self.node, self.bell = context, life, node, bell
+        self.core = core_of(node)
+        self.publishers: list[Publisher] = []
+        self.subscriptions: list[Subscription] = []
+        self.clients: list[Client] = []
+        self.services: list[Service] = []
+        self.timers: list[Timer] = []
+        self.guards: list[GuardCondition] = []
+        self.waitables: list[Waitable] = []
+        self.executor: Callable[[], Any] = none
+        self.begun = time.monotonic()
+        self.times_added = 0
+        """How often it was added to an executor."""
+        self.group: CallbackGroup = MutuallyExclusiveCallbackGroup()
+        self.rate_group: CallbackGroup | None = None
+        self.logger = get_logger(node.full_name[1:].replace("/", "."))
+        self.clock = ROSClock()
+        self.time_source: TimeSource | None = None
+        self.parameters: NodeParameters
+        self.events: Publisher | None = None
+
+
+class Known:
+    """An attribute of a node that code reads which knows rclpy from within; a node may have its own of that name."""
+
+    def __init__(self, get: Callable[[Any], Any]) -> None:
+        self._get = get
+
+    def __get__(self, node: Any, owner: type) -> Any:
+        return self if node is None else self._get(node)
+
+
+def none() -> None:
+    """No executor."""
+
+
+class Holdings:
+    """What a node has, to be looked at; for `Node` to derive from."""
+
+    _graphflow: Internals = Unmade()  # type: ignore[assignment]
+
+    @property
+    def publishers(self) -> Iterator[Publisher]:
+        yield from self._graphflow.publishers
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription]:
+        yield from self._graphflow.subscriptions
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        yield from self._graphflow.clients
+
+    @property
+    def services(self) -> Iterator[Service]:
+        yield from self._graphflow.services
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        yield from self._graphflow.timers
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        yield from self._graphflow.guards
+
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        yield from self._graphflow.waitables

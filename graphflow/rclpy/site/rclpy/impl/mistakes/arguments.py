@@ -1,0 +1,208 @@
+"""Arguments that do not fit: said in words of the call itself, where ROS 2 tells what it came upon later.
+
+An error stays of the class that ROS 2 raises.
+"""
+
+from __future__ import annotations
+
+import inspect
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from itertools import combinations, permutations
+from typing import Any, ParamSpec, TypeVar
+
+from graphflow.analysis.user_code import short_place
+from graphflow.msgs import registry
+from graphflow.msgs.registry import KINDS
+from rclpy.impl.callers import caller
+from rclpy.impl.mistakes import repeats
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyEnum, QoSProfile, ReliabilityPolicy
+
+P = ParamSpec("P")
+T = TypeVar("T")
+logger = logging.getLogger("graphflow")
+
+
+def _is_callback(value: object) -> bool:
+    return callable(value) and not isinstance(value, type)
+
+
+def _is_interface(*parts: str) -> Callable[[object], bool]:
+    return lambda value: isinstance(value, type) and all(hasattr(value, part) for part in parts)
+
+
+_PARAMETERS: dict[str, tuple[str, Callable[[object], bool]]] = {
+    "node": ("a node", lambda value: hasattr(value, "default_callback_group")),
+    "msg_type": ("a message class", _is_interface("SCHEMA")),
+    "srv_type": ("a service class", _is_interface("Request")),
+    "action_type": ("an action class", _is_interface("Goal")),
+    "qos_profile": ("a QoSProfile or a depth", lambda value: isinstance(value, (QoSProfile, int))),
+    "timer_period_sec": ("a number of seconds", lambda value: isinstance(value, (int, float))),
+    "frequency": ("a number of hertz", lambda value: isinstance(value, (int, float))),
+    "parameter_list": ("a list of parameters", lambda value: isinstance(value, Iterable)),
+    **dict.fromkeys(("topic", "srv_name", "action_name"), ("a name", lambda value: isinstance(value, str))),
+    **dict.fromkeys(("callback", "execute_callback"), ("a function or method", _is_callback)),
+}
+"""The kinds of values that calls take, by parameter."""
+_WRITTEN = {"parameter_list": "[Parameter('name', value=...)]"}
+"""Arguments as a call has them, where the name of the parameter does not say it."""
+
+
+def explained(call: Callable[P, T]) -> Callable[P, T]:
+    """Have the errors of a call say which of its arguments does not fit, and how it is written."""
+    signature = inspect.signature(call)
+    name = call.__qualname__.partition(".")[0] if call.__name__ == "__init__" else call.__name__
+    needed = [p.name for p in list(signature.parameters.values())[1:] if p.default is p.empty]
+
+    @wraps(call)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            made = call(*args, **kwargs)
+        except (TypeError, AttributeError, RuntimeError) as error:
+            try:
+                given = signature.bind_partial(*args, **kwargs).arguments
+            except TypeError:
+                raise error.with_traceback(None) from None
+            fault = _fault(name, {word: given[word] for word in needed if word in given}, needed)
+            fault = fault or _no_group(name, given.get("callback_group"))
+            if not fault:
+                raise
+            kind = next(kind for kind in (TypeError, AttributeError, RuntimeError) if isinstance(error, kind))
+            raise kind(fault) from None
+        if "callback" in needed and signature.bind(*args, **kwargs).arguments["callback"] is None:
+            _warn(name)
+        if "qos_profile" in signature.parameters:
+            _check_depth(name, signature.bind(*args, **kwargs).arguments.get("qos_profile"))
+        repeats.count(args[0], name, made)
+        return made
+
+    return checked
+
+
+def _fault(name: str, given: Mapping[str, Any], needed: list[str]) -> str:
+    """The fault in the arguments of a call; empty if they are of the right kinds."""
+    for words in combinations(needed, len(given)) if len(given) < len(needed) else ():
+        if all(map(_fits, words, given.values())):
+            values = dict(zip(words, map(_shown, given.values()), strict=True))
+            missing = " and ".join(word for word in needed if word not in words)
+            return f"{name} needs {missing}, too: {name}({', '.join(values.get(word, word) for word in needed)})"
+    wrong = [word for word, value in given.items() if not _fits(word, value)]
+    if not wrong:
+        return ""
+    for order in permutations(given.values()) if len(given) == len(needed) else ():
+        if all(map(_fits, needed, order)):
+            return f"the arguments of {name} are in another order: {name}({', '.join(map(_shown, order))})"
+    if any("callback" in word for word in wrong):
+        return _no_callback(name, next(given[word] for word in wrong if "callback" in word))
+    word = wrong[0]
+    way = _class_meant(word, given[word])
+    if way:
+        return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: {way}"
+    expected = f"{name}({', '.join(_WRITTEN.get(word, word) for word in needed)})"
+    return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: write {expected}"
+
+
+def _class_meant(word: str, value: object) -> str:
+    """Say how the class of an interface is given, in place of something else; empty if that is not known."""
+    if not word.endswith("_type"):
+        return ""
+    if isinstance(value, str):
+        names = [f"{p}/{kind}/{n}" for p in registry.packages() for kind in KINDS for n in registry.names_in(p, kind)]
+        found = next((n for n in names if value in (n, n.replace("/", "."), n.rpartition("/")[2])), "")
+        package, _, base = found.replace("/", ".").rpartition(".")
+        return f"give the class: from {package} import {base}" if found else ""
+    for part, (kind, calls) in _USES.items():
+        if isinstance(value, type) and hasattr(value, part):
+            return f"{value.__name__} is {kind}: use {calls}"
+    return ""
+
+
+_USES = {
+    "Goal": ("an action", "ActionServer or ActionClient"),
+    "Request": ("a service", "create_service or create_client"),
+    "SCHEMA": ("a message", "create_publisher or create_subscription"),
+}
+"""Kinds of interface classes, by an attribute that no other kind has, and the calls that take them."""
+
+
+def _no_callback(name: str, value: object) -> str:
+    given = "None" if value is None else _shown(value)
+    return (
+        f"{name} was given {given} as its callback: give it the method itself, without parentheses, as in self.method; "
+        "self.method() calls it at once, and gives what it returns"
+    )
+
+
+def _no_group(name: str, value: object) -> str:
+    """The fault of what is given as a callback group; empty if it is one, or none."""
+    if value is None or (hasattr(value, "beginning_execution") and not isinstance(value, type)):
+        return ""
+    if isinstance(value, (int, QoSProfile)):
+        thing = name.removeprefix("create_")
+        return f"a {thing} has no depth: leave out {_shown(value)}, which is taken for its callback group"
+    made = value.__name__ if isinstance(value, type) else "MutuallyExclusiveCallbackGroup"
+    given = f"the class {made}" if isinstance(value, type) else repr(value)
+    return f"callback_group of {name} must be a callback group, got {given}: make one, as in {made}()"
+
+
+def _fits(word: str, value: object) -> bool:
+    return word not in _PARAMETERS or _PARAMETERS[word][1](value)
+
+
+def _shown(value: object) -> str:
+    """A value as one would write it."""
+    if inspect.ismethod(value):
+        return f"self.{value.__name__}"
+    if isinstance(value, type) or inspect.isfunction(value):
+        return value.__name__
+    if isinstance(value, (str, int, float)):
+        return repr(value)
+    return "qos_profile" if isinstance(value, QoSProfile) else "self" if _fits("node", value) else type(value).__name__
+
+
+def _warn(name: str) -> None:
+    """Tell that a call was given None as its callback, which ROS 2 takes; not where graphflow itself does that."""
+    asked = caller(2)
+    if asked is not None:
+        logger.warning("%s (%s)", _no_callback(name, None), asked.place)
+
+
+_POLICIES = {DurabilityPolicy: "durability", HistoryPolicy: "history", ReliabilityPolicy: "reliability"}
+
+
+def _check_depth(name: str, qos: object) -> None:
+    """Tell that a policy was given in the place of a depth, as which ROS 2 takes its number."""
+    asked = caller(2) if isinstance(qos, QoSPolicyEnum) else None
+    if asked is not None and isinstance(qos, QoSPolicyEnum):
+        policy = f"{type(qos).__name__}.{qos.name}"
+        text = "%s takes %s for a depth of %d: write QoSProfile(depth=10, %s=%s) (%s)"
+        word = _POLICIES.get(type(qos), "liveliness")
+        logger.warning(text, name, policy, int(qos), word, policy, asked.place)
+
+
+class Unmade:
+    """Stands in a node's class for its workings, which `Node.__init__` makes."""
+
+    def __get__(self, node: Any, owner: type) -> Any:
+        if node is None:
+            return self
+        code = getattr(owner.__init__, "__code__", None)  # type: ignore[misc]  # which class it is does not matter
+        place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
+        name = owner.__name__
+        raise AttributeError(
+            f"{name} is no node yet: {name}.__init__{place} must call super().__init__('node_name') before all else"
+        )
+
+
+def must_return(callback: Any, what: str, value: object) -> str:
+    """The sentence for a callback that has returned something else than `what`."""
+    given = "None" if value is None else type(value).__name__
+    return f"{described(callback)} must return {what}, and returned {given}"
+
+
+def described(callback: Any) -> str:
+    """A callback with its line: `tick (lamp.py:12)`."""
+    code = getattr(callback, "__code__", None)
+    place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
+    return f"{getattr(callback, '__name__', type(callback).__name__)}{place}"

@@ -1,0 +1,64 @@
+"""Lines of a program that name a method of a node's part and do not call it: `self.timer.cancel`.
+
+Python runs them without a word, and without an effect.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.uncalled import uncalled_methods
+from graphflow.analysis.user_code import is_users, short_place
+from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.misgiven import misgiven
+from rclpy.impl.entities import entities_of
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+
+logger = logging.getLogger("graphflow")
+
+
+class Uncalled:
+    """Such lines in the files of one context's nodes, each told once."""
+
+    def __init__(self, life: ContextState) -> None:
+        self._life = life
+        self._nodes: set[int] = set()
+        """The ids of the nodes whose files have been read: their entities are there once they are spun, or leave."""
+        self._files: set[str] = set()
+        life.on_leaving.append(self._leaves)
+
+    def look(self) -> None:
+        """Read the files of nodes that are spun for the first time."""
+        for node in list(self._life.nodes):
+            if node._graphflow.times_added and node._graphflow.core.id not in self._nodes:  # type: ignore[attr-defined]
+                self._read(node)
+
+    def _leaves(self, node: Any) -> None:
+        self._read(node)
+        self._nodes.discard(node._graphflow.core.id)
+
+    def _read(self, node: Any) -> None:
+        self._nodes.add(node._graphflow.core.id)
+        for file in set(_files_of(node)) - self._files:
+            self._files.add(file)
+            with suppress(OSError, SyntaxError, ValueError):  # no source to be read
+                module = syntax_of(file).module
+                told = (*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module))
+                for line, text in told:
+                    logger.warning("%s: %s", short_place(file, line), text)
+
+
+def _files_of(node: Any) -> Iterator[str]:
+    """The files of a node's class and its callbacks that are the user's."""
+    functions = [value for cls in type(node).__mro__ for value in vars(cls).values()]
+    functions += [getattr(e, "callback", None) or getattr(e, "_execute_callback", None) for e in entities_of(node)]
+    for function in functions:
+        code = getattr(function, "__code__", None)
+        if code is not None and is_users(code.co_filename):
+            yield code.co_filename

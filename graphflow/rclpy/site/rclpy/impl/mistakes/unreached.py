@@ -1,0 +1,210 @@
+"""Calls that come after `rclpy.spin(node)`, which ends only with the program: requests, goals, and nodes made there.
+
+When a spin has ended, the context is shut down: what needs the network could not be done then, either. What a program
+does at its end, such as to destroy, to log, to save and to plot, is not told, and neither is what `finally` does.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import logging
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from types import CodeType, FunctionType, MethodType
+from typing import Any, NamedTuple
+
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
+from graphflow.analysis.user_code import is_ours, is_users, short_place
+from graphflow.reading import found_text
+from rclpy.action.client import ActionClient
+from rclpy.client import Client
+from rclpy.executors import Executor
+from rclpy.impl.deadlock.stacks import stacks
+
+TELL_AFTER = 3.0
+"""Seconds that a spin must have lasted."""
+LOOK_EVERY = 1.0
+"""Seconds between two looks at what threads spin."""
+_SENDS = {"call_async", "send_goal_async", "send_goal", "wait_for_service", "wait_for_server"}
+_SENDS |= {"spin_until_future_complete"}
+"""Methods that need other nodes."""
+_DEPTH = 3
+"""Methods that may lie between a call and one that needs other nodes."""
+_SHOWN = 60
+"""Characters of a call that a message shows."""
+logger = logging.getLogger("graphflow")
+
+
+class _Late(NamedTuple):
+    """A call that comes after a spin."""
+
+    line: int
+    name: str
+    is_node: bool
+    """Whether it makes a node."""
+
+
+class Unreached:
+    """The spins of one process, each told once."""
+
+    def __init__(self) -> None:
+        self._next = 0.0
+        self._since: dict[tuple[CodeType, int], float] = {}
+        """When each line was first seen to spin, by the monotonic clock."""
+        self._read: set[tuple[CodeType, int]] = set()
+        """The lines whose functions have been read."""
+
+    def look(self) -> None:
+        """Tell of what comes after spins that have lasted for long."""
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + LOOK_EVERY
+        frames = {(frame.f_code, frame.f_lineno): frame for frame in _spinning()}
+        self._since = {line: self._since.get(line, now) for line in frames}
+        for line, since in self._since.items():
+            if now - since >= TELL_AFTER and line not in self._read:
+                # The source may be gone, or not what runs, and objects of the program's may raise when they are asked.
+                with suppress(Exception):
+                    _tell(frames[line])
+                self._read.add(line)
+
+
+def _spinning() -> Iterator[Frame]:
+    """The user's functions that have called what spins for ever."""
+    for stack in stacks():
+        frames = stack.levels[0].frames
+        at = next((place for place, frame in enumerate(frames) if _is_spin(frame.f_code)), None)
+        if stack.is_users and at is not None:
+            yield from (frame for frame in frames[:at] if is_users(frame.f_code.co_filename))
+
+
+def _is_spin(code: CodeType) -> bool:
+    """Whether it is `rclpy.spin` or an executor's, which come back when the context is shut down."""
+    return code.co_name == "spin" and is_ours(code.co_filename)
+
+
+def _tell(frame: Frame) -> None:
+    file = frame.f_code.co_filename
+    function = _function_of(frame)
+    if function is None:
+        return
+    spin, later = _after(function, frame.f_lineno)
+    if spin is None or (not ast.unparse(spin.func).startswith("rclpy.") and _may_be_ended(file, function)):
+        return
+    found = next((late for statement in later for late in _late_calls(statement, frame)), None)
+    if found is not None:
+        text = "%s comes after %s, which does not return: %s before that ends; %s"
+        done = f"{found.name} is not {'made' if found.is_node else 'called'}"
+        way = "make it before, and spin both in one executor" if found.is_node else "call it before, or leave that out"
+        shown = ast.unparse(spin)
+        shown = shown if len(shown) <= _SHOWN else f"{ast.unparse(spin.func)}(...)"
+        logger.warning(text, short_place(file, found.line), shown, done, way)
+
+
+def _function_of(frame: Frame) -> ast.AST | None:
+    """The function that a frame runs, or its module."""
+    syntax = syntax_of(frame.f_code.co_filename)
+    if frame.f_code.co_name == "<module>":
+        return syntax.module
+    return next((f for f in syntax.functions if first_line(f) == frame.f_code.co_firstlineno), None)
+
+
+def _after(function: ast.AST, line: int) -> tuple[ast.Call | None, list[ast.stmt]]:
+    """The call of a line, and the statements that come after it, if it returns as it should.
+
+    Statements behind a `try` that it is in are left out, as are `except` and `finally`: they are for the end.
+    """
+    later: list[ast.stmt] = []
+    block: list[ast.stmt] = function.body  # type: ignore[attr-defined]
+    while True:
+        at = next((i for i, one in enumerate(block) if one.lineno <= line <= (one.end_lineno or 0)), None)
+        if at is None:
+            return None, []
+        statement = block[at]
+        later = [*block[at + 1 :], *later]
+        inner = next((b for b in _blocks(statement) if b[0].lineno <= line <= (b[-1].end_lineno or 0)), None)
+        if inner is None:
+            calls = [
+                n for n in ast.walk(statement) if isinstance(n, ast.Call) and n.lineno <= line <= (n.end_lineno or 0)
+            ]
+            return next(iter(calls), None), list(_until_end(later))
+        if isinstance(statement, (ast.Try, ast.TryStar)):
+            if inner is not statement.body:
+                return None, []
+            later = []
+        block = inner
+
+
+def _blocks(statement: ast.stmt) -> Iterator[list[ast.stmt]]:
+    for name in ("body", "orelse", "finalbody"):
+        if not isinstance(statement, FunctionNode | ast.ClassDef) and (block := getattr(statement, name, None)):
+            yield block
+    for handler in (*getattr(statement, "handlers", ()), *getattr(statement, "cases", ())):
+        yield handler.body
+
+
+def _until_end(statements: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements up to one that leaves the function, or that begins anew with another context."""
+    for statement in statements:
+        if isinstance(statement, (ast.Return, ast.Raise)) or "rclpy.init(" in ast.unparse(statement):
+            return
+        yield statement
+
+
+def _may_be_ended(file: str, function: ast.AST) -> bool:
+    """Whether other code of a file may shut an executor down, whose `spin()` then returns."""
+    own = range(getattr(function, "lineno", 0), (getattr(function, "end_lineno", 0) or 0) + 1)
+    lines = enumerate(found_text(Path(file), "replace").splitlines(), 1)
+    return any(".shutdown(" in line.replace("rclpy.shutdown(", "") for number, line in lines if number not in own)
+
+
+def _late_calls(statement: ast.stmt, frame: Frame) -> Iterator[_Late]:
+    """The calls in a statement that need other nodes, or that make a node."""
+    calls = [node for node in ast.walk(statement) if isinstance(node, ast.Call)]
+    for call in sorted(calls, key=lambda c: (c.lineno, c.col_offset)):
+        name = ast.unparse(call.func).rpartition(".")[2]
+        thing = _resolved(call.func, frame)
+        if isinstance(thing, type) and any(cls.__module__ == "rclpy.node" for cls in thing.__mro__):
+            yield _Late(call.lineno, name, is_node=True)
+        elif _needs_others(thing, _DEPTH):
+            yield _Late(call.lineno, name, is_node=False)
+
+
+def _resolved(expression: ast.expr, frame: Frame) -> Any:
+    """What an expression stands for, as far as that is known without running anything."""
+    match expression:
+        case ast.Name(id=name):
+            return frame.f_locals.get(name, frame.f_globals.get(name))
+        case ast.Attribute(value=owner, attr=name):
+            thing = _resolved(owner, frame)
+            found = inspect.getattr_static(thing, name, None)
+            if isinstance(found, FunctionType) and not isinstance(thing, type) and not inspect.ismodule(thing):
+                return MethodType(found, thing)
+            return found
+    return None
+
+
+def _needs_others(thing: Any, depth: int) -> bool:
+    """Whether a function is one that needs other nodes, or a user's that calls one."""
+    code = getattr(thing, "__code__", None)
+    if not isinstance(code, CodeType) or not depth:
+        return False
+    if not is_users(code.co_filename):
+        owner = getattr(thing, "__self__", None)
+        is_call = code.co_name == "call" and isinstance(owner, Client)
+        return is_call or (
+            code.co_name in _SENDS and (owner is None or isinstance(owner, (Client, ActionClient, Executor)))
+        )
+    if not _SENDS.isdisjoint(code.co_names):
+        return True
+    owner = getattr(thing, "__self__", None)
+    inner = (inspect.getattr_static(type(owner), name, None) for name in code.co_names) if owner is not None else ()
+    return any(
+        isinstance(f, FunctionType) and f.__code__ is not code and _needs_others(MethodType(f, owner), depth - 1)
+        for f in inner
+    )

@@ -1,0 +1,122 @@
+"""Timers that are not what they were made for: of a period of zero, called late again and again, or without time.
+
+In ROS 2 the first keeps a processor busy, the second leave out calls, and the third stand still, all without a word.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakSet
+
+from graphflow.runtime.node_clock import TIMELESS
+from rclpy.constants import S_TO_NS
+from rclpy.impl.deadlock.stacks import stacks
+from rclpy.impl.entities import full_name, role_of
+from rclpy.impl.spinning import Run
+from rclpy.impl.watches.starvation import OWN_GROUP, RETURN, HeldUp, kept_by, label_of, node_of, place_of, word_and_line
+from rclpy.timer import Timer
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+
+TELL_AFTER = 3.0
+"""Seconds that a timer may have a period of zero, and a node's clock may stand still."""
+SLOW = 0.5
+"""Seconds that callbacks may take before it is looked for timers that are late because of them."""
+SLOW_ONCE = 1.5
+"""Seconds from which on it is told at the first time: less may be what only the first call needs."""
+logger = logging.getLogger("graphflow")
+
+
+class _Slow(NamedTuple):
+    """A run that makes timers late."""
+
+    title: str
+    place: str
+    late: Timer
+    is_own: bool
+    """Whether the timer is late for its own callback."""
+
+
+class LateTimers:
+    """The timers of one context's nodes, each told once."""
+
+    def __init__(self, life: ContextState, held_up: HeldUp) -> None:
+        self._life, self._held_up = life, held_up
+        self._since: dict[Any, float] = {}
+        """When each step of a run was first seen, and each timer or node that is to be told, by the monotonic clock."""
+        self._slow: dict[Any, _Slow] = {}
+        """The steps that make timers late, while they run."""
+        self._were_slow: set[str] = set()
+        """The callbacks that have made timers late once."""
+        self._known: WeakSet[Any] = WeakSet()
+        """The timers and nodes of which it has been told."""
+
+    def look(self) -> None:
+        """Tell what has come about."""
+        now = time.monotonic()
+        runs = {(run, run.stepped_ns): run for run in self._held_up.runs() if run.thread}
+        nodes: list[Any] = list(self._life.nodes)
+        restless = {timer: node for node in nodes for timer in list(node.timers) if _is_restless(timer)}
+        timeless = {node: node for node in nodes if _is_timeless(node)}
+        seen = {*runs, *restless, *timeless}
+        for key in [key for key in self._since if key not in seen]:
+            seconds, slow = now - self._since.pop(key), self._slow.pop(key, None)
+            if slow is not None:
+                self._tell_slow(slow, seconds)
+        for key in seen:
+            seconds = now - self._since.setdefault(key, now)
+            if key in runs:
+                if seconds >= SLOW and (slow := self._slow_one(runs[key], seconds)) is not None:
+                    self._slow[key] = slow
+            elif seconds >= TELL_AFTER and key not in self._known:
+                self._known.add(key)
+                if key in timeless:
+                    key.get_logger().warning(f"{full_name(key)}: {TIMELESS}")
+                else:
+                    _tell_restless(key, restless[key])
+
+    def _slow_one(self, run: Run, seconds: float) -> _Slow | None:
+        """The report on a run that has taken so many seconds; None if it makes no timer late."""
+        node, level = node_of(run), next((s.levels[-1] for s in stacks() if s.levels[-1].run is run), None)
+        if node is None or level is None or level.waiting is not None:
+            return None
+        late = [t for t in kept_by(run) if isinstance(t, Timer) and 0 < 2 * t.timer_period_ns <= seconds * S_TO_NS]
+        if not late:
+            return None
+        own = next((timer for timer in late if timer is run.entity), None)
+        title = f"{label_of(run)} of {full_name(node)}"
+        if self._held_up.is_deadlocked(run, title):
+            return None
+        return _Slow(title, place_of(level, node), own or late[0], own is not None)
+
+    def _tell_slow(self, slow: _Slow, seconds: float) -> None:
+        if slow.title not in self._were_slow and seconds < SLOW_ONCE:
+            self._were_slow.add(slow.title)
+        elif not self._held_up.is_known(slow.title):
+            every = f"every {slow.late.timer_period_ns / S_TO_NS:g} s"
+            if slow.is_own:
+                late, way = f"is due {every}", f"{RETURN}, or give it a longer period"
+            else:
+                late, way = (
+                    f"keeps {role_of(slow.late).label}, which is due {every}, waiting",
+                    f"{RETURN}, or {OWN_GROUP}",
+                )
+            logger.warning("%s takes %.1f s, as in %s, and %s: %s", slow.title, seconds, slow.place, late, way)
+
+
+def _is_restless(timer: Timer) -> bool:
+    is_inner = timer.timer_period_ns == 0 and role_of(timer).is_inner
+    return timer.timer_period_ns == 0 and not is_inner and not timer.handle.is_destroyed and not timer.is_canceled()
+
+
+def _tell_restless(timer: Timer, node: Any) -> None:
+    text = "%s of %s has a period of 0 s, and is called all the time: give it one, as in create_timer(0.1, ...)"
+    logger.warning(text, word_and_line(timer), full_name(node))
+
+
+def _is_timeless(node: Any) -> bool:
+    source = node._graphflow.time_source
+    return source is not None and source.ros_time_is_active and source.last_ns == 0

@@ -1,0 +1,85 @@
+"""Nodes that leave the executor that spins them, by another spin or by their own callback: nothing of theirs runs then.
+
+In ROS 2 they fall silent without a word.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+from graphflow.analysis.user_code import short_place, users_frame
+from graphflow.rclpy.context_state import LOOP
+from rclpy.impl.deadlock.stacks import is_in_run, stacks
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+
+TELL_AFTER = 1.0
+"""Seconds within which somebody may spin the node again, or end the spin."""
+_IN_A_CALLBACK = "do not spin in a callback: future.add_done_callback(...), or await it in an async def callback"
+logger = logging.getLogger("graphflow")
+
+
+def watch(node: Any, former: Any, what: str) -> None:
+    """Tell it if nobody spins a node again, and its former executor goes on without it.
+
+    Args:
+        node: The node that was spun by `what`, a function of rclpy's, and is in no executor now.
+        former: The executor that it was in before.
+    """
+    begin = sys._getframe()
+    where = _users_place(begin)
+    if not where:
+        return
+    remedy = (
+        _IN_A_CALLBACK
+        if is_in_run(begin)
+        else f"spin the executor, with all its nodes: {what.replace('rclpy', 'executor')}(...)"
+    )
+    text = (
+        f"{node.get_fully_qualified_name()} is spun by nobody any more: {what}, called in {where}, took it out of its "
+        f"{type(former).__name__} and left it in none, as in ROS 2\nThis ends it:\n  {remedy}"
+    )
+    times = node._graphflow.times_added
+
+    def look() -> None:
+        if node._graphflow.times_added == times and not node.handle.is_destroyed and _is_spun(former):
+            logger.error("%s", text)
+
+    node._graphflow.life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, look), wait=False)
+
+
+def attend(life: ContextState) -> None:
+    """Tell it when a callback destroys the last node of its executor, and the spin goes on."""
+    life.on_leaving.append(_destroyed)
+
+
+def _destroyed(node: Any) -> None:
+    executor, begin = node.executor, sys._getframe()
+    if executor is None or executor.spinning.nodes or not is_in_run(begin):
+        return
+    place, name = _users_place(begin), node.get_fully_qualified_name()
+
+    def look() -> None:
+        spinning = executor.spinning
+        if not spinning.nodes and spinning.waits_forever and _is_spun(executor):
+            text = "%s destroyed %s, and its spin goes on without a node: to end it as well, raise SystemExit there"
+            logger.warning(text, place, name)
+
+    if place:
+        node._graphflow.life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, look), wait=False)
+
+
+def _users_place(begin: FrameType) -> str:
+    """The innermost line of the user's code that leads to a frame: `lamp.py:12 in tick`; empty for none."""
+    frame = users_frame(begin)
+    if frame is None:
+        return ""
+    return f"{short_place(frame.f_code.co_filename, frame.f_lineno)} in {frame.f_code.co_name}"
+
+
+def _is_spun(executor: Any) -> bool:
+    return executor.context.ok() and any(executor in stack.spins for stack in stacks())

@@ -1,0 +1,315 @@
+"""Work that is held up: callbacks that run for long while others wait, and nodes that nobody spins.
+
+Neither is an error in ROS 2, where a node just falls silent. It is told once, with the line.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakSet
+
+from graphflow.analysis.frames import Frame
+from graphflow.analysis.user_code import is_ours, is_users, short_place, where
+from graphflow.errors import Place
+from graphflow.rclpy.wake import Wake
+from rclpy.action.client import ActionClient
+from rclpy.action.server import ActionServer
+from rclpy.client import Client
+from rclpy.executors import Executor
+from rclpy.impl.deadlock.groups import executors, is_exclusive, threads_of
+from rclpy.impl.deadlock.stacks import Level, Stack, stacks
+from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, role_of
+from rclpy.impl.spinning import Run
+from rclpy.timer import Timer
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+
+TELL_AFTER = 3.0
+"""Seconds that work is held up before it is told."""
+SHOWN = 3
+"""Callbacks that are named."""
+RETURN = "return from it soon (a timer does what a loop with a sleep does)"
+OWN_GROUP = "give it a callback group of its own and spin with MultiThreadedExecutor()"
+_WAIT = Wake.wait.__code__
+logger = logging.getLogger("graphflow")
+
+
+class _Told(NamedTuple):
+    text: str
+    is_over: str
+    """The words for its end, before the seconds that it took."""
+
+
+class HeldUp:
+    """The work of one context that is held up.
+
+    Args:
+        is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
+    """
+
+    def __init__(self, life: ContextState, is_told: Callable[[Any, str, str], bool]) -> None:
+        self._life, self._is_told = life, is_told
+        self._since: dict[Any, float] = {}
+        """When each step of a run, and each node's not being spun, was first seen, by the monotonic clock."""
+        self._told: dict[Any, _Told] = {}
+        self._known: set[str] = set()
+        """The callbacks and nodes of which it has been told: what comes again is not told again."""
+        self._begun: WeakSet[Any] = WeakSet()
+        """The nodes that have been looked at once they had time to be made."""
+        life.on_leaving.append(self._leaves)
+
+    @property
+    def texts(self) -> list[str]:
+        """Reports that still hold."""
+        return [told.text for told in list(self._told.values())]
+
+    def look(self) -> None:
+        """Tell what has been held up for long, and what is held up no more."""
+        now = time.monotonic()
+        steps = {(run, run.stepped_ns): run for run in self.runs() if run.thread}
+        idle = {(node, _turns(node)): node for node in list(self._life.nodes) if not _is_spun(node)}
+        fresh = {(node, "made"): node for node in list(self._life.nodes) if node not in self._begun}
+        for key in [key for key in self._since if key not in steps and key not in idle and key not in fresh]:
+            seconds = now - self._since.pop(key)
+            if key in self._told:
+                logger.warning("%s after %.1f s", self._told.pop(key).is_over, seconds)
+        for key in [*steps, *idle]:
+            seconds = now - self._since.setdefault(key, now)
+            if seconds < TELL_AFTER or key in self._told:
+                continue
+            told = self._of_run(steps[key], seconds) if key in steps else self._of_node(key, seconds)
+            if told is not None:
+                self._told[key] = told
+                logger.warning("%s", told.text)
+        for key, node in fresh.items():
+            if now - self._since.setdefault(key, now) >= TELL_AFTER:
+                self._begun.add(node)
+                self._tell_of_init(node)
+
+    def runs(self) -> Iterator[Run]:
+        """All that goes on in its executors."""
+        for executor in executors():
+            if executor.context.life is self._life:
+                yield from list(executor.spinning.running)
+
+    def is_known(self, name: str) -> bool:
+        """Whether something has been told of before; from now on it has."""
+        is_known = name in self._known
+        self._known.add(name)
+        return is_known
+
+    def is_deadlocked(self, run: Run, title: str) -> bool:
+        """Whether a report of a deadlock tells more of a run than could be told here."""
+        return self._is_told(run, "r", title)
+
+    def _of_run(self, run: Run, seconds: float) -> _Told | None:
+        """A callback that runs; None if nothing waits for it, or a report of a deadlock tells more."""
+        level = next((stack.levels[-1] for stack in stacks() if stack.levels[-1].run is run), None)
+        node = node_of(run)
+        if level is None or node is None or (level.waiting is not None and not _spins_on(level)):
+            return None
+        kept = [_due_of(entity, run) for entity in kept_by(run, spins_on=level.waiting is not None)]
+        title = f"{label_of(run)} of {full_name(node)}"
+        if not kept or self.is_deadlocked(run, title) or self.is_known(title):
+            return None
+        others, way = [word for word in kept if word != label_of(run)], RETURN
+        keeps = "is due again"
+        if others:
+            keeps, way = f"keeps {_words(others)} waiting", f"{RETURN}, or {OWN_GROUP}"
+        if level.waiting is not None:
+            way = "it spins there; have it return instead, and the spin that has called it goes on"
+        text = f"{title} has been running for {seconds:.1f} s, now in {place_of(level, node)}, and {keeps}: {way}"
+        return _Told(text, f"{title} has returned")
+
+    def _tell_of_init(self, node: Any) -> None:
+        """Tell of a node that is spun in its own `__init__` before it has anything to be called."""
+        if any(_called(entity) for entity in entities_of(node)):
+            return  # the spin may be the last thing there
+        for stack in stacks():
+            level = stack.levels[0]
+            if _spins_on(level) and any(_is_init(frame, node) for frame in level.frames):
+                text = (
+                    "%s.__init__ does not return: it spins in %s, and %s has nothing to be called yet: make its timers "
+                    "and subscriptions there, and call rclpy.spin(node) after it"
+                )
+                logger.warning(text, type(node).__name__, place_of(level, node), full_name(node))
+                return
+
+    def _of_node(self, key: tuple[Any, Any], seconds: float) -> _Told | None:
+        """A node that is not spun; None if that holds nothing up, or a report of a deadlock tells more."""
+        node, name = key[0], full_name(key[0])
+        found = _program(list(stacks()), node)
+        if found is None:
+            return None
+        stack, level = found
+        if not stack.spins and any(frame.f_code is _WAIT for frame in level.frames):
+            self._since[key] = time.monotonic()  # it waits for something of ROS's, which it says or the search finds
+            return None
+        kept = [word for entity in entities_of(node) if _is_ready(entity) and (word := _called(entity))]
+        is_begun = not any(_is_init(frame, node) for frame in level.frames)
+        thread = f"thread {stack.thread.name}"
+        if (is_begun and not kept) or self._is_told(stack.thread, "t", thread) or self.is_known(name):
+            return None
+        for_long, place = f"for {seconds:.1f} s", place_of(level, node)
+        if not is_begun:
+            text = (
+                f"{type(node).__name__}.__init__ has not returned {for_long}, now in {place}, and no callback of "
+                f"{name} is called before rclpy.spin(node): make a timer in __init__ in place of a loop or a sleep"
+            )
+        else:
+            who = "the program" if stack.thread is threading.main_thread() else thread
+            way = "add the node to the executor that is spun there" if stack.spins else "have it call rclpy.spin(node)"
+            text = f"nobody has spun {name} {for_long}, and {_words(kept)} should be called: {who} is in {place}; {way}"
+        return _Told(text, f"{name} is spun")
+
+    def _leaves(self, node: Any) -> None:
+        """Tell of a node that ends and was never spun, unless that is known or the program ends in an error."""
+        is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
+        if node._graphflow.times_added or is_failing or full_name(node) in self._known:
+            return
+        kept = [word_and_line(e) for e in entities_of(node) if _called(e) and not isinstance(e, (Client, ActionClient))]
+        if not kept:
+            return
+        place = _shut_down_in()
+        if place is None:
+            text = (
+                "%s ends, and nobody has ever spun it, so that %s could not be called: rclpy.spin(node) calls callbacks"
+            )
+            logger.warning(text, full_name(node), _words(kept))
+        else:
+            text = (
+                "rclpy is shut down in %s before anybody has spun %s, so that %s could not be called: "
+                "call rclpy.spin(node) before it"
+            )
+            logger.warning(text, place, full_name(node), _words(kept))
+
+
+def _shut_down_in() -> Place | None:
+    """The line of the user's code that shuts rclpy down; None if this thread is not about that."""
+    inner, frame = sys._getframe(), sys._getframe().f_back
+    while frame is not None and not is_users(frame.f_code.co_filename):
+        inner, frame = frame, frame.f_back
+    if frame is None or inner.f_code.co_name not in ("shutdown", "try_shutdown", "__exit__"):
+        return None
+    return short_place(frame.f_code.co_filename, frame.f_lineno)
+
+
+def _spins_on(level: Level) -> bool:
+    """Whether code has called a `spin` that lasts as long as the context does."""
+    is_spin = any(frame.f_code.co_name == "spin" and is_ours(frame.f_code.co_filename) for frame in level.frames)
+    return is_spin and level.waiting is not None
+
+
+def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Any]:
+    """The entities of users' that have something to do and cannot run because of a run that goes on.
+
+    Args:
+        spins_on: Whether the run spins, so that it keeps no thread from others.
+    """
+    executor: Any = run.executor
+    limit = None if spins_on else threads_of(executor)
+    is_full = limit is not None and sum(r.thread != 0 for r in list(executor.spinning.running)) >= limit
+    for node in list(executor.spinning.nodes):
+        for entity in entities_of(node):
+            is_grouped = run.group is not None and entity.callback_group is run.group and is_exclusive(run.group)
+            if (is_full or is_grouped) and _is_ready(entity) and _due_of(entity, run):
+                yield entity
+
+
+def _due_of(entity: Any, run: Run) -> str:
+    """The name of something that waits for a run to end: an entity, or more; empty for nothing of users'.
+
+    The client of a goal asks for its result at once, and gets that when the run ends: it is not kept waiting.
+    """
+    goal = goal_of(run)
+    own = run.entity if goal is None else goal._action_server
+    if entity is not own or not isinstance(entity, ActionServer):
+        return _called(entity)
+    if entity._graphflow_cancels.inbox.items:
+        return "a request to cancel"
+    return "a new goal" if entity._graphflow_goals.inbox.items else ""
+
+
+def _is_ready(entity: Any) -> bool:
+    return entity.has_work() if isinstance(entity, Timer) else arrived(entity)[1] > 0
+
+
+def _called(entity: Any) -> str:
+    """The name of an entity; empty for graphflow's own."""
+    role = role_of(entity)
+    if isinstance(entity, (Client, ActionClient)):
+        return f"the answer of {role.handler}"
+    return "" if role.is_inner else role.label
+
+
+def label_of(run: Run) -> str:
+    """The name of a run in the search for deadlocks: `timer tick`."""
+    if run.entity is not None:
+        return role_of(run.entity).label
+    return f"action {name_of(run._args[0]) or 'execute'}" if goal_of(run) is not None else f"task {name_of(run.called)}"
+
+
+def node_of(run: Run) -> Any:
+    """The node whose callback a run is; of a task, one of its executor's."""
+    goal = goal_of(run)
+    if goal is not None:
+        return goal._action_server._node
+    return run.node if run.node is not None else next(iter(run.executor.spinning.nodes), None)
+
+
+def place_of(level: Level, node: Any) -> str:
+    """Where the user's code of a thread is: `lamp.py:12 in tick`."""
+    found = where(level.frames, node)
+    return f"{short_place(found.place.file, found.place.line)} in {found.function}"
+
+
+def _words(kept: list[str]) -> str:
+    """Callbacks, or as many of them as a sentence bears."""
+    shown = list(dict.fromkeys(kept))
+    rest = len(shown) - SHOWN
+    return " and ".join(shown) if rest <= 0 else f"{', '.join(shown[:SHOWN])} and {rest} more"
+
+
+def _is_init(frame: Frame, node: Any) -> bool:
+    """Whether a frame is that of the node's own `__init__`."""
+    code = frame.f_code
+    return code.co_name == "__init__" and is_users(code.co_filename) and frame.f_locals.get("self") is node
+
+
+def _program(found: list[Stack], node: Any) -> tuple[Stack, Level] | None:
+    """The thread of the program's own that makes a node, or else could spin it, or else spins others."""
+    own = [(stack, stack.levels[0]) for stack in found if stack.is_users and stack.levels[0].innermost is not None]
+    making = [pair for pair in own if any(_is_init(frame, node) for frame in pair[1].frames)]
+    main = [pair for pair in own if pair[0].thread is threading.main_thread()]
+    able = [pair for pair in [*main, *own] if not pair[0].spins]
+    return next(iter([*making, *able, *main, *own]), None)
+
+
+def _executor_of(node: Any) -> Executor | None:
+    executor: Executor | None = node.executor
+    return executor if executor is not None and node in executor.spinning.nodes else None
+
+
+def _turns(node: Any) -> tuple[int, int]:
+    """A number that is another when a node was spun meanwhile."""
+    executor = _executor_of(node)
+    return node._graphflow.times_added, 0 if executor is None else executor.spinning.turns
+
+
+def _is_spun(node: Any) -> bool:
+    """Whether a thread spins a node right now: it waits for work, or does some."""
+    executor = _executor_of(node)
+    return executor is not None and executor.spinning.is_spun
+
+
+def word_and_line(entity: Any) -> str:
+    """`timer tick (lamp.py:12)`."""
+    code = getattr(getattr(entity, "callback", None), "__code__", None)
+    line = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
+    return f"{_called(entity)}{line}"

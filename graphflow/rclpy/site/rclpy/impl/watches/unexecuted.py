@@ -1,0 +1,76 @@
+"""Goals that an action server has accepted and nobody executes, so that their clients wait for ever.
+
+ROS 2 says nothing of them. A server with a `handle_accepted_callback` has to call `goal_handle.execute()` itself.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+import time
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary, WeakSet
+
+from graphflow.machines.goal import GoalStatus as Status
+from rclpy.action.server import ActionServer, ServerGoalHandle
+from rclpy.impl.entities import full_name
+from rclpy.impl.mistakes.arguments import described
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+
+TELL_AFTER = 3.0
+"""Seconds after which a goal is told whose handle nobody has kept to execute it later."""
+KEPT = 15.0
+"""The seconds where somebody has, if no other goal of the server is executed meanwhile."""
+logger = logging.getLogger("graphflow")
+
+
+class Unexecuted:
+    """The goals of one context's action servers; one of each server is told."""
+
+    def __init__(self, life: ContextState) -> None:
+        self._life = life
+        self._since: WeakKeyDictionary[ServerGoalHandle, float] = WeakKeyDictionary()
+        """When each goal was first seen to wait while no other was executed, by the monotonic clock."""
+        self._kept: WeakSet[ServerGoalHandle] = WeakSet()
+        """The goals whose handle somebody has kept."""
+        self._told: WeakSet[ActionServer] = WeakSet()
+
+    def look(self) -> None:
+        """Tell of goals that have waited for long."""
+        for node in list(self._life.nodes):
+            for server in [w for w in list(node.waitables) if isinstance(w, ActionServer)]:  # type: ignore[attr-defined]
+                if server not in self._told:
+                    self._look_at(node, server)
+
+    def _look_at(self, node: Any, server: ActionServer) -> None:
+        now, goals = time.monotonic(), list(server._goal_handles.values())
+        is_busy = any(goal._status in (Status.EXECUTING, Status.CANCELING) for goal in goals)
+        has_searched = False
+        for goal in goals:
+            if goal._status is not Status.ACCEPTED or is_busy:
+                self._since.pop(goal, None)
+                continue
+            seconds = now - self._since.setdefault(goal, now)
+            if seconds >= TELL_AFTER and goal not in self._kept:
+                # The search goes through every object of the process, and clients may send thousands of goals.
+                if has_searched:
+                    continue
+                has_searched = True
+                if _is_kept(goal, server._goal_handles, goals):
+                    self._kept.add(goal)
+            if seconds >= (KEPT if goal in self._kept else TELL_AFTER):
+                self._told.add(server)
+                text = "%s accepted a goal of %s %.1f s ago, and its execute() was not called: end %s with %s"
+                callback = described(server._handle_accepted_callback)
+                way = "goal_handle.execute()"
+                logger.warning(text, full_name(node), server._action_name, seconds, callback, way)
+                return
+
+
+def _is_kept(goal: ServerGoalHandle, *known: object) -> bool:
+    """Whether code of the user's could still execute a goal: something else than what is known refers to its handle."""
+    others = [other for other in gc.get_referrers(goal) if all(other is not one for one in known)]
+    return not all(isinstance(other, FrameType) for other in others)

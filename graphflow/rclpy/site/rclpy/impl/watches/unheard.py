@@ -1,0 +1,35 @@
+"""Messages that a program publishes and ends, before any subscription has had time to find it.
+
+In ROS 2 they are lost without a word.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+
+BRIEF = 3.0
+"""Seconds that a node lives at most of which it is told: one that lives longer has had the time to be heard."""
+logger = logging.getLogger("graphflow")
+
+
+def attend(life: ContextState) -> None:
+    """Tell it when a node of a context leaves."""
+    life.on_leaving.append(_tell)
+
+
+def _tell(node: Any) -> None:
+    is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
+    if is_failing or time.monotonic() - node._graphflow.begun > BRIEF:
+        return
+    for publisher in node._graphflow.publishers:
+        endpoint = publisher._endpoint
+        if hasattr(publisher, "made_at") and 0 < endpoint.published == endpoint.unheard:
+            many = "message that was published" if endpoint.published == 1 else "messages that were published"
+            text = "%s: nobody has heard the %d %s: publish when publisher.get_subscription_count() is not 0"
+            logger.warning(text, endpoint.name, endpoint.published, many)

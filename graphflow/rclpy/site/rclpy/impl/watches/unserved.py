@@ -1,0 +1,133 @@
+"""Waits for servers that nobody offers, and calls that no server answers.
+
+In ROS 2 they last for ever, without a word. Each is told once, with the nearest name on offer.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy.messages import classes
+from graphflow.rclpy.wake import Wake
+from graphflow.runtime.endpoints.service_client import nobody_serves
+from graphflow.runtime.mistakes.network.unserved import GAP, TELL_AFTER, nobody_acts
+from rclpy.action.client import ActionClient
+from rclpy.client import Client
+from rclpy.impl.deadlock.later_servers import comes_after
+from rclpy.impl.deadlock.stacks import Level, stacks
+from rclpy.impl.entities import full_name, role_of
+from rclpy.impl.watches.starvation import label_of, place_of
+
+if TYPE_CHECKING:
+    from graphflow.machines.cache import GraphCache
+    from graphflow.rclpy.context_state import ContextState
+    from graphflow.runtime.context import Context
+    from graphflow.runtime.endpoints.threaded import ThreadedClient
+
+_WAIT = Wake.wait.__code__
+logger = logging.getLogger("graphflow")
+
+
+class Unserved:
+    """The clients of one context that wait for a server, or have called without one.
+
+    Args:
+        is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
+    """
+
+    def __init__(self, life: ContextState, context: Context, is_told: Callable[[Any, str, str], bool]) -> None:
+        self._life, self._context, self._is_told = life, context, is_told
+        self._since: dict[Any, float] = {}
+        """When each client was first seen to wait, by the monotonic clock; a loop may wait again and again."""
+        self._last: dict[Any, float] = {}
+        """When each of them was last seen to wait."""
+        self._served: set[Any] = set()
+        """The clients that have been seen to have a server: their names are right."""
+        self._known: set[tuple[Any, bool]] = set()
+        """The clients of which it has been told, or of which others tell, each with whether it ever had a server."""
+
+    def look(self) -> None:
+        """Tell of waits that have lasted for long, and of calls that were lost."""
+        now = time.monotonic()
+        clients = {client: node for node in list(self._life.nodes) for client in _clients(node)}
+        self._served = {client for client in clients if client in self._served or _is_served(client)}
+        self._known = {known for known in self._known if known[0] in clients}
+        self._last = {c: last for c, last in self._last.items() if c in clients and now - last <= GAP}
+        self._since = {c: since for c, since in self._since.items() if c in self._last and not _is_served(c)}
+        due: dict[Any, Any] = {}
+        for client, node in clients.items():
+            wakes = _wakes(client)
+            if wakes and not _is_served(client):
+                self._last[client] = now
+                if now - self._since.setdefault(client, now) >= TELL_AFTER:
+                    due.setdefault(wakes[0], client)  # one thread may wait for several
+            if any(endpoint.lost for endpoint in _endpoints(client)):
+                self._tell_lost(client, node)
+        for wake, client in due.items():
+            if (client, client in self._served) not in self._known:
+                self._tell_waiting(client, clients[client], wake, now - self._since[client])
+
+    def _tell_lost(self, client: Any, node: Any) -> None:
+        for endpoint in _endpoints(client):
+            endpoint.lost = 0
+        known = (client, client in self._served)
+        if known in self._known:
+            return
+        self._known.add(known)
+        wait = "wait_for_service()" if isinstance(client, Client) else "wait_for_server()"
+        if client in self._served:
+            why = f"the server of {role_of(client).handler} came after it, or went away before it answered"
+        else:
+            why = nobody(client, self._context.cache)
+        text = "a call of %s is never answered, nor its future done, for want of a server (%s waits for one): %s"
+        logger.warning(text, full_name(node), wait, why)
+
+    def _tell_waiting(self, client: Any, node: Any, wake: Wake, seconds: float) -> None:
+        found = next(((s, s.levels[-1]) for s in stacks() if _is_in(s.levels[-1], wake)), None)
+        if found is None:
+            return
+        stack, level = found
+        self._known.add((client, client in self._served))
+        if level.run is None:
+            is_told = self._is_told(stack.thread, "t", f"thread {stack.thread.name}")
+        else:
+            is_told = self._is_told(level.run, "r", f"{label_of(level.run)} of {full_name(node)}")
+        if not is_told:
+            text = "%s has waited for %.1f s in %s: %s"
+            why = nobody(client, self._context.cache) + comes_after(level.frames)
+            logger.warning(text, full_name(node), seconds, place_of(level, node), why)
+
+
+def nobody(client: Client | ActionClient, cache: GraphCache) -> str:
+    """Say that no node offers what a client calls, and what there is instead."""
+    if isinstance(client, Client):
+        return nobody_serves(cache, client._endpoint.name, client._endpoint.type_name)
+    return nobody_acts(cache, role_of(client).handler, classes.type_name(client._action_type))
+
+
+def _clients(node: Any) -> Iterator[Any]:
+    yield from list(node.clients)
+    yield from [waitable for waitable in list(node.waitables) if isinstance(waitable, ActionClient)]
+
+
+def _endpoints(client: Client | ActionClient) -> list[ThreadedClient]:
+    if isinstance(client, Client):
+        return [client._endpoint]
+    return [client._graphflow_goals, client._graphflow_cancels, client._graphflow_results]
+
+
+def _is_served(client: Client | ActionClient) -> bool:
+    return _endpoints(client)[0].has_server
+
+
+def _wakes(client: Client | ActionClient) -> list[Wake]:
+    """The wakes of the threads that wait for a client's server."""
+    return list(client._changed if isinstance(client, Client) else client._graphflow_changed)
+
+
+def _is_in(level: Level, wake: Wake) -> bool:
+    """Whether the code of a thread waits to be woken by this."""
+    return any(frame.f_code is _WAIT and frame.f_locals["self"] is wake for frame in level.frames)

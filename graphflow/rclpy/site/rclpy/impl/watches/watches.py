@@ -1,0 +1,51 @@
+"""The watches over a context's nodes that tell what goes wrong in silence, besides deadlocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rclpy.impl.mistakes.uncalled import Uncalled
+from rclpy.impl.mistakes.unreached import Unreached
+from rclpy.impl.mistakes.unused import Unused
+from rclpy.impl.watches import orphans, unheard
+from rclpy.impl.watches.late_timers import LateTimers
+from rclpy.impl.watches.starvation import HeldUp
+from rclpy.impl.watches.unexecuted import Unexecuted
+from rclpy.impl.watches.unserved import Unserved
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
+    from graphflow.runtime.context import Context
+
+
+class Watches:
+    """The watches over one context's nodes.
+
+    Args:
+        is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
+    """
+
+    def __init__(self, life: ContextState, context: Context, is_told: Callable[[Any, str, str], bool]) -> None:
+        self._held_up = HeldUp(life, is_told)
+        self.each = (
+            self._held_up,
+            LateTimers(life, self._held_up),
+            Unused(life),
+            Unserved(life, context, is_told),
+            Unexecuted(life),
+            Uncalled(life),
+            Unreached(),
+        )
+        unheard.attend(life)
+        orphans.attend(life)
+
+    def look(self) -> None:
+        """Tell what there is to be told now. On the loop."""
+        for watch in self.each:
+            watch.look()
+
+    @property
+    def texts(self) -> list[str]:
+        """Reports that still hold."""
+        return self._held_up.texts

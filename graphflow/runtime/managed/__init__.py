@@ -1,0 +1,1 @@
+"""Managed (lifecycle) nodes: the class that users derive from, and its workings."""

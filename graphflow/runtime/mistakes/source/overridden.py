@@ -1,0 +1,99 @@
+"""Handlers that take the place of a parent's of the same name and are for something else, so that the parent's is lost.
+
+Python keeps the last method of a name: a child's `pose_callback` on the topic `goal` ends the parent's on `pose`.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.user_code import short_place
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import Subscription
+from graphflow.runtime.declarations.handlers import MARK, Handler
+from graphflow.runtime.mistakes.source.shadowing import definition_of
+
+_LOST = {"subscription": "which nothing hears any more", "service": "which nothing answers any more"}
+_LOST |= {"action": "which nothing answers any more"}
+
+
+def overridden(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
+    """The lines of a class at which a parent's handler is lost, each with a sentence.
+
+    Told is nothing where the parent's is called from the class, where something hears its topic still, or where all
+    attributes that it sets are set by the child's, which then does the same from another topic.
+
+    Args:
+        definition: The source of the class.
+    """
+    for method in definition.body:
+        if not isinstance(method, FunctionNode):
+            continue
+        own = _handler(cls, method.name)
+        owner = next((parent for parent in cls.__mro__[1:] if method.name in vars(parent)), None)
+        lost = next((h for parent in cls.__mro__[1:] if (h := _handler(parent, method.name)) is not None), None)
+        if own is None or owner is None or lost is None or _use(own) == _use(lost) or _is_heard(cls, lost):
+            continue
+        parents = {parent.__name__ for parent in cls.__mro__[1:]}
+        if _calls_parent(definition, method.name, parents) or _does_the_same(method, owner):
+            continue
+        place = short_place(lost.place.file, lost.place.line)
+        is_typed = (own.kind, own.name) == (lost.kind, lost.name)
+        names = f"{method.name} {_shown(own, is_typed)} takes the place of {method.name} {_shown(lost, is_typed)}"
+        why = _LOST.get(lost.kind, "which runs no more")
+        yield method.lineno, f"{names} ({place}), {why}; if both are meant, give it another name"
+
+
+def _handler(cls: type, name: str) -> Handler | None:
+    """The declaration at a method of a class itself."""
+    mark = getattr(vars(cls).get(name), MARK, None)
+    return mark if isinstance(mark, Handler) else None
+
+
+def _use(handler: Handler) -> tuple[str, str, object]:
+    """What a handler is for; timers may have another period."""
+    return handler.kind, handler.name, handler.type
+
+
+def _shown(handler: Handler, is_typed: bool) -> str:
+    if not handler.name:
+        return f"(a {handler.kind})"
+    return f"on {handler.name!r}" + (f" of {handler.type.__qualname__}" if is_typed else "")
+
+
+def _is_heard(cls: type, lost: Handler) -> bool:
+    """Whether a class has something else for what a lost handler was for."""
+    if any(_use(handler) == _use(lost) for handler in declared.handlers(cls).values()):
+        return lost.kind in _LOST
+    streams = [held for held in declared.held(cls).values() if isinstance(held, Subscription)]
+    return lost.kind == "subscription" and any((s.name, s.type) == (lost.name, lost.type) for s in streams)
+
+
+def _calls_parent(definition: ast.ClassDef, name: str, parents: set[str]) -> bool:
+    """Whether a class mentions its parent's method, as in `super().heard` or `Base.heard`."""
+    for node in ast.walk(definition):
+        match node:
+            case ast.Attribute(value=ast.Call(func=ast.Name("super")), attr=attr) if attr == name:
+                return True
+            case ast.Attribute(value=owner, attr=attr) if attr == name:
+                if ast.unparse(owner).rpartition(".")[2] in parents:
+                    return True
+    return False
+
+
+def _does_the_same(method: FunctionNode, owner: type) -> bool:
+    """Whether a method sets each attribute that the parent's sets, and that sets some."""
+    source = definition_of(owner)
+    for before in source[0].body if source is not None else ():
+        if isinstance(before, FunctionNode) and before.name == method.name and (lost := _sets(before)):
+            return lost <= _sets(method)
+    return False
+
+
+def _sets(method: FunctionNode) -> set[str]:
+    """The node's attributes that a method sets."""
+    found = (n for n in ast.walk(method) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store))
+    return {node.attr for node in found if is_own(node)}

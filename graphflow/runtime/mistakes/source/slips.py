@@ -1,0 +1,270 @@
+"""Slips in the source of a node class that Python runs without an error: what was written has no effect, or fails late.
+
+A handler without its decorator, `self.rat = 2.0` beside a parameter `rate`, `Talker.rate = 2.0` in its place, and
+`message.dat = ...`, or a text for a number, in a message that a method has made or been given; `self.close` without
+parentheses, callbacks that give a method back or see the last value of a loop.
+"""
+
+from __future__ import annotations
+
+import ast
+import logging
+import re
+import sys
+from collections import Counter
+from collections.abc import Collection, Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.swallowed import caught_in_vain
+from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
+from graphflow.analysis.uncalled import uncalled_methods
+from graphflow.analysis.user_code import is_installed, is_users_module
+from graphflow.errors import EncodeError, Place
+from graphflow.msgs.base import Message, no_field
+from graphflow.names import nearest
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.misgiven import misgiven
+from graphflow.runtime.mistakes.source.overridden import overridden
+from graphflow.runtime.mistakes.source.shadowing import definition_of
+
+logger = logging.getLogger("graphflow")
+
+_LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")
+
+
+@cache
+def slips(cls: type) -> tuple[str, ...]:
+    """A sentence for each, with its place; of the class and of those of the user's that it derives from."""
+    try:
+        return tuple(_slips(cls))
+    except Exception as error:  # a remark must not keep a node from running
+        logger.debug("the source of %s was not looked at", cls.__name__, exc_info=error)
+        return ()
+
+
+def _slips(cls: type) -> Iterator[str]:
+    for parent in cls.__mro__:
+        source = definition_of(parent) if is_users_module(parent.__module__) else None
+        if source is not None:
+            definition, file = source
+            mentioned = _mentioned(syntax_of(file).module)
+            space = vars(sys.modules[parent.__module__])
+            yield from _idle_methods(parent, definition, file, mentioned, space)
+            yield from _stray_attributes(cls, definition, file, mentioned)
+            yield from _replaced(cls, definition, file, space)
+            yield from _changed_in_place(cls, definition, file)
+            for method in definition.body:
+                if isinstance(method, FunctionNode):
+                    yield from _wrong_fields(method, file, space)
+            told = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
+            told = (*told, *ineffective(definition), *overridden(parent, definition))
+            yield from (f"{Place(file, line)}: {text}" for line, text in told)
+
+
+def _other_modules(file: str) -> Iterator[ast.Module]:
+    """The project's other modules, which may call what is in one of its files."""
+    from graphflow.workspace.project import project_root
+
+    root = project_root(Path(file))
+    others = {str(path) for module in list(sys.modules.values()) if (path := getattr(module, "__file__", None))}
+    for other in sorted(others - {file}):
+        if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
+            with suppress(OSError, SyntaxError, ValueError):  # no source to be read
+                yield syntax_of(other).module
+
+
+@cache
+def _mentioned(module: ast.Module) -> set[str]:
+    """Attributes and names that a module reads, and words in its texts, by which an attribute may be found, too."""
+    found: set[str] = set()
+    for node in ast.walk(module):
+        match node:
+            case (
+                ast.Attribute(attr=word, ctx=ast.Load())
+                | ast.Name(id=word, ctx=ast.Load())
+                | ast.Constant(value=str(word))
+            ):
+                found.add(word)
+    return found
+
+
+def _idle_methods(
+    cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str], space: dict[str, Any]
+) -> Iterator[str]:
+    for method in definition.body:
+        if not isinstance(method, FunctionNode) or method.decorator_list or method.name in mentioned:
+            continue
+        if method.name.startswith("__") or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
+            continue  # the parent calls it
+        arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
+        kind = _received(arguments[0], space) if len(arguments) == 1 else ""
+        is_like_one = kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1)
+        if is_like_one and not any(method.name in _mentioned(module) for module in _other_modules(file)):
+            if not arguments and (hook := _hook_meant(cls, method.name)):
+                yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}; {hook}"
+                continue
+            decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
+            yield (
+                f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}, which looks like a "
+                f"handler: declare it, as with {decorator} above it"
+            )
+
+
+def _hook_meant(cls: type, name: str) -> str:
+    """The method of every node, or of those with a life cycle, that is meant by a name; empty for another kind."""
+    hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
+    near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)
+    meant = near or next((hook for hook, others in _HOOKS.items() if name.removeprefix("on_") in others), None)
+    if name not in _OF_LIFECYCLES:
+        return f"did you mean {meant}?" if meant else ""
+    return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
+
+
+_HOOKS = {
+    "on_start": ("init", "begin", "startup", "ready", "open", "run"),
+    "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
+}
+"""The methods of every node, and other words for them."""
+_OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_error")
+_DECORATORS = {"message": '@subscription(Type, "topic")', "request": '@service(Type, "name")'}
+
+
+def _received(argument: ast.arg, space: dict[str, Any]) -> str:
+    """Whether an argument is annotated as a message or a request."""
+    type_ = _message(argument.annotation, space)
+    if type_ is None:
+        return ""
+    return "request" if type_.__name__ == "Request" or type_.SCHEMA.name.endswith("_Request") else "message"
+
+
+def _resolved(expression: ast.expr | None, space: dict[str, Any]) -> Any:
+    """The value of a name, or of a name with dots, in a module."""
+    match expression:
+        case ast.Name(id=name):
+            return space.get(name)
+        case ast.Attribute(value=value, attr=name):
+            owner = _resolved(value, space)
+            if isinstance(owner, ModuleType) and owner.__name__.startswith("graphflow.msgs"):
+                return getattr(owner, name, None)  # classes are made when they are asked for
+            # Anything else could run code of the user's, such as a property.
+            return vars(owner).get(name) if isinstance(owner, (ModuleType, type)) else None
+        case ast.Constant(value=str(text)):
+            return space.get(text)
+    return None
+
+
+def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str]) -> Iterator[str]:
+    """Attributes that are set, never read, and spelt almost as something that the class declares."""
+    names = declared.held(cls)
+    for method in definition.body:
+        for node, parents in walk(method):
+            if not (isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and is_own(node)):
+                continue
+            if node.attr in mentioned or hasattr(cls, node.attr) or any(isinstance(p, ast.ClassDef) for p in parents):
+                continue
+            near = nearest(node.attr, names, cutoff=0.75)
+            if near is None or _is_another(node.attr, near):
+                continue
+            if not any(node.attr in _mentioned(module) for module in _other_modules(file)):
+                yield f"{Place(file, node.lineno)}: self.{node.attr} is set and never read; did you mean self.{near}?"
+
+
+def _is_another(name: str, near: str) -> bool:
+    """Whether a name that is nearly another one is meant as it is: `speeds` by `speed`, `goal_y` by `goal_x`."""
+    short, long = sorted((name, near), key=len)
+    if long in (f"{short}s", f"{short}es", f"_{short}", f"{short}_"):
+        return True
+    return len(short) == len(long) and short[:-1] == long[:-1] and {short[-1], long[-1]} <= _COUNTING
+
+
+_COUNTING = {*"0123456789xyzabclr"}
+"""Ends of names of which there are several."""
+
+
+def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, Any]) -> Iterator[str]:
+    """Declarations that a method replaces by setting an attribute of the class, where it means the node's."""
+    names = declared.held(cls)
+    for method in definition.body:
+        for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
+            match node:
+                case ast.Attribute(value=owner, attr=name, ctx=ast.Store()) if name in names:
+                    if _resolved(owner, space) in cls.__mro__ or ast.unparse(owner) in _OWN_CLASS:
+                        text = f"{ast.unparse(node)} replaces what the class declares, for all of its nodes"
+                        yield f"{Place(file, node.lineno)}: {text}; write self.{name}"
+
+
+def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterator[str]:
+    """Lists of parameters that are changed as if they were the node's own: no check sees it, and no tool."""
+    lists = {
+        name for name, p in declared.held(cls).items() if isinstance(p, Param) and p.parameter.type.startswith("list[")
+    }
+    for method in definition.body:
+        for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
+            match node:
+                case (
+                    ast.Call(func=ast.Attribute(value=ast.Attribute(attr=name) as changed, attr=way))
+                    | ast.Subscript(value=ast.Attribute(attr=name) as changed, ctx=ast.Store() | ast.Del(), slice=way)
+                ) if name in lists and is_own(changed) and (way in _CHANGING or isinstance(way, ast.expr)):
+                    text = f"{ast.unparse(node)} changes the list of a parameter unseen by its checks and by every tool"
+                    yield f"{Place(file, node.lineno)}: {text}; set a new one, as in self.{name} = [*self.{name}, ...]"
+
+
+_CHANGING = ("append", "extend", "insert", "remove", "pop", "clear", "sort", "reverse")
+_OWN_CLASS = ("type(self)", "self.__class__")
+
+
+def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Iterator[str]:
+    """Fields of messages made or received here that their type does not have, and literals that do not fit them."""
+    bound = {a.arg: {_message(a.annotation, space)} for a in method.args.args}
+    times: Counter[str] = Counter()
+    for node in ast.walk(method):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                bound.setdefault(name, set()).add(_type_made(value, space))
+                times[name] -= 1
+            case ast.Name(id=name, ctx=ast.Store()):
+                times[name] += 1
+    # A name that is one thing here and another there, or bound by a loop or the like, is known nowhere.
+    made = {
+        name: type_
+        for name, types in bound.items()
+        if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
+    }
+    for node in ast.walk(method):
+        match node:
+            case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
+                text = _misfit(made[name], field, value)
+                if text:
+                    yield f"{Place(file, node.lineno)}: {text}"
+
+
+def _type_made(value: ast.expr, space: dict[str, Any]) -> type[Message] | None:
+    """The message that an expression makes, as in `String()`."""
+    return _message(value.func, space) if isinstance(value, ast.Call) else None
+
+
+def _message(expression: ast.expr | None, space: dict[str, Any]) -> type[Message] | None:
+    """The message class that an expression names."""
+    type_ = _resolved(expression, space)
+    return type_ if isinstance(type_, type) and issubclass(type_, Message) else None
+
+
+def _misfit(type_: type[Message], field: str, value: ast.expr) -> str:
+    if field not in {f.name for f in type_.SCHEMA.fields}:
+        return "" if hasattr(type_, field) else no_field(type_, field)
+    try:
+        literal = ast.literal_eval(value)
+    except (ValueError, TypeError, SyntaxError):
+        return ""
+    try:
+        type_(**{field: literal}).to_bytes()
+    except EncodeError as error:
+        return str(error)
+    return ""

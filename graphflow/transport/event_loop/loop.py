@@ -1,0 +1,74 @@
+"""The event loop that nodes run on: uvloop's where the extra `fast` is installed, else asyncio's."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable, Coroutine
+from contextlib import closing, suppress
+from importlib.util import find_spec
+from typing import Any, TypeVar
+
+from graphflow.errors import UsageFault
+from graphflow.system import is_portable
+from graphflow.transport.event_loop.daemon_threads import THREADS, DaemonExecutor
+from graphflow.transport.malloc import keep_freed_memory
+
+T = TypeVar("T")
+
+LOOP_VARIABLE = "GRAPHFLOW_LOOP"
+"""`asyncio` or `uvloop`, to choose one."""
+
+
+def new_event_loop() -> asyncio.AbstractEventLoop:
+    """An event loop of the best kind available. Its end does not wait for `asyncio.to_thread`."""
+    loop = _loop_of_the_best_kind()
+    loop.set_default_executor(DaemonExecutor())
+    return loop
+
+
+def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
+    chosen = os.environ.get(LOOP_VARIABLE, "")
+    if chosen not in ("", "asyncio", "uvloop"):
+        raise UsageFault(f"{LOOP_VARIABLE} is {chosen!r}; it may be 'asyncio' or 'uvloop'")
+    if chosen == "uvloop" and find_spec("uvloop") is None:
+        raise UsageFault(f"{LOOP_VARIABLE} is 'uvloop', which is not installed: pip install uvloop")
+    if chosen == "uvloop" or (not chosen and find_spec("uvloop") is not None):
+        import uvloop
+
+        loop: asyncio.AbstractEventLoop = uvloop.new_event_loop()
+        return loop
+    if is_portable():
+        return asyncio.new_event_loop()
+    from graphflow.transport.event_loop.epoll import BellLoop
+
+    return BellLoop()
+
+
+def run(main: Coroutine[Any, Any, T]) -> T:
+    """`asyncio.run` on a loop of the best kind available, in a process set up for large messages."""
+    keep_freed_memory()
+    with closing(main), asyncio.Runner(loop_factory=new_event_loop) as runner:
+        return runner.run(main)
+
+
+async def in_thread(fn: Callable[[], object]) -> None:
+    """Run `fn()` in a thread of its own and wait for its end; also while the interpreter ends, when no pool works."""
+    loop = asyncio.get_running_loop()
+    ended: asyncio.Future[None] = loop.create_future()
+
+    def done(_: object, error: BaseException | None) -> None:
+        with suppress(RuntimeError):  # the loop has been closed meanwhile
+            loop.call_soon_threadsafe(_settle, ended, error)
+
+    THREADS.run(fn, done, f"graphflow-{getattr(fn, '__name__', 'thread')}")
+    await ended
+
+
+def _settle(future: asyncio.Future[None], error: BaseException | None) -> None:
+    if future.done():
+        return
+    if error is not None:
+        future.set_exception(error)
+    else:
+        future.set_result(None)

@@ -1,0 +1,1 @@
+"""Large messages between processes of one user on one machine. Begin with `ring`."""

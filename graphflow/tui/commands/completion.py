@@ -1,0 +1,133 @@
+"""Completing what is typed: verbs, their options, and the live names of the graph."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from textual.widgets import Input
+
+from graphflow.console.views import ViewForm
+from graphflow.errors import GraphflowError
+from graphflow.introspect import completions
+from graphflow.introspect.parameters import RemoteParameters
+from graphflow.tui.feeds.hub import Hub, Verbs
+
+TRANSITIONS = ("activate", "cleanup", "configure", "deactivate", "shutdown")
+"""The transitions of a life cycle that can be asked for."""
+ANSWER_LIMIT = 1.0
+"""Seconds that a node has to tell its parameters."""
+
+
+class Completer:
+    """Completes lines of the command line, without the word `graphflow`.
+
+    Args:
+        views: Other first words, and what each is about, such as `topic`.
+    """
+
+    def __init__(self, hub: Hub, views: Mapping[str, ViewForm] = MappingProxyType({})) -> None:
+        self._hub, self._views = hub, views
+        self._verbs: Verbs | None = None
+
+    async def complete(self, line: str) -> tuple[str, list[str]]:
+        """The line with its last word completed as far as it is certain, and the words that it may become."""
+        words = line.split()
+        partial = words.pop() if words and not line.endswith(" ") else ""
+        choices = sorted({c for c in await self._choices(words) if c.startswith(partial)})
+        if not choices:
+            return line, []
+        common = _common(choices)
+        head = line[: len(line) - len(partial)]
+        if len(choices) == 1:
+            return f"{head}{choices[0]} ", choices
+        return head + common, choices
+
+    async def _choices(self, words: list[str]) -> list[str]:
+        if self._verbs is None:
+            self._verbs = await asyncio.to_thread(self._hub.read_verbs)
+        if not words:
+            return [*self._verbs, *self._views]
+        if len(words) == 1 and words[0] in self._views and words[0] not in self._verbs:
+            return await self._named(self._views[words[0]].about.partition(".")[0], [])
+        at: Any = {"commands": self._verbs}
+        rest = list(words)
+        while rest and at.get("commands") and rest[0] in at["commands"]:
+            at = at["commands"][rest.pop(0)]
+        if at.get("commands"):
+            return [] if rest else list(at["commands"])
+        return await self._arguments(at, rest)
+
+    async def _arguments(self, command: dict[str, Any], words: list[str]) -> list[str]:
+        options: dict[str, bool] = command["options"]
+        given, skip = [], False
+        for word in words:
+            if skip:
+                skip = False
+            elif word.startswith("-"):
+                skip = options.get(word, False)
+            else:
+                given.append(word)
+        if skip:
+            return []
+        arguments: list[str] = command["arguments"]
+        names = [argument.strip("[].").removesuffix("]...") for argument in arguments]
+        if not names or (len(given) >= len(names) and not arguments[-1].endswith("...")):
+            return list(options)
+        what = names[min(len(given), len(names) - 1)]
+        found = await self._named(what, given)
+        return found or list(options)
+
+    async def _named(self, what: str, given: list[str]) -> list[str]:
+        live = self._hub.live
+        if live is None:
+            return []
+        match what.upper():
+            case "NODE" | "NODES":
+                return self._hub.nodes()
+            case "PARAMETER" | "PARAMETERS" if given:
+                return await self._parameters(given[0])
+            case word if word in completions.MESSAGES and len(given) >= 2:
+                return completions.message(given[1])
+            case "HANDLER" if given:
+                return self._handlers(given[0])
+            case "TRANSITION":
+                return list(TRANSITIONS)
+        return completions.names_for(what, given, live.cache)
+
+    def _handlers(self, node: str) -> list[str]:
+        assert self._hub.live is not None
+        report = self._hub.live.concurrency
+        groups = report.nodes.get(node, []) if report is not None else []
+        return [h["handler"] for g in groups for h in g["handlers"]]
+
+    async def _parameters(self, node: str) -> list[str]:
+        assert self._hub.live is not None
+        try:
+            return await self._hub.live.ask(lambda view: RemoteParameters(view, view.node(node), ANSWER_LIMIT).names())
+        except GraphflowError:
+            return []
+
+
+async def completed(line: Input, completer: Completer) -> tuple[str, list[str]]:
+    """Complete what is typed in a line, and leave what is typed on meanwhile; the result is that of `complete`."""
+    before = line.value
+    text, choices = await completer.complete(before)
+    if line.value.startswith(before):
+        line.value = text + line.value[len(before) :].lstrip(" " if text.endswith(" ") else "")
+        line.cursor_position = len(line.value)
+    return text, choices
+
+
+def nothing_to_complete(text: str) -> str:
+    """What to say where a line cannot be completed."""
+    last = text.rpartition(" ")[2]
+    return f"nothing here begins with {last!r}" if last else "there is nothing to complete here"
+
+
+def _common(words: list[str]) -> str:
+    """The beginning that all words share."""
+    first, last = min(words), max(words)
+    return next((first[:i] for i, c in enumerate(first) if last[i : i + 1] != c), first)

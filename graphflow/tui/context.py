@@ -1,0 +1,139 @@
+"""What views, bars and deeds have in common: the hub, the windows, and a voice to the user."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Awaitable, Callable
+
+from textual.app import App
+from textual.timer import Timer
+
+from graphflow.tui.commands.actions import shown
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.layout import Layout
+from graphflow.tui.pane_area import Workspace
+from graphflow.tui.panes import Window
+from graphflow.tui.tty import clipboard
+from graphflow.tui.tty.job_control import JobControl
+from graphflow.tui.view import View
+from graphflow.tui.widgets.bars import Hints, Status
+from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.welcome import Welcome
+
+MESSAGES = 500
+"""Messages kept."""
+KEEP_AFTER = 1.0
+"""Seconds after the last change at which the windows are kept with the run."""
+LASTING = "lasting"
+"""Workers that run until the console is left."""
+LEAVE_WITHIN = 2.0
+"""Seconds for what is under way in the panes to end."""
+
+
+class ConsoleApp(App[str]):
+    """The part of the console that its other parts know."""
+
+    hints: Hints
+    status: Status
+    welcome: Welcome
+    workspace: Workspace
+    job_control: JobControl
+    colours: Colours
+
+    def __init__(self, hub: Hub, windows: Layout, prefix: str) -> None:
+        super().__init__()
+        self.hub = hub
+        self.windows = windows
+        self.prefix = prefix
+        self.flags: dict[int, str] = {}
+        """What the window list says of each window: `!` for a crash in it."""
+        self.deadlocks = 0
+        self.clipboard_text = ""
+        self.last_shell = ""
+        """The command that would have done what was done last."""
+        self.said: list[str] = []
+        """Messages so far."""
+        self._keep_timer: Timer | None = None
+
+    def spawn(self, work: Callable[[], Awaitable[None]]) -> None:
+        """Run something until the console is left."""
+        self.run_worker(work, group=LASTING)
+
+    async def leave(self, how: str) -> None:
+        """End the console; the graph is another matter."""
+        if self.hub.supervision is not None:
+            self.keep_layout_now()
+        views = [frame.view for frame in self.workspace.frames.values()]
+        for view in views:
+            view.closed()
+        under_way = [worker for view in views for worker in self.workers.cancel_node(view)]
+        ends = asyncio.gather(*(w.wait() for w in under_way), return_exceptions=True)
+        await asyncio.wait([ends], timeout=LEAVE_WITHIN)
+        if self.hub.live is not None:
+            await self.hub.live.close()
+        if self.hub.supervision is not None:
+            await self.hub.supervision.leave()
+        self.workers.cancel_group(self, LASTING)
+        self.exit(how)
+
+    @property
+    def focused_view(self) -> View | None:
+        """The view in the focused pane."""
+        frame = self.workspace.focused
+        return None if frame is None else frame.view.active
+
+    def say(self, text: str, *, bad: bool = False) -> None:
+        """Tell the user something in the bottom line."""
+        self._note(text)
+        self.hints.say(text, "bad" if bad else "text")
+
+    def _note(self, text: str) -> None:
+        self.said.append(f"{time.strftime('%H:%M:%S')}  {text}")
+        del self.said[:-MESSAGES]
+
+    def did(self, shell: str) -> None:
+        """Show the shell command that does what was just done."""
+        self.last_shell = shell
+        self._note(f"$ {shell}")
+        self.hints.say(f"$ {shell}   ({shown(self.prefix)} y copies)", "accent")
+
+    def changed(self) -> None:
+        """The windows have changed: show it, and keep them with the run soon."""
+        self.workspace.sync()
+        self.status.refresh()
+        self.hints.refresh()
+        if self._keep_timer is not None:
+            self._keep_timer.stop()
+        self._keep_timer = self.set_timer(KEEP_AFTER, self.keep_layout_now)
+
+    def keep_layout_now(self) -> None:
+        """Keep the windows with the run, so that whoever attaches next finds them."""
+        self.workspace.keep_contents()
+        if self.hub.supervision is not None:
+            self.hub.supervision.send(do="keep_layout", layout=self.windows.to_json())
+
+    @property
+    def window(self) -> Window:
+        return self.windows.window
+
+    def copy(self, text: str, what: str = "") -> None:
+        """Copy a text, and say so.
+
+        Args:
+            what: What it is; the text itself, if empty.
+        """
+        self.clipboard_text = text
+        self.copy_to_clipboard(text)
+        words = clipboard.program()
+        if not words:
+            self.say(
+                f"copied {what or text}, if the terminal lets programs copy; {shown(self.prefix)} ] pastes it here"
+            )
+            return
+
+        async def copy() -> None:
+            trouble = await asyncio.to_thread(clipboard.copy_by, words, text)
+            self.say(f"not copied: {trouble}" if trouble else f"copied {what or text}", bad=bool(trouble))
+
+        self.spawn(copy)

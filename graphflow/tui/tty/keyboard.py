@@ -1,0 +1,144 @@
+"""Keys on their way: one after the other however fast they are typed, the prefix and what follows it taken out.
+
+Textual sends a letter straight to what has the focus, and a key that is bound by way of the app. Of `topics`, enter,
+`0` typed at once, the `0` would come before the enter. So here the next key is handed on when what the one before has
+set off is done: a message follows it along its way, twice, and has then met everything that the key has caused.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Awaitable, Callable
+
+from textual import events
+from textual.message import Message
+from textual.screen import Screen
+from textual.timer import Timer
+
+from graphflow.tui.commands.actions import OPTION_KEYS, by_chord, shown
+from graphflow.tui.context import ConsoleApp
+from graphflow.tui.widgets.bars import WhichKey
+
+WHICH_KEY_AFTER = 0.4
+"""Seconds after the prefix at which the keys that may follow are shown."""
+ROUNDS = 2
+"""How often a key's way is gone: the first time the key itself is met, then what it has caused."""
+DONE_AFTER = 0.25
+"""Seconds after which a key is taken to be done: what had the focus has gone, and the message with it."""
+HELD_BOUND = 10_000
+"""Keys that may wait; what is typed beyond them is lost."""
+
+Typed = events.Key | events.Paste
+
+
+class Keyboard:
+    """Hands keys on, in their order.
+
+    Args:
+        console: What the keys are typed to.
+        hand_on: Gives a key to what has the focus.
+        do: Carries out the action that a key after the prefix means.
+    """
+
+    class Followed(Message):
+        """A key's way has been gone once more."""
+
+        def __init__(self, number: int, rounds: int) -> None:
+            super().__init__()
+            self.number, self.rounds = number, rounds
+
+    def __init__(
+        self,
+        console: ConsoleApp,
+        hand_on: Callable[[events.Event], Awaitable[None]],
+        do: Callable[[str], None],
+    ) -> None:
+        self.which_key = WhichKey()
+        self._console, self._hand_on, self._do = console, hand_on, do
+        self._chords = by_chord()
+        self._chord_open = False
+        self._which_timer: Timer | None = None
+        self._held: deque[Typed] = deque(maxlen=HELD_BOUND)
+        self._number = 0
+        self._under_way_since: float | None = None
+        self._screen: Screen[object] | None = None
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether everything that was typed is done."""
+        return not self._held and self._under_way_since is None
+
+    async def type(self, event: Typed) -> None:
+        """Take a key in."""
+        self._held.append(event)
+        await self.go_on()
+
+    async def go_on(self) -> None:
+        """Hand the next key on, unless one is under way or its pane is yet to have the focus."""
+        console = self._console
+        while self._held and self._under_way_since is None:
+            is_for_panes = len(console.screen_stack) == 1
+            if is_for_panes and (console.workspace.focus_is_due or self._brings_focus_back()):
+                return
+            event = self._held.popleft()
+            self._number += 1
+            self._under_way_since = time.monotonic()
+            self._screen = console.screen
+            if not (isinstance(event, events.Key) and self._takes(event)):
+                await self._hand_on(event)
+            self._follow(ROUNDS)
+
+    async def followed(self, event: Followed) -> None:
+        """Take in that a key's way has been gone."""
+        if event.number != self._number or self._under_way_since is None:
+            return
+        if event.rounds > 1:
+            self._follow(event.rounds - 1)
+            return
+        self._under_way_since = None
+        await self.go_on()
+
+    async def look(self, now: float) -> None:
+        """Give up following a key when what it was given to has gone."""
+        since = self._under_way_since
+        if since is not None and (now - since > DONE_AFTER or self._console.screen is not self._screen):
+            self._under_way_since = None
+        await self.go_on()
+
+    def _brings_focus_back(self) -> bool:
+        """Whether nothing has the focus, since what had it was hidden, and the pane can have it again."""
+        return self._console.focused is None and self._console.workspace.regain_focus()
+
+    def _follow(self, rounds: int) -> None:
+        console = self._console
+        (console.focused or console.screen).post_message(self.Followed(self._number, rounds))
+
+    # the prefix
+
+    def _takes(self, event: events.Key) -> bool:
+        """Whether a key is the prefix, or follows it."""
+        console = self._console
+        console.hints.look(time.monotonic(), pressed=True)
+        if self._chord_open:
+            self._close_chord()
+            if event.key == console.prefix:
+                return False  # twice: for what has the focus
+            action = self._chords.get(OPTION_KEYS.get(event.key, event.key))
+            prefix, key = shown(console.prefix), shown(event.key)
+            if action is not None:
+                self._do(action.name)
+            elif event.key != "escape":
+                console.say(f"{prefix} {key} means nothing; {prefix} ? lists all keys")
+            return True
+        if event.key == console.prefix and len(console.screen_stack) == 1:
+            self._chord_open = True
+            self._which_timer = console.set_timer(WHICH_KEY_AFTER, self.which_key.open)
+            return True
+        return False
+
+    def _close_chord(self) -> None:
+        self._chord_open = False
+        if self._which_timer is not None:
+            self._which_timer.stop()
+        self.which_key.display = False

@@ -1,0 +1,124 @@
+"""The messages of one topic: the latest, or all that can be read."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from textual.app import ComposeResult
+from textual.widget import Widget
+
+from graphflow.introspect.messages.echo import block, plain, truncated
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.log_feed import plain_text
+from graphflow.tui.feeds.topic_monitor import TopicMonitor
+from graphflow.tui.panes import Content
+from graphflow.tui.view import View
+from graphflow.tui.widgets.line_view import LineView
+
+ELEMENTS = 32
+"""Elements and characters shown of long arrays and strings."""
+LINES = 2000
+
+
+class Echo(View):
+    """The messages of a topic."""
+
+    NAME = "echo"
+    DOC = "the messages of a topic"
+    LEAST_WIDTH = 36
+    EVERY = 0.2
+    ACTIONS = (
+        Action("stream", "one after the other, or the latest", keys=("s",), hint=True),
+        Action("pause", "pause", keys=("space",), hint=True),
+        Action("hz", "rate", keys=("h",), hint=True),
+        Action("plot", "plot", keys=("p",), hint=True),
+        Action("copy", "copy the message", keys=("y",)),
+    )
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._lines = LineView(20_000)
+        self._tap: TopicMonitor | None = None
+        self._shown = 0
+        self._left_out = 0
+        self._streams = False
+        self._paused = False
+
+    def compose(self) -> ComposeResult:
+        yield self._lines
+
+    @property
+    def heart(self) -> Widget:
+        return self._lines
+
+    @property
+    def note(self) -> str:
+        tap = self._tap
+        if tap is None or not tap.count:
+            return ""
+        lost = self._left_out + tap.dropped
+        words = [f"{tap.count} messages", *([f"{lost} not shown"] if lost and self._streams else [])]
+        return ", ".join([*words, *(["paused"] if self._paused else [])])
+
+    def chosen(self) -> dict[str, str]:
+        return {"topic": self.about}
+
+    def look(self, now: float) -> None:
+        live = self.hub.live
+        if live is None or self._paused:
+            return
+        if self._tap is None:
+            self._tap = TopicMonitor(live, self.about)
+        tap = self._tap
+        if not tap.is_open:
+            tap.look()
+            if tap.trouble and not tap.count:
+                self._lines.replace([plain_text(tap.trouble)])
+        if tap.count == self._shown or tap.message is None:
+            return
+        self._left_out += tap.count - self._shown - 1
+        self._shown = tap.count
+        rows = _lines_of(tap.message)
+        if self._streams:
+            self._lines.extend([*rows, "---"])
+        else:
+            top, follows = self._lines.scroll_offset.y, self._lines.follows
+            self._lines.follows = False
+            self._lines.replace(rows)
+            self._lines.follows = follows
+            self._lines.scroll_to(y=min(top, max(0, len(rows) - 1)), animate=False, immediate=True)
+
+    def do_stream(self) -> None:
+        self._streams = not self._streams
+        self._left_out = 0
+        self._lines.replace([])
+        self._lines.follows = True
+        self._shown = 0 if self._tap is None else max(0, self._tap.count - 1)
+
+    def do_pause(self) -> None:
+        self._paused = not self._paused
+
+    def do_hz(self) -> None:
+        self.open("hz", self.about)
+
+    def do_plot(self) -> None:
+        self.open("plot", self.about)
+
+    def do_copy(self) -> None:
+        if self._tap is not None and self._tap.message is not None:
+            self.console.copy(block(plain(self._tap.message)), "the message as YAML")
+
+    def closed(self) -> None:
+        if self._tap is not None:
+            self._tap.close()
+            self._tap = None
+
+
+def _lines_of(message: Any) -> list[str]:
+    lines = block(truncated(plain(message), ELEMENTS)).split("\n")
+    more = len(lines) - LINES
+    return [*lines[:LINES], f"... {more} lines more"] if more > 0 else lines
+
+
+VIEW = Echo

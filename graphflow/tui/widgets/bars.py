@@ -1,0 +1,291 @@
+"""The lines at the bottom: what can be pressed now, which windows there are, and the keys after the prefix."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from collections.abc import Container, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from rich.segment import Segment
+from rich.style import Style
+from textual import events
+from textual.strip import Strip
+from textual.widget import Widget
+
+from graphflow.tui.commands.actions import console_actions, shown
+
+MESSAGE_SECONDS = 6.0
+"""How long a message stays in place of the hints."""
+SEEN_AFTER = 1.5
+"""Seconds after which a key takes it away."""
+
+
+class StateMark(NamedTuple):
+    """A glyph for a node's state, beside its word."""
+
+    glyph: str
+    colours: str
+
+
+MARKS = {
+    "ready": StateMark("●", "good"),
+    "starting": StateMark("◐", "warn"),
+    "restarting": StateMark("◐", "warn"),
+    "unresponsive": StateMark("◍", "bad"),
+    "resetting": StateMark("◐", "warn"),
+    "waiting": StateMark("◷", "warn"),
+    "stopping": StateMark("◑", "warn"),
+    "pending": StateMark("◌", "dim"),
+    "ended": StateMark("○", "dim"),
+    "failed": StateMark("✖", "bad"),
+    "given_up": StateMark("⊘", "bad"),
+    "lost": StateMark("◇", "bad"),
+    "foreign": StateMark("◆", "accent"),
+    "active": StateMark("●", "good"),
+    "inactive": StateMark("◒", "warn"),
+    "unconfigured": StateMark("◌", "warn"),
+    "finalized": StateMark("○", "dim"),
+    "deadlock": StateMark("∞", "bad"),
+}
+
+
+def word_of(row: Mapping[str, Any], stuck: Container[str]) -> str:
+    """The state of a node for people: that of its process, of its life cycle, or `deadlock`.
+
+    Args:
+        row: Its row of `ps`.
+        stuck: The nodes that are in a deadlock.
+    """
+    if row["node"] in stuck and row["state"] in ("ready", "unresponsive"):
+        return "deadlock"
+    return str(row.get("lifecycle") or row["state"])
+
+
+class Bar(Widget):
+    """One line or more of text made of pieces."""
+
+    @property
+    def console_app(self) -> Any:
+        return self.app
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        """What the line says."""
+        raise NotImplementedError
+
+    def render_line(self, y: int) -> Strip:
+        base = self.rich_style
+        strip = Strip([Segment(text, base + style) for text, style in self.pieces(y, self.size.width)])
+        return strip.crop_extend(0, self.size.width, base)
+
+
+class Hints(Bar):
+    """What can be pressed now; for a while, what has just happened."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._message: tuple[str, str, float] | None = None
+
+    def say(self, text: str, colours: str) -> None:
+        """Show a message for a while; but what went wrong gives way only when it has been seen."""
+        if colours == "text" and self._message is not None and self._message[1] == "bad":
+            return
+        self._message = (text, colours, time.monotonic() + MESSAGE_SECONDS)
+        self.refresh()
+
+    def look(self, now: float, *, pressed: bool = False) -> None:
+        """Take a message down when its time is over, or when it has been seen and a key is pressed."""
+        if self._message is not None and now > self._message[2] - (MESSAGE_SECONDS - SEEN_AFTER if pressed else 0.0):
+            self._message = None
+            self.refresh()
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        colours = self.console_app.colours
+        if self._message is not None:
+            text, name = self._message[0].replace("\n", " "), self._message[1]
+            if len(text) > width - 1:
+                more = f" … {shown(self.console_app.prefix)} ~ shows all"
+                text = text[: max(0, width - 1 - len(more))] + more
+            return [(" ", colours.text), (text, getattr(colours, name))]
+        found: list[tuple[str, Style]] = [(" ", colours.text)]
+        for _, key, title in self._shown(width):
+            found += [(key, colours.accent), (f" {title}  ", colours.text)]
+        return found
+
+    def _shown(self, width: int) -> list[tuple[str, str, str]]:
+        """The actions of the focused view for which there is room: name, key, title."""
+        view = self.console_app.focused_view
+        room = width - 1
+        found = []
+        for action in view.ACTIONS if view is not None else ():
+            if view.offers(action) and action.keys:
+                label = action.label or f"{shown(action.keys[0])} {action.title}"
+                key, _, title = label.partition(" ")
+                room -= len(key) + len(title) + 3
+                if room < 0:
+                    break
+                found.append((action.name, key, title))
+        return found
+
+    def on_click(self, event: events.Click) -> None:
+        """A click on what can be pressed does it; on a message it takes it away."""
+        if self._message is not None:
+            self._message = None
+            self.refresh()
+            return
+        at = 1
+        for name, key, title in self._shown(self.size.width):
+            at += len(key) + len(title) + 3
+            if event.x < at:
+                self.console_app.focused_view.action_act(name)
+                return
+
+
+class Status(Bar):
+    """Which graph, which windows, how the nodes are, and the two keys that one must know."""
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        colours, states = self.console_app.colours, self._states()
+        found = [(self._head, colours.strong), *(piece for _, piece in self._windows(width))]
+        right = [*states, *self._keys()]
+        if _width(found) + _width(right) > width:
+            right = states
+        return [*found, (" " * max(0, width - _width(found) - _width(right)), colours.text), *right]
+
+    @property
+    def _head(self) -> str:
+        return f" [{self.console_app.hub.graph}] "
+
+    def _windows(self, width: int) -> list[tuple[int, tuple[str, Style]]]:
+        """The windows that have room beside the states, the current one among them, each with its number."""
+        app, colours = self.console_app, self.console_app.colours
+        windows = app.windows
+        found = []
+        for number, window in windows.windows.items():
+            current = number == windows.current
+            mark = "*" if current else "-" if number == windows.last else ""
+            mark += "Z" if window.zoomed else ""
+            mark += app.flags.get(number, "")
+            style = colours.cursor + colours.strong if current else colours.dim
+            found.append((number, (f" {number}:{window.name}{mark} ", style)))
+        at = [number for number, _ in found].index(windows.current)
+        room = width - len(self._head) - _width(self._states())
+        first, last = _fitting([len(text) for _, (text, _) in found], at, room)
+        more = [
+            (found[i][0], (mark, colours.accent)) for i, mark in ((first - 1, "<"), (last, ">")) if 0 <= i < len(found)
+        ]
+        before, after = more[: first > 0], more[first > 0 :]
+        return [*before, *found[first:last], *after]
+
+    def _states(self) -> list[tuple[str, Style]]:
+        app, colours = self.console_app, self.console_app.colours
+        supervision = app.hub.supervision
+        found: list[tuple[str, Style]] = []
+        if supervision is None:
+            return [("no supervisor here ", colours.warn)]
+        if supervision.exit_code is not None:
+            return [
+                (
+                    f"ended, exit code {supervision.exit_code} ",
+                    colours.bad if supervision.exit_code else colours.warn,
+                )
+            ]
+        if supervision.is_lost:
+            return [("✖ supervisor gone ", colours.bad)]
+        live, logs = app.hub.live, app.hub.logs
+        stuck = live.stuck_nodes if live is not None else ()
+        counts = Counter(word_of(row, stuck) for row in supervision.nodes.values())
+        for state, mark in MARKS.items():
+            if counts[state]:
+                found.append((f"{mark.glyph}{counts[state]} ", getattr(colours, mark.colours)))
+        errors = sum(app.hub.unseen(node)[0] for node in logs.errors)
+        if errors:
+            found.append((f"E{errors} {shown(app.prefix)} e ", colours.bad))
+        if logs.races:
+            many = "S" if len(logs.races) > 1 else ""
+            found.append((f"⇄{len(logs.races)} RACE{many} {shown(app.prefix)} g ", colours.warn))
+        if live is not None and live.misfits:
+            found.append((f"≠{len(live.misfits)} ", colours.bad))
+        if app.deadlocks:
+            many = "S" if app.deadlocks > 1 else ""
+            found.append((f"✖ {app.deadlocks} DEADLOCK{many} {shown(app.prefix)} g ", colours.bad))
+        return found
+
+    def _keys(self) -> list[tuple[str, Style]]:
+        colours, prefix = self.console_app.colours, shown(self.console_app.prefix)
+        return [
+            (f" {prefix} ?", colours.accent),
+            (" help ", colours.text),
+            (f" {prefix} d", colours.accent),
+            (" leave ", colours.text),
+        ]
+
+    def on_click(self, event: events.Click) -> None:
+        at = len(self._head)
+        for number, (text, _) in self._windows(self.size.width):
+            at += len(text)
+            if event.x < at:
+                self.console_app.deeds.go_to_window(number)
+                return
+        from_right = self.size.width - event.x
+        leave = len(self._keys()[2][0] + self._keys()[3][0])
+        if from_right <= leave:
+            self.console_app.deeds.do_detach()
+        elif from_right <= leave + len(self._keys()[0][0] + self._keys()[1][0]):
+            self.console_app.deeds.do_help()
+        elif self.console_app.deadlocks or self.console_app.hub.logs.races:
+            self.console_app.deeds.do_groups()
+
+
+def _width(pieces: Iterable[tuple[str, Style]]) -> int:
+    return sum(len(text) for text, _ in pieces)
+
+
+def _fitting(widths: Sequence[int], at: int, room: int) -> tuple[int, int]:
+    """The first and the last (exclusive) of neighbours that have room, with a mark on each side where others are."""
+    first, last = 0, len(widths)
+    while last - first > 1 and sum(widths[first:last]) + (first > 0) + (last < len(widths)) > room:
+        if at - first > last - 1 - at:
+            first += 1
+        else:
+            last -= 1
+    return first, last
+
+
+class WhichKey(Bar):
+    """The keys that may follow the prefix, shown when the next one is slow to come."""
+
+    def on_mount(self) -> None:
+        self.display = False
+
+    def open(self) -> None:
+        """Show as many lines as it takes."""
+        self.styles.height = min(self._rows(), max(4, self.app.size.height - 4))
+        self.display = True
+
+    def _entries(self) -> list[tuple[str, str]]:
+        found: dict[str, list[str]] = {}
+        for action in console_actions():
+            if action.short:
+                found.setdefault(action.short, []).extend(map(shown, action.chord))
+        return [(_joined(keys), short) for short, keys in found.items()]
+
+    def _columns(self) -> int:
+        return max(1, self.app.size.width // 16)
+
+    def _rows(self) -> int:
+        return math.ceil(len(self._entries()) / self._columns())
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        colours, entries, rows = self.console_app.colours, self._entries(), self._rows()
+        room = width // self._columns()
+        found: list[tuple[str, Style]] = []
+        for key, short in entries[y::rows]:
+            found += [(f" {key}", colours.accent), (f" {short}".ljust(room - len(key) - 1), colours.text)]
+        return found
+
+
+def _joined(keys: list[str]) -> str:
+    """Keys of one entry: the digits as a range, the rest one after the other."""
+    return "0-9" if len(keys) == 10 else "".join(keys)

@@ -1,0 +1,112 @@
+"""Writing into the graph file: the change is shown first, and the file is whole at every moment."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from graphflow.errors import GraphFileError, GraphflowError
+from graphflow.graph.edit import KeyPath, node_paths
+from graphflow.graph.resolve import load
+from graphflow.tui.context import ConsoleApp
+from graphflow.tui.widgets.dialogs import Ask, Choice
+
+DIFF_LINES = 30
+
+
+def write_nodes(
+    console: ConsoleApp,
+    nodes: set[str],
+    change: Callable[[str, dict[str, KeyPath]], str],
+    what: str,
+    written: Callable[[], None],
+) -> None:
+    """Change nodes in the graph file.
+
+    Args:
+        change: Makes the new text, given where in the file each node is.
+        what: What is written, for the question.
+        written: Called when it has been.
+    """
+    hub = console.hub
+    if hub.plan is None or hub.supervision is None:
+        console.say("there is no graph file to write to: these nodes were started elsewhere", bad=True)
+        return
+    try:
+        paths = node_paths(hub.plan, nodes, hub.folder)
+    except (OSError, GraphflowError) as error:
+        console.say(str(error), bad=True)
+        return
+    strangers = nodes - set(paths)
+    if strangers:
+        console.say(f"not in the graph file: {', '.join(sorted(strangers))}", bad=True)
+        return
+    write_file(console, Path(hub.supervision.run.file), lambda text: change(text, paths), what, written)
+
+
+def write_file(
+    console: ConsoleApp,
+    file: Path,
+    change: Callable[[str], str],
+    what: str,
+    written: Callable[[], None] = lambda: None,
+) -> None:
+    """Show what a change would do to a file and, if the user agrees, write it."""
+    try:
+        before = file.read_text(encoding="utf-8")
+        after = change(before)
+        _must_load(file, after)
+    except (OSError, GraphflowError) as error:
+        console.say(f"{file.name}: {error}", bad=True)
+        return
+    if after == before:
+        console.say(f"{file.name} says so already")
+        return
+    lines = list(difflib.unified_diff(before.split("\n"), after.split("\n"), file.name, file.name, lineterm="", n=1))
+    more = [f"... {len(lines) - DIFF_LINES} lines more"] if len(lines) > DIFF_LINES else []
+
+    def answered(key: str | None) -> None:
+        if key != "w":
+            return
+        try:
+            _replace(file, after)
+        except OSError as error:
+            console.say(f"{file.name}: {error.strerror}; nothing was changed", bad=True)
+            return
+        written()
+        console.say(f"written to {file}")
+        console.hub.announce(f"wrote {what} to {file.name}")
+
+    question = f"Write {what} to {file.name}?"
+    console.push_screen(Ask(question, [Choice("w", "write")], "\n".join([*lines[2 : DIFF_LINES + 2], *more])), answered)
+
+
+def _must_load(file: Path, text: str) -> None:
+    """Check that the new text is a graph file, beside the old one, where its includes are found."""
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml", dir=file.parent, encoding="utf-8") as trial:
+        trial.write(text)
+        trial.flush()
+        try:
+            load(Path(trial.name), [])
+        except GraphFileError as error:
+            wrong = [p for p in error.problems if "has no default" not in p.message]
+            if wrong:
+                raise GraphFileError(wrong) from None
+
+
+def _replace(file: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    handle, name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}-")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as fresh:
+            fresh.write(text)
+            fresh.flush()
+            os.fsync(fresh.fileno())
+        os.chmod(name, file.stat().st_mode & 0o777)
+        os.replace(name, file)
+    except OSError:
+        Path(name).unlink(missing_ok=True)
+        raise

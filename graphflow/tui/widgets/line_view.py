@@ -1,0 +1,340 @@
+"""Many lines of text, of which only those on screen are ever drawn."""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, ClassVar, NamedTuple
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from rich.style import Style
+from rich.text import Text
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.geometry import Size
+from textual.message import Message
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from graphflow.tui.widgets.colours import Colours
+
+KEPT = 20_000
+WRAPS_INTO = 50
+"""Lines that one row becomes at most where long ones are wrapped."""
+_INDENT = re.compile(r"[ │]*")
+"""What stands at the beginning of each line of a wrapped row: a frame's border goes on."""
+_DEEPEST = 24
+"""Columns that an indent has at most."""
+
+
+class Part(NamedTuple):
+    """A piece of a row that is too long for one line."""
+
+    row: Any
+    start: int
+    """The column of the row at which the piece begins."""
+    end: int
+    indent: int
+    """Columns of the row's beginning, or if `is_blank` as many spaces, that stand before the piece."""
+    is_blank: bool = False
+
+
+def breaks(text: str, width: int, hanging: int | None = None) -> Iterator[tuple[int, int, int]]:
+    """Where to break a row, between words if need be in them: start, end and indent of each piece, in columns.
+
+    Args:
+        hanging: The indent of what goes on; None for that of the row.
+    """
+    found = _INDENT.match(text)
+    indent = hanging if hanging is not None else found.end() if found else 0
+    if indent > (min(_DEEPEST, width // 2) if hanging is None else width // 2):
+        indent = 0
+    if cell_len(text) != len(text):  # columns are not characters: cut where the line is full
+        rest = range(width, min(cell_len(text), width * WRAPS_INTO), width - indent)
+        yield 0, width, 0
+        yield from ((at, at + width - indent, indent) for at in rest)
+        return
+    start, room = 0, width
+    for _ in range(WRAPS_INTO):
+        if len(text) - start <= room:
+            yield start, len(text), indent if start else 0
+            return
+        space = text.rfind(" ", start + 1, start + room + 1)
+        end = space if space > start + room // 2 else start + room
+        yield start, end, indent if start else 0
+        start, room = end + (text[end] == " "), width - indent
+
+
+class LineView(ScrollView, can_focus=True):
+    """Lines that grow at the end and are followed there, until one scrolls up.
+
+    Args:
+        bound: Lines kept; the oldest go first.
+        wraps: Whether long rows go on in the next line, rather than being cut off.
+        copies: Whether `y` copies the chosen line; in some views it copies something else.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "move(-1)", show=False),
+        Binding("down,j", "move(1)", show=False),
+        Binding("pageup", "page(-1)", show=False),
+        Binding("pagedown", "page(1)", show=False),
+        Binding("home,g", "top", show=False),
+        Binding("end,G", "bottom", show=False),
+        Binding("slash", "search", show=False),
+        Binding("n", "next_match(1)", show=False),
+        Binding("N", "next_match(-1)", show=False),
+        Binding("y", "copy_line", show=False),
+    ]
+
+    HAS_SEARCH: ClassVar[bool] = True
+    """Whether `/` searches here; what has a filter of its own needs no search."""
+
+    class Wanted(Message):
+        """Something is to be searched for."""
+
+        def __init__(self, lines: LineView) -> None:
+            super().__init__()
+            self.lines = lines
+
+    def __init__(self, bound: int = KEPT, *, wraps: bool = False, copies: bool = False) -> None:
+        super().__init__()
+        self.copies = copies
+        self.sought = ""
+        self.wraps = wraps
+        self._wrapped_at = 0
+        self.rows: deque[Any] = deque(maxlen=bound)
+        self.follows = True
+        self.cursor: int | None = None
+        """The index of the chosen row, while one is chosen."""
+
+    @property
+    def colours(self) -> Colours:
+        colours: Colours = self.app.colours  # type: ignore[attr-defined]
+        return colours
+
+    def draw(self, row: Any) -> Iterable[tuple[str, Style]]:
+        """One row as pieces of text; for subclasses whose rows are not plain text."""
+        if isinstance(row, Text):
+            whole = row.style if isinstance(row.style, Style) else self.colours.text
+            for segment in row.render(self.app.console):  # it leaves the style of the whole to who draws
+                yield segment.text, segment.style or whole
+        else:
+            yield str(row), self.colours.text
+
+    def hanging(self, row: Any) -> int | None:
+        """Columns by which what goes on in the next line is indented; None for as many as the row begins with."""
+        return None
+
+    def replace_last(self, row: Any) -> None:
+        """Show another row in place of the last one."""
+        while self.rows:
+            if self.row_that_begins(len(self.rows) - 1) is not None:
+                self.rows.pop()
+                break
+            self.rows.pop()
+        self.extend([row])
+
+    def extend(self, rows: Iterable[Any]) -> None:
+        """Add rows at the end."""
+        before = len(self.rows)
+        fresh = list(self._parts(rows))
+        self.rows.extend(fresh)
+        self._moved(lost=before + len(fresh) - len(self.rows))
+
+    def replace(self, rows: Iterable[Any]) -> None:
+        """Show other rows."""
+        fresh = list(self._parts(rows))
+        self.rows.clear()
+        self.rows.extend(fresh)
+        self.cursor = None
+        self._moved(lost=0)
+
+    @property
+    def chosen(self) -> Any:
+        """The row that is chosen; None for none."""
+        if self.cursor is None or not 0 <= self.cursor < len(self.rows):
+            return None
+        return _whole(self.rows[self.cursor])
+
+    @property
+    def last_row(self) -> Any:
+        """The newest row; None where there is none."""
+        return _whole(self.rows[-1]) if self.rows else None
+
+    @property
+    def whole_rows(self) -> Iterator[Any]:
+        """The rows as they were given, each once."""
+        return (_whole(row) for row in self.rows if not isinstance(row, Part) or row.start == 0)
+
+    def row_that_begins(self, index: int) -> Any:
+        """The row that begins in a line; None where one goes on."""
+        row = self.rows[index]
+        return None if isinstance(row, Part) and row.start else _whole(row)
+
+    def _parts(self, rows: Iterable[Any]) -> Iterator[Any]:
+        """The rows as lines: the long ones in parts, if they wrap."""
+        width = self._wrapped_at = self.scrollable_content_region.width
+        if not self.wraps or not width:
+            yield from rows
+            return
+        for row in rows:
+            text = "".join(text for text, _ in self.draw(row))
+            if cell_len(text) <= width:
+                yield row
+            else:
+                hanging = self.hanging(row)
+                yield from (Part(row, *piece, hanging is not None) for piece in breaks(text, width, hanging))
+
+    def wrap(self, wraps: bool) -> None:
+        """Let long rows go on in the next line, or not."""
+        self.wraps = wraps
+        self.replace(list(self.whole_rows))
+
+    def recolour(self, recolour: Callable[[Text], None]) -> None:
+        """Follow a change of the theme; rows that are no text are drawn in the one in force anyway."""
+        for row in self.whole_rows:
+            if isinstance(row, Text):
+                recolour(row)
+        self.refresh()
+
+    def _moved(self, lost: int) -> None:
+        self.virtual_size = Size(self._widest, len(self.rows))
+        if self.follows:
+            self.scroll_end(animate=False, immediate=True, x_axis=False)
+        elif lost:
+            self.scroll_to(y=max(0, self.scroll_offset.y - lost), animate=False, immediate=True)
+            self.cursor = None if self.cursor is None else max(0, self.cursor - lost)
+        self.refresh()
+
+    @property
+    def _widest(self) -> int:
+        return self.scrollable_content_region.width
+
+    def render_line(self, y: int) -> Strip:
+        width = self.scrollable_content_region.width
+        left, top = self.scroll_offset
+        index = top + y
+        base = self.rich_style
+        if not 0 <= index < len(self.rows):
+            return Strip.blank(width, base)
+        colours = self.colours
+        style = base + colours.cursor if index == self.cursor else base
+        row = self.rows[index]
+        strip = Strip([Segment(text, style + piece) for text, piece in self.draw(_whole(row))])
+        if isinstance(row, Part):
+            head = Strip.blank(row.indent, style) if row.is_blank else strip.crop(0, row.indent)
+            strip = Strip.join([head, strip.crop(row.start, row.end)])
+        return strip.crop_extend(left, left + width, style)
+
+    def on_resize(self, event: events.Resize) -> None:
+        if self.wraps and self._wrapped_at != self.scrollable_content_region.width:
+            self.wrap(True)
+        self._moved(lost=0)
+
+    # searching
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        if action == "copy_line":
+            return self.copies
+        if action == "next_match":
+            return bool(self.sought)
+        return self.HAS_SEARCH or action != "search"
+
+    def action_copy_line(self) -> None:
+        if self.chosen is not None:
+            text = "".join(piece for piece, _ in self.draw(self.chosen)).strip()
+            self.app.copy(text, "the line")  # type: ignore[attr-defined]
+
+    def action_search(self) -> None:
+        self.post_message(self.Wanted(self))
+
+    def action_next_match(self, step: int) -> None:
+        self.search(self.sought, step)
+
+    def search(self, text: str, step: int) -> bool:
+        """Go to the next line with a text, or the one before; returns whether there is one.
+
+        Small letters stand for capital ones too.
+        """
+        self.sought = text
+        count = len(self.rows)
+        at = self.cursor if self.cursor is not None else (count if step < 0 else self.scroll_offset.y - 1)
+        for i in range(at + step, count if step > 0 else -1, step) if text else ():
+            row = self.row_that_begins(i)
+            if row is None:
+                continue
+            words = "".join(piece for piece, _ in self.draw(row))
+            if text in (words.lower() if text.islower() else words):
+                self.hold()
+                self.cursor = i
+                self.show_row(i)
+                return True
+        return False
+
+    # moving
+
+    def hold(self) -> None:
+        """Stop following, so that what is read stays where it is."""
+        self.follows = False
+
+    def action_move(self, step: int) -> None:
+        height = self.scrollable_content_region.height
+        if self.cursor is None:
+            self.cursor = min(len(self.rows) - 1, self.scroll_offset.y + height - 1)
+        else:
+            self.cursor = max(0, min(len(self.rows) - 1, self.cursor + step))
+        self.hold()
+        self.show_row(self.cursor)
+
+    def show_row(self, index: int) -> None:
+        """Scroll just enough to have a row on screen."""
+        height, top = self.scrollable_content_region.height, self.scroll_offset.y
+        if index < top:
+            self.scroll_to(y=index, animate=False, immediate=True)
+        elif index >= top + height:
+            self.scroll_to(y=index - height + 1, animate=False, immediate=True)
+        self.refresh()
+
+    def action_page(self, step: int) -> None:
+        height = self.scrollable_content_region.height
+        if step < 0:
+            self.hold()
+        self.scroll_to(y=self.scroll_offset.y + step * max(1, height - 1), animate=False, immediate=True)
+        self._follow_at_the_end()
+
+    def action_top(self) -> None:
+        self.hold()
+        self.scroll_home(animate=False, immediate=True)
+
+    def action_bottom(self) -> None:
+        self.follows, self.cursor = True, None
+        self.scroll_end(animate=False, immediate=True, x_axis=False)
+        self.refresh()
+
+    def on_mouse_scroll_up(self) -> None:
+        self.hold()
+
+    def on_mouse_scroll_down(self) -> None:
+        self.call_after_refresh(self._follow_at_the_end)
+
+    def _follow_at_the_end(self) -> None:
+        if self.is_vertical_scroll_end:
+            self.follows, self.cursor = True, None
+            self.refresh()
+
+    def on_click(self, event: events.Click) -> None:
+        index = self.scroll_offset.y + event.y
+        if 0 <= index < len(self.rows):
+            self.hold()
+            self.cursor = index
+            self.refresh()
+
+    def get_content_width(self, container: Size, viewport: Size) -> int:
+        return container.width
+
+
+def _whole(row: Any) -> Any:
+    return row.row if isinstance(row, Part) else row

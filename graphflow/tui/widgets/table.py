@@ -1,0 +1,264 @@
+"""A view that is a table: rows that come, go and change, found by typing, put in order, chosen by a cursor."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import ClassVar
+
+from rich.cells import cell_len
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.widget import Widget
+from textual.widgets import DataTable, Input, Static
+
+from graphflow.tui.commands.actions import Action
+from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.panes import Content
+from graphflow.tui.view import View
+from graphflow.tui.widgets.dialogs import Item, Pick
+
+Cells = tuple[Text | str, ...]
+FIND = Action("find_row", "find", keys=("slash",), hint=True)
+ORDER = Action("order", "order", keys=("o",), hint=True)
+ROWS = 2000
+"""Rows shown; a find narrows what there is."""
+STRETCH_LEAST = 16
+"""Cells that a last column which takes the rest of the line has at least."""
+_QUANTITY = re.compile(r"(-?[\d.,]+) ?(ms|[a-zA-Z%]*)")
+_UNITS = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0, "k": 1e3, "M": 1e6, "G": 1e9}
+
+
+class TableView(View):
+    """A view of rows, each known by a key.
+
+    Subclasses say COLUMNS and `rows`.
+    """
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ()
+    KEEPS: ClassVar[int | None] = None
+    """Columns that stay where there is no room; the others go, the last of SHED first. None: the table scrolls."""
+    SHED: ClassVar[tuple[str, ...]] = ()
+    """The columns in the order of their worth; empty for the order in which they stand."""
+    STRETCHES: ClassVar[bool] = False
+    """Whether the last column takes what room is left."""
+    EMPTY: ClassVar[str] = "nothing there yet"
+    """What stands in place of the rows where there are none."""
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self.table: DataTable[Text | str] = DataTable(cursor_type="row", zebra_stripes=False, cell_padding=1)
+        self._empty = Static("", classes="hint", markup=False)
+        self._find = Input(
+            str(self.options.get("find", "")), placeholder="find; enter keeps, esc clears", classes="find"
+        )
+        self._shown: dict[str, Cells] = {}
+        self._total = self._found = 0
+        """Rows that there are, and of them those that the find leaves and that are shown."""
+        self._columns: tuple[str, ...] = ()
+        self._filled = False
+        """Whether rows have come since they were drawn last."""
+
+    def compose(self) -> ComposeResult:
+        yield self.table
+        yield self._empty
+        yield self._find
+
+    def rows(self) -> Mapping[str, Cells]:
+        """The rows as they should be, in order."""
+        raise NotImplementedError
+
+    def look(self, now: float) -> None:
+        wanted = self._find.value.lower()
+        rows = dict(self.rows())
+        self._total = len(rows)
+        if wanted:
+            rows = {k: v for k, v in rows.items() if wanted in k.lower() or wanted in _words(v)}
+        self._found = min(ROWS, len(rows))
+        self.show_rows(dict(list(self.ordered(rows).items())[:ROWS]))
+
+    def why_empty(self) -> str:
+        """Why there are no rows."""
+        if self._find.value:
+            return f"no row has {self._find.value!r}; esc shows all"
+        return self.EMPTY
+
+    @property
+    def note(self) -> str:
+        if self._found == self._total:
+            return str(self._total)
+        find = f"[/{self._find.value}] " if self._find.value else ""
+        return f"{find}{self._found} of {self._total}"
+
+    # the order
+
+    @property
+    def _order(self) -> tuple[str, bool]:
+        """The column by which the rows are ordered, empty for none, and whether backwards."""
+        column = str(self.options.get("order", ""))
+        return column.removeprefix("-"), column.startswith("-")
+
+    def ordered(self, rows: dict[str, Cells]) -> dict[str, Cells]:
+        """The rows in the order that was chosen; those without a value come last."""
+        column, backwards = self._order
+        if column not in self.COLUMNS:
+            return rows
+        at = self.COLUMNS.index(column)
+        filled = [key for key in rows if str(rows[key][at]).strip()]
+        filled.sort(key=lambda key: _magnitude(str(rows[key][at])), reverse=backwards)
+        return {key: rows[key] for key in (*filled, *(key for key in rows if key not in set(filled)))}
+
+    def do_order(self) -> None:
+        """Ask for a column; the same one once more turns the order round."""
+        now, backwards = self._order
+
+        def picked(column: str | None) -> None:
+            if column is None:
+                return
+            self.options["order"] = f"-{column}" if column == now and not backwards else column
+            self._columns = ()
+            self.look(0.0)
+
+        items = [Item(column, self._order_note(column), column) for column in self.COLUMNS if column]
+        self.app.push_screen(Pick("Order by", [*items, Item("as it comes", "", "")]), picked)
+
+    def _order_note(self, column: str) -> str:
+        now, backwards = self._order
+        return (
+            "" if column != now else "now, backwards; again for forwards" if backwards else "now; again for backwards"
+        )
+
+    def _head(self, column: str) -> str:
+        name, backwards = self._order
+        return f"{column} {'▼' if backwards else '▲'}" if column == name and column else column
+
+    # what is shown
+
+    def show_rows(self, rows: dict[str, Cells]) -> None:
+        """Change what differs; the cursor stays on its row."""
+        self.set_class(not rows, "-empty")
+        if not rows:
+            self._empty.update(self.why_empty())
+        if self._filled:
+            self._filled = False
+            self.call_after_refresh(self._draw_again)
+        columns, rest = self._fitting(rows)
+        at = [self.COLUMNS.index(column) for column in columns]
+        if rest:
+            rows = {key: (*cells[:-1], _cropped(cells[-1], rest)) for key, cells in rows.items()}
+        if columns != self._columns or list(rows) != list(self._shown):
+            self._fill(rows, columns, at)
+        else:
+            for key, cells in rows.items():
+                before = self._shown[key]
+                for column, i in zip(columns, at, strict=True):
+                    if cells[i] != before[i]:
+                        self.table.update_cell(key, column, cells[i], update_width=True)
+        self._shown = rows
+
+    def restyle(self) -> None:
+        self._shown = {}
+        self.look(0.0)
+
+    def _fitting(self, rows: dict[str, Cells]) -> tuple[tuple[str, ...], int]:
+        """The columns for which there is room, and the cells that are left for the last one if it stretches."""
+        room = self.table.size.width
+        if self.KEEPS is None or not room:
+            return self.COLUMNS, 0
+        stretching = self.COLUMNS[-1] if self.STRETCHES else ""
+        found: list[str] = []
+        for column in self.SHED or self.COLUMNS:
+            i = self.COLUMNS.index(column)
+            if column == stretching and not any(str(cells[i]) for cells in rows.values()):
+                continue
+            widest = max(map(cell_len, (self._head(column), *(str(cells[i]) for cells in rows.values()))))
+            needed = 2 + (min(STRETCH_LEAST, widest) if column == stretching else widest)
+            if needed > room and len(found) >= self.KEEPS:
+                continue
+            room -= needed
+            found.append(column)
+        rest = max(0, room) + STRETCH_LEAST - 1 if stretching in found else 0
+        return tuple(column for column in self.COLUMNS if column in found), rest
+
+    def _draw_again(self) -> None:
+        """Have the rows drawn anew: the table keeps what it has drawn between their coming and its measuring them."""
+        for key, cells in list(self._shown.items())[:1]:
+            self.table.update_cell(key, self.COLUMNS[0], cells[0])
+
+    def _fill(self, rows: dict[str, Cells], columns: tuple[str, ...], at: list[int]) -> None:
+        kept, top = self._row_key, self.table.scroll_offset.y
+        self._filled = True
+        self.table.clear(columns=columns != self._columns)
+        if columns != self._columns:
+            self._columns = columns
+            for column in columns:
+                self.table.add_column(self._head(column), key=column)
+        for key, cells in rows.items():
+            self.table.add_row(*(cells[i] for i in at), key=key)
+        if kept in rows:
+            self.table.move_cursor(row=list(rows).index(kept), animate=False, scroll=False)
+        self.table.scroll_to(y=top, animate=False)
+
+    @property
+    def key(self) -> str:
+        """The key of the row that is chosen; empty for none."""
+        return self._row_key
+
+    @property
+    def _row_key(self) -> str:
+        keys = list(self._shown)
+        row = self.table.cursor_row
+        return keys[row] if 0 <= row < len(keys) else ""
+
+    def choose(self, key: str) -> None:
+        """Put the cursor on a row."""
+        if key in self._shown:
+            self.table.move_cursor(row=list(self._shown).index(key), animate=False)
+
+    @property
+    def heart(self) -> Widget:
+        return self.table
+
+    def do_find_row(self) -> None:
+        self._find.add_class("shown")
+        self._find.focus()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        if event.input is self._find:
+            self.options["find"] = event.value
+            self.look(0.0)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        if event.input is self._find:
+            self._find.remove_class("shown")
+            self.table.focus()
+
+    def key_escape(self) -> None:
+        """Take the find away."""
+        self._find.value = ""
+        self._find.remove_class("shown")
+        self.table.focus()
+
+
+def _words(cells: Cells) -> str:
+    return " ".join(str(cell) for cell in cells).lower()
+
+
+def _cropped(cell: Text | str, width: int) -> Text | str:
+    """A cell on one line, cut where there is no room."""
+    if cell_len(str(cell)) <= width:
+        return cell
+    text = cell.copy() if isinstance(cell, Text) else Text(cell)
+    text.truncate(width, overflow="ellipsis")
+    return text
+
+
+def _magnitude(text: str) -> tuple[float, str]:
+    """The sort key of a cell: its quantity with its unit, else its words."""
+    found = _QUANTITY.match(text)
+    if found is None:
+        return float("inf"), text.lower()
+    try:
+        return float(found[1].replace(",", "")) * _UNITS.get(found[2], 1.0), text.lower()
+    except ValueError:
+        return float("inf"), text.lower()

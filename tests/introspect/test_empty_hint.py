@@ -1,0 +1,47 @@
+"""An empty listing says where else something runs."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.introspect import empty_hint
+from graphflow.introspect.empty_hint import nothing_here
+
+
+class Seen:
+    """What the network holds, made up."""
+
+    tokens_: list[str] = []  # noqa: RUF012
+
+    def tokens(self, key: str) -> list[str]:
+        assert key == "@ros2_lv/*/*/*/*/NN/**"
+        return self.tokens_
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+@pytest.mark.parametrize(
+    ("nodes", "text"),
+    [
+        ([], "and none in others"),
+        (
+            ["0/a", "0/b", "5/_hidden", "0/_hidden"],
+            "there are 2 nodes in domain 0: graphflow --domain 0 ...",
+        ),
+        (
+            ["9/a", "7/b", "7/c"],
+            "there are 2 nodes in domain 7, 1 node in domain 9: graphflow --domain 7 ...",
+        ),
+        (
+            ["9/a"],
+            "there is 1 node in domain 9: graphflow --domain 9 ...",
+        ),
+    ],
+)
+def test_where_nodes_run(nodes: list[str], text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By domain; hidden ones do not count."""
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "5")
+    monkeypatch.setattr(empty_hint, "Client", Seen)
+    Seen.tokens_ = [f"@ros2_lv/{n.split('/')[0]}/z/{i}/{i}/NN/%/%/{n.split('/')[1]}" for i, n in enumerate(nodes)]
+    assert nothing_here("no nodes") == f"no nodes in domain 5{', ' if text.startswith('and') else '; '}{text}"

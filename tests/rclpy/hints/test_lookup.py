@@ -1,0 +1,200 @@
+"""The next step for errors of programs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from example_interfaces.action import Fibonacci
+from example_interfaces.srv import AddTwoInts
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Header, String
+
+import rclpy
+from graphflow.rclpy.hints import lookup, tracebacks
+from rclpy.action import ActionClient
+from rclpy.action.server import ServerGoalHandle
+from rclpy.clock import Clock
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from tests.rclpy.hinted import hint_of
+
+ROS: Any = rclpy
+
+
+def spin_once(wrong: int) -> None:
+    """Be a function of the user's that is called as one of rclpy's."""
+
+
+OWN: Any = spin_once
+NOW = Clock().now()
+MAKER: Any = MultiThreadedExecutor
+PROFILE: Any = QoSProfile
+WRONG: list[tuple[Callable[[Any], Any], str]] = [
+    # by attribute
+    (lambda n: n.get_logger.info("hi"), "it is called first: write get_logger().info(...)"),
+    (lambda n: n.create_timer(1.0, print).stop(), "a timer is stopped by timer.cancel(), and started again by"),
+    (lambda n: n.get_clock().now().seconds, "write .nanoseconds / 1e9"),
+    (lambda n: n.create_action_server(Fibonacci, "fib", print), 'write ActionServer(self, Type, "name", self.execute)'),
+    (lambda n: n.get_logger().warning_once("hi"), "once is an argument: get_logger().info(..., once=True)"),
+    (
+        lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request()).sum,
+        "the answer has it: future.res",
+    ),
+    (
+        lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request()).result().sum,
+        "future.result() is None until the future is done",
+    ),
+    (
+        lambda n: n.get_clock().now() - n.header.stamp,
+        "n.header.stamp is a message: write rclpy.time.Time.from_msg(n.header.stamp)",
+    ),
+    (lambda n: NOW - n.header.stamp, "n.header.stamp is a message: write rclpy.time.Time.from_msg"),
+    (lambda n: n.header.stamp < n.get_clock().now(), "write rclpy.time.Time.from_msg(n.header.stamp)"),
+    (lambda n: n.get_clock().now() - [n.header][0].stamp, "one of them is a message: rclpy.time.Time.from_msg(stamp)"),
+    # by text
+    (lambda n: setattr(n, "timers", 1), "every node has 'timers' already: choose another name for the attribute"),
+    (lambda n: setattr(n, "handle", 1), "every node has 'handle' already"),
+    (lambda n: asyncio.get_running_loop(), "callbacks of rclpy run without asyncio"),
+    (
+        lambda n: n.get_clock().now() - n.get_clock().now() > 1.0,
+        "of a time or a duration take the seconds: .nanoseconds / 1e9",
+    ),
+    (lambda n: 1 / n.declare_parameter("rate", 1.0), "a parameter has its value in .value"),
+    (lambda n: Parameter("rate", Parameter.Type.DOUBLE, 2), "a DOUBLE is a float: write 2.0"),
+    (lambda n: n.declare_parameter("rate", float), "or a type as in declare_parameter('name', Parameter.Type.DOUBLE)"),
+    (
+        lambda n: n.declare_parameter("gains", {"p": 1.0}),
+        "a dictionary is a parameter for each key: declare_parameters(",
+    ),
+    (
+        lambda n: n.declare_parameter("gains", object()),
+        "a parameter is a bool, an int, a float, a str, bytes, or a list",
+    ),
+    (lambda n: n.declare_parameter("gains", [1, 2.5]), "all elements are of one type, as in [1.0, 2.5]"),
+    (lambda n: n.declare_parameter("rate", 1.0, "the rate"), "is a ParameterDescriptor(description='the rate')"),
+    (lambda n: n.set_parameters(Parameter("n", value=6)), ""),
+    (lambda n: Parameter("n", 2.0), "the value goes by name: Parameter('name', value=2.0)"),  # type: ignore[arg-type]
+    (lambda n: [Parameter("n", value=6)].name, "that is a list of parameters: for parameter in parameters"),  # type: ignore[attr-defined]
+    (lambda n: n.set_parameters({"n": 6}), "write set_parameters([Parameter('name', value=6)])"),
+    (lambda n: n.create_publisher(String, "chat", 1).publish(String), "that is a class and no message: write String()"),
+    (lambda n: n.create_publisher(String, "chat", 1).publish("hello"), "write String(data='hello')"),
+    (lambda n: n.create_publisher(Twist, "drive", 1).publish("hello"), ""),
+    (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter has its value in .value"),
+    (lambda n: ActionClient(n, Fibonacci, "fib").send_goal_async(Fibonacci.Goal), "write Fibonacci.Goal()"),
+    (lambda n: (n.destroy_node(), n.get_name()), "it was destroyed before, by itself or with its node"),
+    (lambda n: rclpy.init(), "call rclpy.init() once, before the first node is made"),
+    # fields
+    (lambda n: String().text, "String has data"),
+    (lambda n: setattr(n.twist, "linaer", 1), "Twist has linear, angular; did you mean 'linear'?"),
+    (lambda n: Twist(x=1.0), "it is further down: .linear.x"),
+    (lambda n: Fibonacci.Impl.FeedbackMessage().sequence, "it is further down: .feedback.sequence"),
+    (lambda n: String("hi"), "fields go by name: String(data=...)"),
+    # calls
+    (lambda n: type(n)("other", "space"), "write super().__init__('node_name', namespace='...') in the __init__"),
+    (lambda n: n.get_logger().info("%d", 1), "one text is logged: get_logger().info(f'... {value}')"),
+    (lambda n: n.create_client(AddTwoInts, "add").wait_for_service(timeout=1.0), "it is timeout_sec="),
+    (
+        lambda n: ROS.spin_until_future_complete(n),
+        "spin_until_future_complete(node, future, executor=, timeout_sec=)",
+    ),
+    (lambda n: QoSProfile(reliability=1), "give it a depth: QoSProfile(depth=10, ...)"),
+    (lambda n: PROFILE(10), "policies go by name: QoSProfile(depth=10, reliability="),
+    (lambda n: n.declare_parameters([("a", 1)]), "write declare_parameters('', [('a', 1), ('b', 2)])"),
+    (lambda n: ROS.init(["x"]), "write rclpy.init(), or rclpy.init(args=sys.argv)"),
+    (lambda n: MAKER.add_node(n), "MultiThreadedExecutor is the class: make one, MultiThreadedExecutor()"),
+    (lambda n: MAKER.shutdown(), "MultiThreadedExecutor is the class: make one, MultiThreadedExecutor()"),
+    # nothing to add
+    (lambda n: int("a"), ""),
+    (lambda n: OWN(), ""),
+    (lambda n: n.nothing, ""),
+]
+
+
+@pytest.mark.parametrize(("wrong", "sentence"), WRONG)
+def test_mistakes(node: Any, wrong: Callable[[Any], Any], sentence: str) -> None:
+    """Each has its sentence."""
+    node.twist, node.header = Twist(), Header()
+    found = hint_of(lambda: wrong(node))
+    assert sentence in found if sentence else found == ""
+
+
+def test_attributes_that_are_set(node: Node) -> None:
+    """Before Python 3.13 these errors do not know their object: it is found in the user's own code."""
+
+    def set_one() -> None:
+        profile = QoSProfile(depth=1)
+        profile.reliabilty = 1  # type: ignore[attr-defined]
+
+    assert hint_of(set_one) == "did you mean 'reliability'?"
+
+
+def test_the_note(node: Node) -> None:
+    """It is added once; the lines of graphflow's are left out then."""
+
+    def tick() -> None:
+        node.create_publisher(String, "chat", 1).publish(String)
+
+    node.create_timer(0.0, tick)
+    with pytest.raises(TypeError) as caught:
+        rclpy.spin(node)
+    for _ in range(2):
+        tracebacks.shorten(caught.value)
+        assert caught.value.__notes__ == ["note: that is a class and no message: write String()"]
+
+
+def test_goals(node: Node) -> None:
+    """Their fields are in the request."""
+    goal: Any = ServerGoalHandle.__new__(ServerGoalHandle)
+    assert hint_of(lambda: goal.order) == "the goal has it: goal_handle.request.order"
+
+
+def test_clocks_have_no_hint_of_nodes() -> None:
+    """A name that another class has is no reason for a hint."""
+    clock: Any = Clock()
+    assert hint_of(lambda: clock.publish()) == ""
+
+
+class Task:
+    """A class of the program's with the name of one of rclpy's."""
+
+    name = "mow"
+
+
+class Timer:
+    """Another."""
+
+
+class Lazy:
+    """An object whose attributes cannot be looked at."""
+
+    def __getattribute__(self, name: str) -> Any:
+        raise LookupError(name)
+
+
+class Wordless(Exception):
+    """An error without a text."""
+
+    def __str__(self) -> str:
+        raise ValueError("no text")
+
+
+@pytest.mark.parametrize(("thing", "attribute"), [(Task(), "nme"), (Timer(), "start")])
+def test_a_class_of_the_programs_own(thing: Any, attribute: str) -> None:
+    """Gets no advice on a class of rclpy's that has the same name."""
+    with pytest.raises(AttributeError) as caught:
+        getattr(thing, attribute)
+    assert lookup.hint(caught.value) == ""
+
+
+def test_an_error_that_cannot_be_looked_at() -> None:
+    """Has no hint, and is shown all the same."""
+    thing = Lazy()
+    with pytest.raises(AttributeError) as caught:
+        raise AttributeError("'Foo' object has no attribute 'bar'")
+    assert (lookup.hint(caught.value), lookup.hint(Wordless())) == ("", "")
+    del thing

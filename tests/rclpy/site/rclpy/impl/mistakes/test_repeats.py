@@ -1,0 +1,96 @@
+"""Publishers, timers and the like that one line makes again and again."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+
+import pytest
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from rclpy.impl.mistakes.repeats import MANY
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+from tests.rclpy.conftest import Spinner
+
+Caplog = pytest.LogCaptureFixture
+
+
+def told(caplog: Caplog) -> list[str]:
+    return [r.getMessage() for r in caplog.records if "by now" in r.getMessage()]
+
+
+def nothing(*_: object) -> None:
+    """Be called."""
+
+
+def test_what_a_callback_makes(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """Told once, of each kind with its name and line."""
+    runs = []
+
+    def tick() -> None:
+        runs.append(node.create_publisher(String, "chat", 10))
+        node.create_client(Trigger, "switch")
+        node.create_timer(10.0, lambda: None)
+
+    node.create_timer(0.001, tick)
+    spin(lambda: len(runs) > MANY + 5)
+    first, line = "test_repeats.py:", tick.__code__.co_firstlineno
+    way = "make one in __init__, and keep it in an attribute"
+    assert told(caplog) == [
+        f"/node has 10 publishers of /chat by now that were made in {first}{line + 1}: {way}",
+        f"/node has 10 clients of /switch by now that were made in {first}{line + 2}: {way}",
+        f"/node has 10 timers of <lambda> by now that were made in {first}{line + 3}: {way}",
+    ]
+
+
+def test_what_is_many_by_right(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """Those of other names, those that are destroyed or cancelled, and timers of a loop are not told."""
+    for number in range(MANY + 5):
+        node.create_publisher(String, f"chat{number}", 10)
+        node.create_timer(10.0, lambda: None)
+        node.destroy_subscription(node.create_subscription(String, "chat", nothing, 10))
+        node.create_timer(10.0, nothing).cancel()
+    assert told(caplog) == []
+
+
+def test_two_services_of_one_name(node: Node, caplog: Caplog) -> None:
+    """Told once, with both lines; one that was destroyed does not count."""
+
+    def make(name: str) -> None:
+        node.create_service(Trigger, name, lambda _, response: response)
+
+    node.destroy_service(node.create_service(Trigger, "switch", lambda _, response: response))
+    node.create_service(Trigger, "switch", lambda _, response: response)
+    make("/switch")
+    make("other")
+    make("other")
+    line = test_two_services_of_one_name.__code__.co_firstlineno + 7
+    inner = make.__code__.co_firstlineno + 1
+    texts = [record.getMessage() for record in caplog.records if "twice" in record.getMessage()]
+    assert texts == [
+        f"/node offers /switch twice, in test_repeats.py:{line} and in test_repeats.py:{inner}: "
+        "each call reaches both, and the first answer counts; keep one"
+    ]
+
+
+def test_a_callback_that_is_subscribed_twice(node: Node, caplog: Caplog) -> None:
+    """Told once, with both lines; other topics and other callbacks are the user's affair, and so is what is gone."""
+
+    def subscribe(topic: str, callback: Callable[[String], None]) -> Subscription:
+        return node.create_subscription(String, topic, callback, 10)
+
+    gone = node.create_subscription(String, "chat", nothing, 10)
+    node.destroy_subscription(gone)
+    subscribe("chat", nothing)
+    subscribe("other", nothing)
+    node.create_subscription(String, "chat", lambda _: None, 10)
+    assert caplog.messages == []
+    node.create_subscription(String, "/chat", nothing, 10)
+    file, line = "test_repeats.py:", inspect.currentframe().f_lineno - 1  # type: ignore[union-attr]
+    former = subscribe.__code__.co_firstlineno + 1
+    assert caplog.messages == [
+        f"/node subscribes nothing to /chat twice, in {file}{former} and in {file}{line}: each message comes twice; "
+        "keep one"
+    ]

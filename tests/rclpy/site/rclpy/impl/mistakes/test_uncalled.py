@@ -1,0 +1,58 @@
+"""Methods that a line names and does not call."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rclpy
+from rclpy.impl.deadlock import waiting
+from rclpy.impl.mistakes.uncalled import Uncalled
+from rclpy.node import Node
+from tests.rclpy.conftest import Spinner
+
+SOURCE = """
+def tick(timer):
+    timer.cancel
+    timer.period
+    timer.state == "on"
+"""
+
+
+@pytest.mark.parametrize("is_spun", [True, False])
+def test_a_method_without_parentheses(
+    node: Node,
+    spin: Spinner,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    is_spun: bool,
+) -> None:
+    """It is told once for each line, when the node is spun, or else when it leaves."""
+    monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
+    space: dict[str, Any] = {}
+    file = tmp_path / "lamp.py"
+    file.write_text(SOURCE)
+    exec(compile(SOURCE, str(file), "exec"), space)
+    lamp = Node("lamp")
+    timer = lamp.create_timer(100.0, space["tick"])
+    timer.callback = space["tick"]
+    if is_spun:
+        rclpy.spin_once(lamp, timeout_sec=0.0)
+        spin(lambda: "parentheses" in caplog.text)
+    rclpy.shutdown()
+    found = [record.getMessage() for record in caplog.records if record.getMessage().startswith("lamp.py")]
+    assert found == [
+        "lamp.py:3: timer.cancel without parentheses calls nothing; write: timer.cancel()",
+        "lamp.py:5: timer.state == 'on' compares and does nothing; write = to set it",
+    ]
+
+
+def test_nodes_that_left(node: Node) -> None:
+    """They are forgotten."""
+    watch = Uncalled(node._graphflow.life)
+    for _ in range(3):
+        Node("lamp").destroy_node()
+    assert watch._nodes == set()

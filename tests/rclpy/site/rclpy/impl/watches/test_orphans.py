@@ -1,0 +1,154 @@
+"""Nodes that a spin has taken out of their executor."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import pytest
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.watches import orphans
+from rclpy.node import Node
+from rclpy.task import Future
+
+
+@contextmanager
+def spun(node: Node) -> Iterator[SingleThreadedExecutor]:
+    """An executor with that node, which a thread spins."""
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+
+    def spin() -> None:
+        while not executor._is_shutdown:
+            executor.spin_once(0.05)
+
+    thread = threading.Thread(target=spin)
+    thread.start()
+    try:
+        yield executor
+    finally:
+        executor.shutdown()
+        thread.join(10)
+
+
+def told(caplog: pytest.LogCaptureFixture) -> list[str]:
+    return [record.getMessage() for record in caplog.records if "spun by nobody" in record.getMessage()]
+
+
+def until(condition: Callable[[], Any]) -> None:
+    limit = time.monotonic() + 10
+    while not condition():
+        assert time.monotonic() < limit, "it did not come about in time"
+        time.sleep(0.01)
+
+
+def test_a_spin_in_a_callback(node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told with the line, and what to do instead."""
+    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    done: Future[None] = Future()
+    done.set_result(None)
+
+    def tick() -> None:
+        timer.cancel()
+        rclpy.spin_until_future_complete(node, done)  # here
+
+    timer = node.create_timer(0.01, tick)
+    with spun(node):
+        until(lambda: told(caplog))
+    [text] = told(caplog)
+    line = tick.__code__.co_firstlineno + 2
+    assert text.startswith(
+        f"/{node.get_name()} is spun by nobody any more: rclpy.spin_until_future_complete, called in "
+        f"test_orphans.py:{line} in tick, took it out of its SingleThreadedExecutor and left it in none"
+    )
+    assert "do not spin in a callback: future.add_done_callback(...)" in text
+
+
+def test_a_spin_beside_the_executor(
+    node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its own spin does the same, and keeps the node."""
+    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    with spun(node):
+        rclpy.spin_once(node, timeout_sec=0.01)
+        until(lambda: told(caplog))
+    [text] = told(caplog)
+    assert "spin the executor, with all its nodes: executor.spin_once(...)" in text
+
+
+def test_a_node_that_is_spun_again(
+    node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By its executor or by a loop, or one that is destroyed, or whose executor spins no more: nothing is told."""
+    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    looks, is_spun = [], orphans._is_spun
+
+    def look(executor: Any) -> bool:
+        looks.append(executor)
+        return is_spun(executor)
+
+    monkeypatch.setattr(orphans, "_is_spun", look)
+    with spun(node) as executor:
+        rclpy.spin_once(node, timeout_sec=0.01)
+        executor.add_node(node)
+        time.sleep(0.15)
+        assert not looks
+    with spun(node):
+        rclpy.spin_once(node, timeout_sec=0.01)
+    until(lambda: looks)
+    assert told(caplog) == []
+
+
+@pytest.mark.parametrize("limit", [None, 0.02])
+def test_a_callback_that_destroys_its_node(
+    node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, limit: float | None
+) -> None:
+    """It is told where the spin waits for ever; a loop of the program's own may end by itself."""
+    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    looks, is_spun = [], orphans._is_spun
+
+    def look(executor: Any) -> bool:
+        looks.append(executor)
+        return is_spun(executor)
+
+    monkeypatch.setattr(orphans, "_is_spun", look)
+    done = threading.Event()
+
+    def tick() -> None:
+        node.destroy_node()  # here
+        done.set()
+
+    def spin() -> None:
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not (limit and done.is_set() and waited):
+            executor.spin_once(limit)
+
+    waited: list[bool] = []
+    node.create_timer(0.01, tick)
+    thread = threading.Thread(target=lambda: suppressed(spin))
+    thread.start()
+    assert done.wait(10)
+    if limit is None:
+        until(lambda: "goes on without a node" in caplog.text)
+    else:
+        time.sleep(0.2)
+        assert not looks
+    waited.append(True)
+    rclpy.try_shutdown()
+    thread.join(10)
+    [*texts] = [r.getMessage() for r in caplog.records if "without a node" in r.getMessage()]
+    line = tick.__code__.co_firstlineno + 1
+    text = f"test_orphans.py:{line} in tick destroyed /node, and its spin goes on without a node: to end it"
+    assert [t.partition(" as well")[0] for t in texts] == ([text] if limit is None else [])
+
+
+def suppressed(fn: Callable[[], Any]) -> None:
+    """Call `fn` until the context is shut down."""
+    with suppress(ExternalShutdownException):
+        fn()

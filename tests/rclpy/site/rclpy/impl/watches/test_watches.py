@@ -1,0 +1,33 @@
+"""The watches over a context's nodes."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from rclpy.impl.deadlock import waiting
+from rclpy.impl.watches import starvation
+from rclpy.impl.watches.watches import Watches
+from rclpy.node import Node
+
+
+def test_they_look_and_keep_what_still_holds(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All are asked again and again, on the loop; reports that are over are dropped."""
+    monkeypatch.setattr(starvation, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
+    life = node.context.life
+    assert life is not None
+    watches: Watches = life.network().elsewhere[0].watches  # type: ignore[attr-defined]
+    assert watches.texts == []
+    timer = node.create_timer(0.01, lambda: None)
+    until = time.monotonic() + 5.0
+    while not watches.texts and time.monotonic() < until:
+        time.sleep(0.01)
+    [text] = watches.texts
+    assert text.startswith("nobody has spun /node for ")
+    timer.cancel()
+    node.destroy_node()
+    while watches.texts and time.monotonic() < until:
+        time.sleep(0.01)
+    assert watches.texts == []

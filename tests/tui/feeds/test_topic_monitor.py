@@ -1,0 +1,57 @@
+"""Listening for a view: from whenever the topic is there."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.testing import Graph
+from graphflow.tui.feeds.topic_monitor import TopicMonitor
+from graphflow.tui.panes import Content
+from tests.tui.nodes import Talker
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_messages_and_their_arrival(graph: Graph) -> None:
+    """Counted; the latest kept; told to whoever asked; nothing after the end."""
+    node = Talker()
+    async with stage(Content("help"), graph=graph) as s:
+        live = s.console.hub.live
+        assert live is not None
+        tap = TopicMonitor(live, "/chatter")
+        tap.look()
+        assert not tap.is_open
+        assert tap.trouble == "nobody publishes /chatter yet"
+        heard: list[str] = []
+        tap.heard = lambda message, _: heard.append(message.data)
+        await graph.start(node)
+        tap.look()
+        await graph.settle()
+        for word in ("a", "b"):
+            node.chatter.publish(String(data=word))
+        await graph.settle()
+        assert (tap.count, tap.message.data, heard) == (2, "b", ["a", "b"])
+        assert len(tap.arrivals) == 2
+        assert (tap.lost, tap.dropped) == (0, 0)
+        tap.close()
+        node.chatter.publish(String(data="c"))
+        await graph.settle()
+        assert tap.count == 2
+
+
+async def test_a_misspelt_topic(graph: Graph) -> None:
+    """The nearest name is offered."""
+    await graph.start(Talker())
+    async with stage(Content("echo", "/chater"), graph=graph) as s:
+        await s.until("nobody publishes /chater yet; did you mean /chatter?")
+
+
+async def test_without_a_graph() -> None:
+    """It waits."""
+    async with stage(Content("help")) as s:
+        assert s.console.hub.live is not None
+        tap = TopicMonitor(s.console.hub.live, "/x")
+        tap.look()
+        assert not tap.is_open

@@ -1,0 +1,120 @@
+"""Dots, pictures and moves."""
+
+from __future__ import annotations
+
+import pytest
+from textual.geometry import Region
+
+from graphflow.tui.panes import Content
+from graphflow.tui.widgets.canvas import DEFAULT_PEN, RECENT, Dots, Drawing, TurtleCanvas, read_picture
+from nodes.turtle_canvas import Pen
+from nodes.turtle_picture import svg
+from nodes.turtle_world import World
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+RED = (255, 0, 0)
+
+
+def test_dots_are_braille() -> None:
+    """Two columns and four rows to the cell, in Unicode's order; outside is nothing."""
+    dots = Dots(2, 1)
+    for x, y in ((0, 0), (1, 3), (2, 1), (-1, 0), (99, 0), (0, 99)):
+        dots.dot(x, y, RED)
+    assert dots.row(0) == [("⢁⠂", RED)]
+
+
+def test_lines() -> None:
+    """From one dot to another, without a gap."""
+    dots = Dots(4, 2)
+    dots.line(0, 0, 7, 7, RED)
+    assert "".join(text for text, _ in dots.row(0)).strip() == "⠑⢄"
+    assert "".join(text for text, _ in dots.row(1)).strip() == "⠑⢄"
+
+
+def test_turtlesims_own_picture_is_read() -> None:
+    """Where its turtle went, in metres, and the colour of its pen."""
+    world = World()
+    world.canvas.draw("t", Pen((1, 2, 3), 3), (2.0, 3.0), (4.0, 5.0))
+    [line] = read_picture(svg(world, (0, 0, 0)))
+    assert line.colour == (1, 2, 3)
+    assert [(round(x, 2), round(y, 2)) for x, y in line.points] == [(2.0, 3.0), (4.0, 5.0)]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "<svg/>", '<polyline points="a,b" stroke="#000000" stroke-width="3"/>', "x" * 10_000_000]
+)
+def test_no_picture(text: str) -> None:
+    """Whatever a service of that name may answer."""
+    assert read_picture(text) == []
+
+
+def test_moves_draw_and_jumps_do_not() -> None:
+    """A turtle that was carried has left no line; what is not a number is no place."""
+    drawing = Drawing()
+    for x, y in ((1.0, 1.0), (1.5, 1.0), (1.5, 1.0), (9.0, 9.0), (float("nan"), 0.0)):
+        drawing.moved("t", x, y, 0.0, jump=1.0)
+    assert [(m.x0, m.x1) for m in drawing.recent] == [(1.0, 1.5)]
+    assert (drawing.turtles["t"].x, drawing.turtles["t"].y) == (9.0, 9.0)
+
+
+def test_a_picture_replaces_the_moves_before_it_and_tells_the_pens() -> None:
+    """Those since it was asked for are drawn upon it."""
+    drawing = Drawing()
+    for i in range(4):
+        drawing.now = float(i)
+        drawing.moved("t", i / 10, 0.0, 0.0, jump=1.0)
+    assert drawing.turtles["t"].colour == DEFAULT_PEN
+    drawing.take(read_picture('<polyline points="0.5,499.5 14.0,499.5" stroke="#ff0000" stroke-width="3"/>'), asked=2.5)
+    assert [m.at for m in drawing.recent] == [3.0]
+    assert drawing.turtles["t"].colour == RED
+    assert drawing.recent.maxlen == RECENT
+
+
+async def test_only_what_has_changed_is_drawn_again() -> None:
+    """Heads and names where they were and where they are, and the new piece of a line; nothing when nobody moves."""
+    drawing = Drawing()
+    drawing.moved("alice", 2.0, 2.0, 0.0, jump=1.0)
+    drawing.moved("bob", 9.0, 9.0, 0.0, jump=1.0)
+    async with stage(Content("nodes"), size=(80, 30)) as s:
+        canvas = TurtleCanvas(drawing)
+        await s.view.mount(canvas)
+        await s.pilot.pause()
+        canvas.redraw()
+        asked: list[Region] = []
+        canvas.refresh = lambda *regions, **_: asked.extend(regions)  # type: ignore[method-assign,assignment]
+        before = canvas._placed["alice"]
+        canvas.redraw()
+        assert asked == []
+        drawing.moved("alice", 2.9, 2.0, 0.0, jump=1.0)
+        canvas.redraw()
+        after = canvas._placed["alice"]
+        for column, row, *_ in (before, after):
+            for cell in ((column, row), (column + 1, row - 1), (column + len("alice"), row - 1)):
+                assert any(region.contains(*cell) for region in asked)
+        far = canvas._placed["bob"]
+        assert not any(region.contains(*far[:2]) for region in asked)
+
+
+async def test_names_of_turtles_that_are_near_each_other() -> None:
+    """The second one stands below its turtle, as does that of one at the upper edge."""
+    drawing = Drawing()
+    for name, x, y in (("alice", 2.0, 2.0), ("bob", 2.6, 2.0), ("carol", 9.0, 11.0)):
+        drawing.moved(name, x, y, 0.0, jump=1.0)
+    async with stage(Content("nodes"), size=(80, 40)) as s:
+        canvas = TurtleCanvas(drawing)
+        canvas.styles.height = 30
+        await s.view.mount(canvas)
+        await s.pilot.pause()
+        canvas.redraw()
+        placed = canvas._placed
+        assert placed["alice"].row == placed["bob"].row
+        assert placed["alice"].name_row == placed["alice"].row - 1
+        assert placed["bob"].name_row == placed["bob"].row + 1
+        assert (placed["carol"].row, placed["carol"].name_row) == (0, 1)
+        await s.until("alice")
+        assert "bob" in s.text
+        drawing.moved("bob", 7.0, 2.0, 0.0, jump=1.0)
+        canvas.redraw()
+        assert canvas._placed["bob"].name_row == canvas._placed["bob"].row - 1

@@ -1,0 +1,72 @@
+"""Writing into a graph file: shown first, whole or not at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.tui.panes import Content
+from graphflow.tui.widgets import file_changes
+from graphflow.tui.widgets.dialogs import Ask
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+TEXT = "# mine\nnodes: {/a: {class: nodes.talker:Talker}}\n"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    made = tmp_path / "lab.yaml"
+    made.write_text(TEXT)
+    return made
+
+
+async def test_the_windows_are_written(file: Path) -> None:
+    """By a key, after the change was shown; comments stay."""
+    async with stage(Content("nodes"), Content("log"), folder=file.parent) as s:
+        await s.prefix("ctrl+s")
+        await s.until("Write the windows of this console to lab.yaml?")
+        await s.until("+console:")
+        await s.press("w")
+        await s.until("written to")
+        assert file.read_text().startswith(TEXT)
+        await s.prefix("ctrl+s")
+        await s.until("says so already")
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [("nodes: {", "lab"), ("nodes: {}", "there is no node"), ("nodes: {/a: {clas: x:Y}}", "unknown key 'clas'")],
+)
+async def test_what_would_be_no_graph_file_is_not_written(change: str, why: str, file: Path) -> None:
+    """Whatever made it so."""
+    async with stage(folder=file.parent) as s:
+        file_changes.write_file(s.console, file, lambda _: change, "nothing good")
+        assert why in s.console.said[-1]
+        assert not isinstance(s.console.screen, Ask)
+        assert file.read_text() == TEXT
+        assert [f.name for f in file.parent.iterdir()] == ["lab.yaml"]
+
+
+async def test_a_full_disk_leaves_the_old_file(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And says so."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    async with stage(folder=file.parent) as s:
+        file_changes.write_file(s.console, file, lambda text: text + "# more\n", "a comment")
+        monkeypatch.setattr("os.fsync", full)
+        await s.press("w")
+        await s.until("No space left on device; nothing was changed")
+        assert file.read_text() == TEXT
+        assert [f.name for f in file.parent.iterdir()] == ["lab.yaml"]
+
+
+async def test_nodes_of_others_have_no_file(file: Path) -> None:
+    """Nor has a console on a robot."""
+    async with stage(supervised=False) as s:
+        file_changes.write_nodes(s.console, {"/a"}, lambda text, _: text, "x", lambda: None)
+        assert "there is no graph file" in s.console.said[-1]
