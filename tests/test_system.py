@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.system import ROS2, detached, host_name, is_portable, offer_ros2
+from graphflow.system import ROS2, collect_normally, collect_rarely, detached, host_name, is_portable, offer_ros2
 
 
 @pytest.mark.parametrize(
@@ -81,3 +82,14 @@ os._exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
     while not (tmp_path / "asked").exists():
         assert time.monotonic() < deadline
         time.sleep(0.005)
+
+
+def test_the_collector_runs_rarely_only_for_a_while() -> None:
+    """Nodes run with the thresholds that the process began with."""
+    usual = gc.get_threshold()
+    try:
+        collect_rarely()
+        assert gc.get_threshold()[0] > 10 * usual[0]
+    finally:
+        collect_normally()
+    assert gc.get_threshold() == usual

@@ -8,6 +8,8 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from graphflow.system import collect_rarely
+
 if TYPE_CHECKING:
     from graphflow.supervisor.starts import Announcement
 
@@ -24,6 +26,7 @@ if _IS_HEARD:
 
 def main() -> None:
     """Run the command that the command line names."""
+    collect_rarely()  # until nodes or a supervisor run here
     is_start = sys.argv[1:2] == ["up"]
     if is_start:
         _announce()

@@ -14,6 +14,7 @@ from graphflow.domain import go_to
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import GraphRun, running
+from graphflow.system import collect_normally
 from graphflow.tui.app import Console
 from graphflow.tui.commands.history import History, history_file
 from graphflow.tui.feeds.hub import Hub, Verbs
@@ -100,6 +101,7 @@ def _show(
         os.environ.get(THEME_VARIABLE) or section.get("theme") or DARK.name,
         welcome=is_first_visit(),
     )
+    collect_normally()
     how = app.run() or FAILED
     return how, hub.supervision.exit_code if hub.supervision is not None else None
 

@@ -24,7 +24,7 @@ from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.guardian import guard, leave_note
 from graphflow.supervisor.processes.lifeline import LET_GO, Lifeline
 from graphflow.supervisor.starts import ANNOUNCEMENT
-from graphflow.system import detached, is_portable, offer_ros2
+from graphflow.system import collect_normally, detached, is_portable, offer_ros2
 
 if TYPE_CHECKING:
     from graphflow.graph.checks.check import Interfaces
@@ -249,6 +249,7 @@ class _Launch:
         if problems:
             raise GraphFileError(problems)
         types = {s.name: t for s in plan.steps if (t := step_type(s, plan, interfaces))}
+        collect_normally()
         return asyncio.run(self._claim_and_supervise(plan, domain, interfaces, types))
 
     async def _claim_and_supervise(

@@ -162,7 +162,7 @@ class _Preload:
             registry.hash_of(name)
         warm_up()
         keep_freed_memory()
-        gc.collect()
+        # Not collected before: that would take longer than the forks, and the imports leave next to no garbage.
         gc.freeze()
 
     def _serve(self) -> None:

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from typing import Any, TypeVar
 
 from graphflow.errors import UsageFault
-from graphflow.system import is_portable
+from graphflow.system import collect_normally, is_portable
 from graphflow.transport.event_loop.daemon_threads import THREADS, DaemonExecutor
 from graphflow.transport.malloc import keep_freed_memory
 
@@ -48,6 +48,7 @@ def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
 def run(main: Coroutine[Any, Any, T]) -> T:
     """`asyncio.run` on a loop of the best kind available, in a process set up for large messages."""
     keep_freed_memory()
+    collect_normally()
     with closing(main), asyncio.Runner(loop_factory=new_event_loop) as runner:
         return runner.run(main)
 
