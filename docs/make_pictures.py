@@ -34,6 +34,7 @@ from tests.tui.terminal import Terminal
 
 PICTURES = Path(__file__).parent / "pictures"
 WIDE, SMALL = (110, 32), (80, 24)
+GALLERY, TALL = (128, 17), (100, 52)
 CELL_WIDTH, CELL_HEIGHT, FONT_SIZE, MARGIN = 8.43, 17.0, 14, 10
 GROUND, INK = "#0f151c", "#d9e2ec"
 FONTS = "DejaVu Sans Mono, Menlo, Consolas, monospace"
@@ -151,7 +152,26 @@ def deadlock() -> None:
         film.save("deadlock")
 
 
-SCENES: dict[str, Callable[[], None]] = {"turtlesim": turtlesim, "goals": goals, "deadlock": deadlock}
+def gallery() -> None:
+    """Each graph that comes with graphflow, as the view `graph` draws it; for `docs/gallery.md`."""
+    for file in sorted(Path("graphs").glob("*.yaml")):
+        if file.stem == "fibonacci":  # it has no topics; the scene `goals` shows it
+            continue
+        with stage() as s:
+            t = s.open(f"up {file}", TALL if file.stem == "ten_turtles" else GALLERY)
+            t.until("● running", 60)
+            time.sleep(4)
+            open_window(t, "graph")
+            time.sleep(3)
+            take(t, f"graph-{file.stem}")
+
+
+SCENES: dict[str, Callable[[], None]] = {
+    "turtlesim": turtlesim,
+    "goals": goals,
+    "deadlock": deadlock,
+    "gallery": gallery,
+}
 
 
 def open_window(t: Terminal, content: str) -> None:
