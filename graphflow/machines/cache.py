@@ -1,4 +1,7 @@
-"""The graph as its liveliness tokens describe it: they come and go in any order, several times each.
+"""The graph cache: the nodes and endpoints of a domain, derived from liveliness tokens.
+
+Zenoh announces tokens in any order and may repeat them, so every event is idempotent: a token that is known is ignored,
+and so is the end of one that is not.
 
 Source: rmw_zenoh graph_cache; the queries are those of rmw's graph functions.
 """
@@ -15,9 +18,9 @@ ACTION_FEEDBACK = "/_action/feedback"
 ACTION_SEND_GOAL = "/_action/send_goal"
 ACTION_FEEDBACK_TYPE = "_FeedbackMessage"
 _OF_EVERY_NODE = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
-"""Types of the services that nodes have without anybody writing them."""
+"""Packages of the service types that every node offers by itself."""
 TOKENS_BOUND = 100_000
-"""Tokens of a domain that are remembered."""
+"""Tokens of a domain that are kept, at most."""
 
 
 class GraphChange(NamedTuple):
@@ -33,9 +36,9 @@ class GraphCache:
     def __init__(self, tokens: Iterable[str] = ()) -> None:
         self._entities: dict[str, Entity] = {}
         self._of_node: dict[tuple[str, int], dict[str, None]] = {}
-        """The tokens of each node: its own and those of its endpoints, in order."""
+        """By node: its own token and those of its endpoints, in order of arrival."""
         self._named: dict[str, dict[str, Entity]] = {}
-        """The endpoints of each name, by token: a process looks for those of each endpoint that it opens."""
+        """By name: the endpoints, by token. An index, since a process searches by name for each endpoint it opens."""
         self.refused = 0
         """Tokens that are malformed, or beyond `TOKENS_BOUND`."""
         for token in tokens:
@@ -45,9 +48,9 @@ class GraphCache:
         return f"<GraphCache {len(self.nodes())} nodes, {len(self._entities)} tokens>"
 
     def apply(self, token: str, *, alive: bool) -> list[GraphChange]:
-        """Take in one token event; returns what it changed, nothing for a repeated or unknown token.
+        """Apply one token event; return the changes, none for a repeated or unknown token.
 
-        The end of a node's token ends its endpoints too.
+        The end of a node's token ends its endpoints too: their own tokens may end later, or not at all.
         """
         if not alive:
             gone = self._pop(token)
@@ -89,40 +92,40 @@ class GraphCache:
         return token in self._entities
 
     def nodes(self, *, hidden: bool = True) -> list[str]:
-        """Full node names, sorted; a name shared by several nodes appears once for each."""
+        """Return the full names of the nodes, sorted; a name that several nodes share appears once for each."""
         names = {(e.zid, e.nid): e.node_name for e in self}
         return sorted(n for n in names.values() if hidden or not is_hidden(n))
 
     def endpoints(self, kind: Kind, name: str | None = None, node: str | None = None) -> list[Entity]:
-        """Endpoints of a kind, of one topic or service, of one node; in a stable order."""
+        """Return the endpoints of a kind, of one topic or service, of one node; in a stable order."""
         among = self if name is None else self._named.get(name, {}).values()
         found = [e for e in among if e.kind is kind and (node is None or e.node_name == node)]
         return sorted(found, key=lambda e: (e.name, e.node_name, e.type, e.eid))
 
     def named(self, name: str) -> list[Entity]:
-        """Every endpoint of one topic or service, of any kind."""
+        """Return the endpoints of one topic or service, of any kind."""
         return sorted(self._named.get(name, {}).values(), key=lambda e: (e.kind, e.node_name, e.eid))
 
     def owners(self, name: str) -> list[Entity]:
-        """The node tokens of everything called `name`."""
+        """Return the entities of all nodes called `name`."""
         return [e for e in self._named.get("", {}).values() if e.node_name == name]
 
     def topics(self, *, hidden: bool = False) -> dict[str, list[str]]:
-        """Types by topic, both sorted."""
+        """Return the types by topic, both sorted."""
         return self._types(Kind.PUBLISHER, Kind.SUBSCRIPTION, hidden=hidden)
 
     def services(self, *, hidden: bool = False) -> dict[str, list[str]]:
-        """Types by service that a server offers or a client uses, both sorted."""
+        """Return the types by service that a server offers or a client uses, both sorted."""
         return self._types(Kind.SERVICE, Kind.CLIENT, hidden=hidden)
 
     def offered(self) -> tuple[set[str], set[str]]:
-        """The services that have a server: those that users have written, and those hidden or of every node."""
+        """Return the services that have a server: those of users, and those that are hidden or that every node has."""
         servers = self.endpoints(Kind.SERVICE)
         inner = {e.name for e in servers if e.type.startswith(_OF_EVERY_NODE) or is_hidden(e.name)}
         return {e.name for e in servers} - inner, inner
 
     def actions(self) -> dict[str, list[str]]:
-        """Types by action, taken from the feedback topics."""
+        """Return the types by action, derived from the feedback topics."""
         return {
             name.removesuffix(ACTION_FEEDBACK): [t.removesuffix(ACTION_FEEDBACK_TYPE) for t in types]
             for name, types in self.topics(hidden=True).items()
@@ -130,15 +133,15 @@ class GraphCache:
         }
 
     def served_actions(self) -> list[str]:
-        """The actions that have a server; others are known by their clients."""
+        """Return the actions that have a server; `actions` includes those that only clients name."""
         topics = {entity.name for entity in self.endpoints(Kind.PUBLISHER)}
         return [name for name in self.actions() if f"{name}{ACTION_FEEDBACK}" in topics]
 
     def instead(self, name: str, known: Iterable[str], hidden: Iterable[str] = ()) -> str:
-        """The end of a sentence on a name that is not there as what it was taken for.
+        """Return the end of a message about an unknown name: the kind of thing that has it, or a similar name.
 
         Args:
-            known: Names that are, one of which may have been meant; `hidden` are named only if they are near.
+            known: Names of the wanted kind, to suggest from; `hidden` are suggested only if they are near.
         """
         topics, services, actions = self.topics(hidden=True), self.services(hidden=True), self.actions()
         for kind, names in (("a topic", topics), ("a service", services), ("an action", actions)):
@@ -147,10 +150,10 @@ class GraphCache:
         return "; it is a node" if name in self.nodes() else did_you_mean(name, known, hidden)
 
     def unpublished(self, topic: str, known: Iterable[str] | None = None) -> str:
-        """Say that nobody publishes a topic: who waits for it, else what it is instead, or the name that was meant.
+        """Return a message that a topic has no publisher, with a suggestion unless it has subscriptions.
 
         Args:
-            known: Names that may have been meant; None for those that somebody publishes.
+            known: Names to suggest from; None for the topics that have a publisher.
         """
         if self.endpoints(Kind.SUBSCRIPTION, topic):
             return f"topic [{topic}] has subscriptions, and no publisher yet"
@@ -159,11 +162,11 @@ class GraphCache:
         return f"topic [{topic}] does not appear to be published yet{self.instead(topic, known)}"
 
     def without_events(self, service: str) -> str:
-        """Say that a service publishes no events of its calls: what its node lacks, or the name that was meant."""
+        """Return a message that a service publishes no introspection events, with the remedy or a suggestion."""
         if not self.endpoints(Kind.SERVICE, service):
             return f"no node offers the service {service}{self.instead(service, *self.offered())}"
         return (
-            f"{service} does not tell of its calls yet; its node must call configure_introspection('contents'), "
+            f"{service} publishes no events of its calls yet; its node must call configure_introspection('contents'), "
             "or give the service introspection='contents'"
         )
 

@@ -1,19 +1,19 @@
-"""The life of an action's goals at their server, as one table, and the book the server keeps of them.
+"""The life cycle of an action's goals at their server: one table of phases, and the book of all goals.
 
 A goal is in one *phase* at a time; to clients each phase shows as one of ROS 2's states:
 
     phase       state        what happens
-    DECIDING    -            whether the goal is accepted is being decided
-    ANSWERING   ACCEPTED     it is, and the answer goes out before anything else happens
+    DECIDING    -            the server decides whether to accept the goal
+    ANSWERING   ACCEPTED     it is accepted; the answer goes out before anything else happens
     QUEUED      ACCEPTED     it waits for its turn, and for a slot of its group
     RUNNING     EXECUTING    its body runs
     CANCELING   CANCELING    a client has cancelled it; its body cleans up
     PREEMPTED   EXECUTING    the server ends it for a newer goal; its body cleans up
-    REJECTED, SUCCEEDED, CANCELED, ABORTED                it is over
+    REJECTED, SUCCEEDED, CANCELED, ABORTED                it has ended
 
-`STEPS` says, for each phase and each event, which phase follows and what the server must do. What only some servers
-do, by their `GoalRules`, is left out by `step`. A goal that is over stays as it is, whatever comes late. One that a
-client has cancelled ends as its body decides; what the server ends by itself ends as ABORTED.
+`STEPS` gives, for each phase and each event, the next phase and the effects that the server carries out. `step` removes
+the effects that the server's `GoalRules` do not ask for. A goal that has ended stays as it is, whatever comes late. One
+that a client has cancelled ends as its body decides; one that the server ends by itself ends as ABORTED.
 
 Source: rcl_action goal_state_machine.c; action_msgs/srv/CancelGoal.
 """
@@ -29,7 +29,7 @@ from graphflow.interface import GoalPolicy, OnClientLoss
 
 
 class GoalStatus(IntEnum):
-    """The states of action_msgs/msg/GoalStatus, and LOST, which only a client knows: the server is gone."""
+    """The states of action_msgs/msg/GoalStatus, and LOST, which only a client has: its server is gone."""
 
     UNKNOWN = 0
     ACCEPTED = 1
@@ -53,7 +53,7 @@ _TERMINAL = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED, Goal
 
 
 class Phase(Enum):
-    """Where a goal stands; see the table above."""
+    """The phases of a goal; see the table above."""
 
     DECIDING = auto()
     ANSWERING = auto()
@@ -72,7 +72,7 @@ class Phase(Enum):
 
     @property
     def status(self) -> GoalStatus:
-        """What clients are told."""
+        """State that clients see."""
         return _STATUS.get(self, GoalStatus.UNKNOWN)
 
 
@@ -89,7 +89,7 @@ _STATUS = {
 
 
 class GoalEvent(Enum):
-    """What can happen to a goal."""
+    """The events in the life of a goal."""
 
     ACCEPTED = "the decision is to accept it"
     REFUSED = "the decision is to reject it"
@@ -108,7 +108,7 @@ class GoalEvent(Enum):
 
 
 class Do(Enum):
-    """What a server must do about an event."""
+    """The effects of an event, which the server carries out."""
 
     PREEMPT_OTHERS = "say NEWER to every other goal that has not ended"
     ENQUEUE = "put it in its runner's queue"
@@ -121,15 +121,15 @@ class Do(Enum):
 
 @dataclass(frozen=True, slots=True)
 class GoalRules:
-    """How a server treats its goals.
+    """The policies and limits of one server.
 
     Attributes:
-        policy: What becomes of a goal that arrives while another is under way.
-        on_client_loss: What becomes of a goal whose client has gone.
+        policy: Treatment of a goal that arrives while another is under way.
+        on_client_loss: Treatment of a goal whose client has gone.
         queue_depth: Goals that may wait for their turn under the policy `queue`; any more are rejected.
-        accept_limit: Seconds that the decision may take; then the goal is rejected.
-        client_grace: Seconds that a client may be gone before `on_client_loss` acts.
-        cleanup_timeout: Seconds that a cancelled body gets; then its goal is aborted, and its slot stays taken.
+        accept_limit: Seconds for the decision; after them the goal is rejected.
+        client_grace: Seconds that a client may be gone before `on_client_loss` applies.
+        cleanup_timeout: Seconds for a cancelled body to end; after them its goal is aborted, and its slot stays taken.
     """
 
     policy: GoalPolicy = "reject"
@@ -142,10 +142,10 @@ class GoalRules:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What follows from an event.
+    """The consequence of an event: the next phase and the effects.
 
     Attributes:
-        through: The state that ROS 2 has between the old and the new one, reported to clients too.
+        through: A state that ROS 2 has between the old and the new one, which clients must see, too.
     """
 
     phase: Phase
@@ -208,11 +208,11 @@ STEPS: Mapping[tuple[Phase, GoalEvent], Step] = {
     (Phase.PREEMPTED, GoalEvent.OUTSTAYED): Step(Phase.ABORTED, (Do.DEGRADE,)),
     (Phase.PREEMPTED, GoalEvent.STOPPING): Step(Phase.PREEMPTED),
 }
-"""What follows from an event in a phase, under rules that leave nothing out."""
+"""The step for each event in each phase, for a server whose rules ask for all effects."""
 
 
 def step(phase: Phase, event: GoalEvent, rules: GoalRules) -> Step:
-    """What follows from an event, under the rules of one server.
+    """Return the consequence of an event, under the rules of one server.
 
     Raises:
         ValueError: The event cannot happen in this phase.
@@ -246,39 +246,39 @@ ALL_GOALS = bytes(16)
 
 @dataclass
 class GoalRecord:
-    """What the server's book says about one goal."""
+    """The entry of one goal in the server's book."""
 
     client: bytes = bytes(16)
-    """The GID of the client that sent it."""
+    """GID of the client that sent it."""
     phase: Phase = Phase.DECIDING
     accepted_ns: int = 0
     ended_ns: int | None = None
     is_preempted: bool = False
-    """Whether a newer goal has come, whatever has become of this one."""
+    """Whether a newer goal has arrived, however this one ends."""
 
     @property
     def status(self) -> GoalStatus:
-        """What clients are told."""
+        """State that clients see."""
         return self.phase.status
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What followed from an event."""
+    """The result of an event that was applied to a goal."""
 
     record: GoalRecord
     do: tuple[Do, ...]
-    """What the server must do, in order."""
+    """Effects for the server to carry out, in order."""
     told: tuple[GoalStatus, ...]
-    """The states to report to clients, in order: none if nothing has changed for them."""
+    """States to publish, in order: none if clients see no change."""
 
 
 class GoalBook:
     """The goals of one server, by id.
 
     Args:
-        keep_ns: How long the result of a goal can be requested after its end.
-        show_ns: How long an ended goal stays in the status list.
+        keep_ns: Nanoseconds for which a result can be requested after the goal's end.
+        show_ns: Nanoseconds for which an ended goal stays in the status list.
         keep_most: Results to keep at most; the oldest go first.
     """
 
@@ -288,10 +288,11 @@ class GoalBook:
         self.goals: dict[bytes, GoalRecord] = {}
         """Accepted goals, in the order of acceptance."""
         self.deciding: dict[bytes, GoalRecord] = {}
+        """Goals in the phase DECIDING."""
         self._ended: dict[bytes, int] = {}
-        """When goals have ended whose results are kept, the first first."""
+        """Times at which the goals with a kept result ended, the oldest first."""
         self._shown: deque[tuple[bytes, int]] = deque()
-        """The same of those that are in the status list."""
+        """The same for goals in the status list."""
 
     def has_room(self) -> bool:
         """Whether one more goal may be accepted now."""
@@ -303,7 +304,7 @@ class GoalBook:
         return waiting < self.rules.queue_depth
 
     def ask(self, goal_id: bytes, client: bytes) -> GoalRecord:
-        """Enter a goal that is yet to be decided on.
+        """Add a goal that is not decided on yet.
 
         Raises:
             ValueError: The goal is already known.
@@ -314,10 +315,13 @@ class GoalBook:
         return record
 
     def step(self, goal_id: bytes, event: GoalEvent, now_ns: int) -> Outcome:
-        """Take in what has happened to a goal; raises what the function `step` raises.
+        """Apply an event to a goal.
 
         Args:
-            now_ns: The time of day for ACCEPTED, otherwise the time by which results are kept.
+            now_ns: The time of day for ACCEPTED, which clients see; for any other event the clock of `expire`.
+
+        Raises:
+            ValueError: The event cannot happen in the goal's phase.
         """
         record = self.goals.get(goal_id) or self.deciding[goal_id]
         before = record.phase
@@ -334,27 +338,27 @@ class GoalBook:
             if goal_id in self.goals:
                 self._ended[goal_id] = now_ns
                 self._shown.append((goal_id, now_ns))
-        told = (*([following.through] if following.through else []), record.status)
-        return Outcome(record, following.do, told if record.status is not before.status else ())
+        states = (*([following.through] if following.through else []), record.status)
+        return Outcome(record, following.do, states if record.status is not before.status else ())
 
     def of_client(self, client: bytes) -> list[bytes]:
-        """The goals of a client that are not over."""
+        """Return the goals of a client that have not ended."""
         known = {**self.deciding, **self.goals}
         return [goal_id for goal_id, record in known.items() if record.client == client and not record.phase.is_over]
 
     def active(self) -> int:
-        """Goals that have not ended."""
+        """Return the number of accepted goals that have not ended."""
         return len(self.goals) - len(self._ended)
 
     def hide(self, now_ns: int) -> list[bytes]:
-        """Take goals out of the status list that ended long ago or are forgotten; returns their ids, each once."""
+        """Remove goals from the status list that ended long ago or are forgotten; return their ids, each once."""
         hidden = []
         while self._shown and (now_ns - self._shown[0][1] > self._show_ns or self._shown[0][0] not in self.goals):
             hidden.append(self._shown.popleft()[0])
         return hidden
 
     def expire(self, now_ns: int) -> list[bytes]:
-        """Forget goals whose results were kept long enough; returns their ids."""
+        """Forget goals whose results were kept long enough; return their ids."""
         gone = []
         while self._ended:
             goal_id, when = next(iter(self._ended.items()))
@@ -365,11 +369,14 @@ class GoalBook:
         return gone
 
     def to_cancel(self, goal_id: bytes, stamp_ns: int) -> tuple[CancelCode, list[bytes]]:
-        """Which goals a cancel request covers.
+        """Return the goals that a cancel request covers, and its return code.
+
+        The two fields combine as in action_msgs/srv/CancelGoal: an id alone means that goal, a time alone all goals
+        accepted up to it, both together their union, neither all goals.
 
         Args:
             goal_id: One goal, or `ALL_GOALS`.
-            stamp_ns: Goals accepted at or before this time; 0 for no such condition.
+            stamp_ns: Time up to which goals were accepted; 0 for no such condition.
         """
         if goal_id != ALL_GOALS and not stamp_ns:
             record = self.goals.get(goal_id)
@@ -378,10 +385,10 @@ class GoalBook:
             if not record.status.is_cancelable:
                 return CancelCode.GOAL_TERMINATED, []
             return CancelCode.NONE, [goal_id]
-        meant = [
+        covered = [
             known
             for known, record in self.goals.items()
             if record.status.is_cancelable
             and (known == goal_id or (record.accepted_ns <= stamp_ns if stamp_ns else goal_id == ALL_GOALS))
         ]
-        return CancelCode.NONE, meant
+        return CancelCode.NONE, covered

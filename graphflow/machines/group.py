@@ -1,9 +1,9 @@
-"""Who may run: slots, tickets and the queue of one concurrency group.
+"""The admission rules of one concurrency group: slots, tickets and a fair queue.
 
-A *member* is anything whose runs the group counts: a subscription, a timer, a service, an action. It asks for a slot
-before each run and gives it back after. While the group is full it holds one ticket, in first-come order, however much
-work it has; when a slot is given back it goes straight to the head of the queue, so that nothing can take it in
-between. With n members that each re-queue after a run, one that has work runs after at most n - 1 other runs.
+A *member* is anything whose runs the group counts: a subscription, a timer, a service, an action. It takes a slot
+before each run and returns it afterwards. While the group is full it has one ticket, in first-come order, however much
+work it has. A returned slot passes straight to the head of the queue, so that nothing can take it in between. With
+n members that queue again after each run, one that has work runs after at most n - 1 other runs.
 
 Source: docs/architecture.md, "The rules of groups": slots, tickets, hand-over. rclpy's MutuallyExclusiveCallbackGroup
 is a limit of 1.
@@ -23,9 +23,9 @@ class GroupState(Generic[M]):
     """The state of one group.
 
     Args:
-        limit: Runs at one time, None for any number.
-        name: For people.
-        when_full: What members do with work that finds no free slot; the group itself only hands out tickets.
+        limit: Runs at one time; None for any number.
+        name: The name for reports.
+        when_full: Policy of the members for work that finds no free slot; the group itself only issues tickets.
     """
 
     __slots__ = ("_queue", "limit", "members", "name", "running", "when_full")
@@ -37,7 +37,7 @@ class GroupState(Generic[M]):
         self.running = 0
         """Slots taken."""
         self.members: list[M] = []
-        """Whose runs the group counts, in the order they joined."""
+        """Members in the order in which they joined."""
         self._queue: deque[M] = deque()
 
     def __repr__(self) -> str:
@@ -45,7 +45,7 @@ class GroupState(Generic[M]):
 
     @property
     def waiting(self) -> tuple[M, ...]:
-        """Members with a ticket, in the order they will be served."""
+        """Members with a ticket, in the order in which they will be served."""
         return tuple(self._queue)
 
     def admit(self, member: M) -> bool:
@@ -58,14 +58,14 @@ class GroupState(Generic[M]):
         return False
 
     def release(self) -> M | None:
-        """Give a slot back; returns the member it passes to, which holds it from now on, or None."""
+        """Return a slot; the result is the member that it passes to, which holds it from now on, or None."""
         if self._queue and (self.limit is None or self.running <= self.limit):
             return self._queue.popleft()
         self.running -= 1
         return None
 
     def grant(self) -> M | None:
-        """Give a free slot to the head of the queue, as after the limit was raised; None when there is none."""
+        """Pass a free slot to the head of the queue, as after the limit was raised; None if there is neither."""
         if self._queue and (self.limit is None or self.running < self.limit):
             self.running += 1
             return self._queue.popleft()

@@ -1,4 +1,4 @@
-"""The life of a managed node: ROS 2's states, and the transitions between them as one table.
+"""The life cycle of a managed node: ROS 2's states, and the transitions between them as one table.
 
 A node rests in a *primary* state, and passes through a *transition* state while one of its hooks runs:
 
@@ -8,9 +8,9 @@ A node rests in a *primary* state, and passes through a *transition* state while
 
     shutdown, from any of the three:  shuttingdown --> finalized
 
-A hook that returns has succeeded and the node arrives. One that refuses leads back to where the node came from, except
-from `shuttingdown`, which always ends in `finalized`. One that fails in any other way leads to `errorprocessing`, and
-from there to `unconfigured` if the node recovers, else to `finalized`.
+SUCCESS of a hook completes the transition. FAILURE leads back to the state before it, except in `shuttingdown`, which
+always ends in `finalized`. ERROR leads to `errorprocessing`, and from there to `unconfigured` if the node recovers,
+else to `finalized`.
 
 Source: rcl_lifecycle default_state_machine.c, for states, ids, labels and their order; lifecycle_msgs State and
 Transition.
@@ -39,27 +39,27 @@ class LifecycleState(IntEnum):
 
     @property
     def label(self) -> str:
-        """What ROS 2 calls it: `unconfigured`."""
+        """Label of the state in ROS 2: `unconfigured`."""
         return self.name.lower()
 
     @property
     def is_primary(self) -> bool:
-        """Whether a node rests in it, rather than passes through."""
+        """Whether a node rests in the state rather than passes through it."""
         return self <= LifecycleState.FINALIZED
 
     @property
     def level(self) -> int:
-        """How far up a primary state is: 0 for nothing set up, 1 for configured, 2 for active."""
+        """Height of a primary state: 0 for nothing set up, 1 for configured, 2 for active."""
         return {LifecycleState.INACTIVE: 1, LifecycleState.ACTIVE: 2}.get(self, 0)
 
     @property
     def hook(self) -> str:
-        """The method that runs in a transition state."""
+        """Name of the method that runs in a transition state."""
         return _HOOKS[self]
 
 
 class Outcome(IntEnum):
-    """How a hook has ended, with the numbers of lifecycle_msgs/msg/Transition."""
+    """The outcome of a hook, with the numbers of lifecycle_msgs/msg/Transition."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -67,12 +67,12 @@ class Outcome(IntEnum):
 
     @property
     def label(self) -> str:
-        """The label of the transition that follows: `transition_success`."""
+        """Label of the transition that follows: `transition_success`."""
         return f"transition_{self.name.lower()}"
 
 
 class Transition(NamedTuple):
-    """One arrow of the picture."""
+    """One transition of the diagram above."""
 
     id: int
     label: str
@@ -121,15 +121,15 @@ TRANSITIONS = (
 
 
 def available(state: LifecycleState) -> list[Transition]:
-    """The transitions that start in a state."""
+    """Return the transitions that start in a state."""
     return [transition for transition in TRANSITIONS if transition.start is state]
 
 
 def asked(state: LifecycleState, wanted: int | str) -> Transition | None:
-    """The transition that a request means, by id or by label; None where there is none such from here.
+    """Return the transition that a request selects, by id or by label; None if no such one starts here.
 
-    As in ROS 2, a label such as `shutdown` means the transition of that label from this state, and an id one alone.
-    Only those from primary states can be asked for: the others are how hooks end.
+    As in ROS 2, a label such as `shutdown` selects the transition of that label from this state, whereas an id is
+    unique. Only transitions from primary states can be requested: the others are the outcomes of hooks.
     """
     if not state.is_primary:
         return None
@@ -137,15 +137,15 @@ def asked(state: LifecycleState, wanted: int | str) -> Transition | None:
 
 
 def after(state: LifecycleState, outcome: Outcome) -> Transition:
-    """The transition that follows when the hook of a transition state has ended."""
+    """Return the transition that follows the outcome of a transition state's hook."""
     return next(t for t in available(state) if t.label == outcome.label)
 
 
 def path(state: LifecycleState, target: LifecycleState) -> list[str]:
-    """The labels of the transitions that lead from one resting state to another: `configure`, `activate`.
+    """Return the labels of the transitions from one primary state to another: `configure`, `activate`.
 
     Returns:
-        Nothing when the node is there, or when no way leads there, as from `finalized`.
+        An empty list if both are the same, or if no way leads there, as from `finalized`.
     """
     if LifecycleState.FINALIZED in (state, target):
         return ["shutdown"] if target is LifecycleState.FINALIZED is not state else []

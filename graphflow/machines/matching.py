@@ -1,7 +1,8 @@
-"""Which endpoints reach each other, and what to tell when two that share a name do not.
+"""Matching of endpoints: whether two that share a name reach each other, and the complaint if they do not.
 
-Delivery is decided by the data key alone: name, type and the hash of its definition. What a profile asks beyond that
-no Zenoh peer enforces, yet DDS would; both kinds of trouble are silent in ROS 2, so both are put into words here.
+Over Zenoh, delivery depends on the data key alone: name, type and the hash of its definition. The rest of the quality
+of service is enforced by no Zenoh peer, but by every DDS one. ROS 2 reports neither mismatch, so both become complaints
+here.
 
 Source: rmw_zenoh graph_cache (matching by data key); OMG DDS 1.4, 2.2.3 (requested and offered).
 """
@@ -30,26 +31,26 @@ _WORDS = {
     Kind.CLIENT: "client",
 }
 SHARED_SHOWN = 4
-"""Services, and nodes that share them, that are named."""
+"""Services, and nodes that share them, that a complaint names, at most."""
 
 
 class Verdict(NamedTuple):
-    """How an endpoint matches a counterpart of the same name."""
+    """The result of matching an endpoint with a counterpart of the same name."""
 
     reaches: bool
-    """Whether what one of them sends arrives at the other."""
+    """Whether messages that one of them sends arrive at the other."""
     policies: tuple[str, ...] = ()
-    """Policies by which DDS would keep them apart."""
+    """Policies that are incompatible over DDS."""
     complaint: str = ""
-    """What is wrong and what to do, in a sentence; empty when nothing is wrong."""
+    """Sentence with the problem and the remedy; empty if there is none."""
 
 
 def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str = "here") -> Verdict | None:
-    """How `own` and `other` match; None when they have nothing to do with each other.
+    """Match two endpoints; None if they are not counterparts of the same name.
 
     Args:
         profile: The wire profile of this process.
-        where: How the complaint says whose `own` is.
+        where: The phrase by which the complaint locates `own`.
     """
     if other.name != own.name or other.kind is not COUNTERPARTS.get(own.kind):
         return None
@@ -84,7 +85,7 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
 
 
 def complaints(entities: Iterable[Entity], profile: str = PROFILES[0]) -> list[str]:
-    """What is wrong between any two endpoints of a graph, each pair once."""
+    """Return the complaints about all pairs of endpoints in a graph."""
     by_name: dict[str, list[Entity]] = {}
     for entity in entities:
         if entity.kind in COUNTERPARTS:
@@ -101,7 +102,7 @@ def complaints(entities: Iterable[Entity], profile: str = PROFILES[0]) -> list[s
 
 
 def shared(entities: Iterable[Entity]) -> list[str]:
-    """Services and actions that nodes of several names offer: a sentence for each group of such nodes."""
+    """Return complaints about services and actions that several nodes offer, one for each set of nodes."""
     nodes: dict[str, set[str]] = {}
     for entity in entities:
         name = entity.name.removesuffix(ACTION_SEND_GOAL)

@@ -1,4 +1,4 @@
-"""Topics with nobody at the other end, and the topic that was probably meant: one of the same type and a near name."""
+"""Suggestions for topics without a counterpart: another topic of the same type and a similar name."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from graphflow.names import MAX_LENGTH, is_hidden, nearest
 from graphflow.wire.liveliness import Entity, Kind
 
 EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
-"""Topics that many nodes have, and whose other end may be missing."""
+"""Topics that many nodes have and that need no counterpart."""
 CUTOFF = 0.75
-"""How alike two words are of which one may be the other misspelt."""
+"""Least similarity (0 to 1) of two words of which one may be the other misspelt."""
 COMPARED = 500
-"""Names that one is compared with: other processes announce as many as they like, and each takes up to 0.1 ms."""
+"""Names that one is compared with, at most: other processes announce any number, and each takes up to 0.1 ms."""
 
 ByType = Mapping[tuple[Kind, str], list[Entity]]
 """Endpoints by kind and type."""
 
 
 def by_type(entities: Iterable[Entity], types: Container[str]) -> ByType:
-    """The endpoints of topics of some types that somebody may mean, by kind and type."""
+    """Group the endpoints of users' topics of some types by kind and type."""
     found: dict[tuple[Kind, str], list[Entity]] = {}
     for entity in entities:
         if entity.type not in types or entity.kind not in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
@@ -32,22 +32,22 @@ def by_type(entities: Iterable[Entity], types: Container[str]) -> ByType:
 
 
 def is_everybodys(topic: str) -> bool:
-    """Whether a topic belongs to ROS or graphflow, and nobody writes its name."""
+    """Whether a topic belongs to ROS or graphflow, so that users do not write its name."""
     return topic in EVERYBODYS or is_hidden(topic)
 
 
 def did_you_mean_topic(own: Entity, there: ByType) -> str:
-    """Say that nobody is at the other end of a publisher or subscription, and which topic was probably meant.
+    """Return a message that an endpoint has no counterpart, and the topic that was probably meant.
 
     Returns:
-        Empty if there is somebody, or no such topic.
+        Empty if it has a counterpart, or no topic is similar.
     """
     kind = COUNTERPARTS[own.kind]
     others = there.get((kind, own.type), ())
     if any(other.name == own.name for other in others):
         return ""
     used = {e.name for k in (own.kind, kind) for e in there.get((k, own.type), ()) if _is_of_one_node(e, own)}
-    # In the order in which they came, so that a crowd of names hides none that was there before it.
+    # In order of arrival, so that a flood of new names cannot push out those that were known before.
     names = dict.fromkeys(e.name for e in others if e.name not in used and not is_hidden(e.node_name))
     near = [name for name in islice(names, COMPARED) if is_near(own.name, name)]
     best = nearest(own.name, sorted(near), cutoff=0.0)
@@ -67,7 +67,7 @@ def _is_of_one_node(entity: Entity, other: Entity) -> bool:
 
 
 def is_near(name: str, other: str) -> bool:
-    """Whether one name may be written for the other: misspelt, in other case, or with a namespace missing or added."""
+    """Whether one name may be meant for the other: misspelt, in other case, or with a namespace missing or added."""
     return (
         name.casefold() == other.casefold() or name.endswith(other) or other.endswith(name) or is_misspelt(name, other)
     )
@@ -89,7 +89,7 @@ def is_misspelt(name: str, other: str) -> bool:
 
 
 def _is_another(ours: Sequence[str], theirs: Sequence[str]) -> bool:
-    """Whether words differ on purpose: some are added, or one letter stands for another thing."""
+    """Whether two names differ on purpose: words are added, or a single letter differs, as in `axis_x`, `axis_y`."""
     if len(ours) != len(theirs):
         return {*ours} >= {*theirs} or {*theirs} >= {*ours}
     return all(a == b or len(a) == len(b) == 1 for a, b in zip(ours, theirs, strict=True))

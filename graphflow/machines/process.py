@@ -1,4 +1,4 @@
-r"""The life of one supervised process, as a table.
+r"""The life cycle of one supervised process, as a table.
 
     PENDING --go--> STARTING --ready--> READY --stop--> STOPPING --exit--> ENDED
                         \-----------------exit-----------------------------^
@@ -7,14 +7,14 @@ r"""The life of one supervised process, as a table.
                     ENDED --again--> WAITING --late--> STARTING
                     ENDED, WAITING -------------restart-------------> STARTING
 
-A process waits (PENDING) until what it comes `after` is there. It is READY when all its nodes have said so themselves.
-Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the last rung at once. Whatever happens,
-`exit` is the only way to ENDED, so nothing is called ended that may still be running. An end that nobody asked for is
-judged by how it came: `failed` is true when the process ended by a signal or with a code other than 0.
+A process is PENDING until its needs (`after`) are met. It is READY when all its nodes have reported ready. Stopping
+escalates: SIGTERM, a time to clean up, SIGKILL; `kill` sends SIGKILL at once. `exit` is the only way to ENDED from a
+state with a running process, so no process counts as ended while it may still be running. An end that was not requested
+is a failure if it came by a signal or with an exit code other than 0.
 
-Starting again, when somebody asks for it, is stopping with another end: the process is STARTING again when it has gone.
-A process that ended by itself and is to be started again (`machines.restarts` decides) is WAITING for its time. One
-that is reset because another has failed waits, PENDING, for what it comes after, as at first.
+A requested restart is a stop with another end: the process is STARTING again when the old one has gone. One that ended
+by itself and is to be restarted (`machines.restarts` decides) is WAITING for the delay to pass. One that is reset
+because another has failed is PENDING again until its needs are met.
 
 Source: docs/architecture.md, "The rules of processes"; systemd's and Erlang's stop sequences.
 """
@@ -28,11 +28,11 @@ from enum import Enum
 from typing import NamedTuple
 
 START_LIMIT = 20.0
-"""Seconds a process may take from its start until all its nodes are ready."""
+"""Seconds from the start of a process until all its nodes must be ready."""
 STOP_LIMIT = 5.0
 """Seconds between SIGTERM and SIGKILL."""
 BLOCKED_STOP_LIMIT = 0.5
-"""The same for a process whose event loop is blocked by handlers that are to run in threads: it cannot clean up."""
+"""The same for a process that is restarted because its event loop is blocked: it cannot clean up."""
 
 
 class State(Enum):
@@ -41,29 +41,29 @@ class State(Enum):
     READY = "ready"
     STOPPING = "stopping"
     RESTARTING = "restarting"
-    """Stopping, to be started again."""
+    """Stopping, to start again at once."""
     RESETTING = "resetting"
-    """Stopping, to be started again when what it comes after is there."""
+    """Stopping, to start again when its needs are met."""
     WAITING = "waiting"
-    """It has ended, and is started again when its time has come."""
+    """Ended, to start again after a delay."""
     ENDED = "ended"
 
 
 class Event(Enum):
     GO = "go"
-    """What the process comes after is ready."""
+    """The needs of the process are met."""
     READY = "ready"
     """The last of its nodes is ready."""
     STOP = "stop"
     KILL = "kill"
     RESTART = "restart"
-    """Somebody asks for a new process in place of this one."""
+    """A restart is requested."""
     AGAIN = "again"
-    """It has ended by itself, and is to be started again after a while."""
+    """The process has ended by itself, and restarts after a delay."""
     RESET = "reset"
-    """Another process has failed, with which it begins anew."""
+    """Another process has failed, and this one restarts with it."""
     LATE = "late"
-    """The alarm set on entering the state has rung."""
+    """The time limit of the state has passed."""
     EXIT = "exit"
 
 
@@ -74,7 +74,7 @@ class Do(Enum):
     KILL = "kill"
     """SIGKILL to the whole process group."""
     GIVE_UP = "give up"
-    """The process was not ready in time: report it."""
+    """Report that the process was not ready in time."""
 
 
 TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
@@ -130,7 +130,7 @@ TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
         Event.AGAIN: (State.WAITING, ()),
     },
 }
-"""Events that a state does not list change nothing."""
+"""The next state and the effects, by state and event; events that a state does not list change nothing."""
 
 ALARMS: Mapping[State, float] = {
     State.STARTING: START_LIMIT,
@@ -138,24 +138,24 @@ ALARMS: Mapping[State, float] = {
     State.RESTARTING: STOP_LIMIT,
     State.RESETTING: STOP_LIMIT,
 }
-"""Seconds after entering a state at which LATE happens; while WAITING it is as `machines.restarts` says."""
+"""Time limits of states in seconds, after which LATE happens; for WAITING `machines.restarts` gives the delay."""
 
 
 def step(state: State, event: Event) -> tuple[State, tuple[Do, ...]]:
-    """What an event does in a state."""
+    """Return the next state and the effects of an event."""
     return TRANSITIONS[state].get(event, (state, ()))
 
 
 @dataclass(frozen=True)
 class Exit:
-    """How a process ended: its code, or the signal that ended it; neither, if nobody knows."""
+    """The end of a process: its exit code, or the signal that ended it; neither, if that is unknown."""
 
     code: int | None = None
     signal: int | None = None
 
     @classmethod
     def of_status(cls, returncode: int) -> Exit:
-        """From a return code as `subprocess` gives it: negative for a signal."""
+        """Convert a return code of `subprocess`, which is negative for a signal."""
         return cls(signal=-returncode) if returncode < 0 else cls(code=returncode)
 
     @property
@@ -174,27 +174,27 @@ class Exit:
 
 
 class Need(NamedTuple):
-    """Something that comes before something else."""
+    """A condition on another process or step."""
 
     name: str
-    """Of a process or step."""
+    """Name of the process or step."""
     what: str = "ready"
-    """What must have become of it: `ready`, `exited` in any way, or `done`, which is ended well."""
+    """State that it must have reached: `ready`, `exited` in any way, or `done`, that is ended without failure."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """What comes before what: processes and steps by name."""
+    """The order of processes and steps, by their needs."""
 
     after: Mapping[str, frozenset[Need]]
 
     def startable(self, met: Iterable[Need]) -> list[str]:
-        """Names all of whose needs are met, in the order given."""
+        """Return the names whose needs are all met, in the order given."""
         known = set(met)
         return [name for name, needs in self.after.items() if needs <= known]
 
     def later(self, processes: Container[str]) -> set[str]:
-        """Names that need the end of a process, perhaps of one that another one needs: they may never begin."""
+        """Return the names that need the end of a process, directly or through others: they may never begin."""
         found: set[str] = set()
         for name in self.after:
             around = {name, *self.all_before(name)}
@@ -204,12 +204,12 @@ class Order:
         return found
 
     def lacking(self, name: str, met: AbstractSet[Need]) -> str:
-        """The unmet needs of a name, as a list in words."""
+        """Return the unmet needs of a name, as a phrase."""
         needs = sorted(self.after[name] - met)
         return ", ".join(need.name if need.what == "ready" else f"the end of {need.name}" for need in needs)
 
     def stop_layers(self, names: Iterable[str]) -> list[list[str]]:
-        """Names in the order of stopping: last started first, those of one layer together."""
+        """Return names in the order of stopping: last started first, those of one layer together."""
         left = list(names)
         layers = []
         while left:
@@ -220,7 +220,7 @@ class Order:
         return layers
 
     def all_before(self, name: str) -> set[str]:
-        """What comes before something, directly or because of others."""
+        """Return the names that come before one, directly or through others."""
         found: set[str] = set()
         todo = [name]
         while todo:

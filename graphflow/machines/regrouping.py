@@ -1,30 +1,29 @@
-"""What a graph file says of a node's groups, and how it reads with one thing changed.
+"""A graph file's changes to a node's groups, and the YAML for them with one more change.
 
-A graph file's `concurrency:` is pasted as a whole: whatever a remedy prints has to keep all that the file says already.
+Users paste a remedy over the node's `concurrency:` as a whole, so it must repeat everything that the file has already.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from graphflow.interface import GroupChange
 from graphflow.machines.waits.wrapping import WIDTH
 
 THREADS = "blocking"
-"""The group of handlers that are put in threads."""
+"""Name of the group for handlers that run in threads."""
 
 
 @dataclass(frozen=True, slots=True)
 class Regrouping:
-    """What differs from the groups that a node's class declares.
+    """The differences from the groups that a node's class declares.
 
     Attributes:
-        groups: The changes by group name.
-        file: The graph file to write them to; empty where the node was started without one.
-        section: The key of that file under which the node is written: `override` for one that comes from an include.
-        line: Where its entry is in that file; 0 if it has none.
+        groups: The changes, by group name.
+        file: The graph file to write them to; empty for a node that was started without one.
+        section: The key of that file with the node's entry: `override` for a node that comes from an include.
+        line: The line of that entry; 0 if there is none.
     """
 
     groups: Mapping[str, GroupChange] = field(default_factory=dict)
@@ -33,7 +32,7 @@ class Regrouping:
     line: int = 0
 
     def moved(self, handlers: Sequence[str], group: str, *, thread: bool | None = None) -> Regrouping:
-        """The same with handlers in that group, and in no other."""
+        """Return a copy with handlers in one group, and in no other."""
         left: dict[str, GroupChange] = {}
         for name, change in self.groups.items():
             rest = tuple(h for h in change.handlers if h not in handlers)
@@ -47,23 +46,23 @@ class Regrouping:
         return replace(self, groups=left)
 
     def in_threads(self, handlers: Sequence[str]) -> Regrouping:
-        """The same with handlers in a group whose `def` handlers run in threads."""
+        """Return a copy with handlers in a group whose `def` handlers run in threads."""
         return self.moved(handlers, THREADS, thread=True)
 
     def limited(self, group: str, limit: int | None) -> Regrouping:
-        """The same with another limit of a group."""
+        """Return a copy with another limit of a group."""
         here = self.groups.get(group, GroupChange())
         return replace(self, groups={**self.groups, group: replace(here, limit=limit, sets_limit=True)})
 
     @property
     def where(self) -> str:
-        """The place in the graph file to write it to, in words."""
+        """Phrase for the place in the graph file to write the changes to."""
         if self.line:
             return f"as the concurrency: of the entry at {self.file}:{self.line}"
         return f"in {self.file or 'the graph file'} under {self.section}:"
 
     def lines(self, node: str, indent: str) -> list[str]:
-        """YAML that says it, for a place below `nodes:` or `override:`."""
+        """Return the changes as YAML, for a place below `nodes:` or `override:`."""
         groups = [f"{name}: {_flow(plain(change))}" for name, change in self.groups.items()]
         short = f"{indent}{node}: {{concurrency: {{{', '.join(groups)}}}}}"
         if len(short) <= WIDTH:
@@ -71,9 +70,9 @@ class Regrouping:
         return [f"{indent}{node}:", f"{indent}  concurrency:", *(f"{indent}    {line}" for line in groups)]
 
 
-def plain(change: GroupChange) -> list[str] | dict[str, Any]:
-    """A change of a group as plain data, as a graph file has it."""
-    more: dict[str, Any] = {}
+def plain(change: GroupChange) -> list[str] | dict[str, object]:
+    """Convert a change of a group to the plain data of a graph file."""
+    more: dict[str, object] = {}
     if change.sets_limit:
         more["limit"] = "none" if change.limit is None else change.limit
     if change.when_full is not None:
@@ -87,7 +86,7 @@ def plain(change: GroupChange) -> list[str] | dict[str, Any]:
 
 
 def _flow(value: object) -> str:
-    """Plain data as YAML on one line."""
+    """Format plain data as YAML in flow style."""
     match value:
         case bool():
             return "true" if value else "false"

@@ -1,13 +1,13 @@
-"""Whether and when a process that has ended is started again.
+"""The restart policy of a process: exponential backoff with jitter and a limit.
 
-    on_failure   after a signal or an exit code other than 0
-    always       after any end that nobody asked for
-    never        not at all
+    on_failure   restart after a signal or an exit code other than 0
+    always       restart after any end that was not requested
+    never        do not restart
 
-The first new start comes after `delay`, each further one after twice as long, up to `max_delay`, all of it up to 20 %
-more or less so that processes which failed together do not come back together. After `CALM` seconds in which it was
-ready, a process counts as well again. One that has been started again `max_restarts` times `within` so many seconds is
-given up. An exit code of 64 to 78 says that what was given to the process is wrong: a new start would be no help.
+The first restart comes after `delay`, each further one after twice the time, up to `max_delay`. Jitter of 20 % spreads
+processes that failed together. A process that was ready for `CALM` seconds starts again with the first delay. After
+`max_restarts` restarts `within` a number of seconds there is no other. An exit code from 64 to 78 means wrong usage or
+configuration, which no restart would change.
 
 Source: Erlang's supervisors (intensity), systemd's StartLimitBurst; sysexits(3) for the codes.
 """
@@ -25,23 +25,25 @@ POLICIES: tuple[str, ...] = get_args(Policy)
 CALM = 30.0
 """Seconds of being ready after which earlier failures are forgotten."""
 JITTER = 0.2
-"""The part of a delay by which it may be longer or shorter."""
+"""Fraction by which a delay may be longer or shorter."""
 CONFIGURATION = range(64, 79)
-"""Exit codes that mean wrong usage or configuration, but for that of an error in the node."""
+"""Exit codes for wrong usage or configuration, with one exception: `NODE_ERROR`."""
 NODE_ERROR = 70
+"""Exit code for an error in the node."""
 
 
 @dataclass(frozen=True, slots=True)
 class Backoff:
-    """How a process is started again."""
+    """The parameters of a restart policy."""
 
     policy: Policy = "never"
     delay: float = 0.1
-    """Seconds before the first new start."""
+    """Seconds before the first restart."""
     max_delay: float = 10.0
+    """Seconds before any later restart, at most."""
     max_restarts: int = 5
     within: float = 30.0
-    """Seconds in which so many new starts are too many."""
+    """Seconds in which `max_restarts` restarts are allowed."""
 
     def __str__(self) -> str:
         times = f"{self.max_restarts} times in {self.within:g} s"
@@ -53,42 +55,43 @@ BACKOFF = Backoff()
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """Start it again after so many seconds."""
+    """The decision to restart a process."""
 
     delay: float
+    """Seconds until the restart."""
 
 
 @dataclass(frozen=True, slots=True)
 class GiveUp:
-    """It is not started again, though its policy asks for it."""
+    """The decision not to restart a process although its policy asks for it."""
 
     why: str
 
 
 @dataclass
 class Restarts:
-    """The new starts of one process."""
+    """The restarts of one process."""
 
     backoff: Backoff
     _failures: int = 0
-    """New starts since it was last well."""
+    """Restarts since the process was last ready for `CALM` seconds."""
     _times: deque[float] = field(default_factory=deque)
-    """When the latest new starts were decided."""
+    """Times of the latest restarts."""
 
     def decide(self, end: Exit, ready_for: float, now: float, chance: float) -> Again | GiveUp | None:
-        """What follows from an end that nobody asked for; None if the policy leaves it at that.
+        """Decide about an end that was not requested; None if the policy does not ask for a restart.
 
         Args:
-            end: How the process ended.
+            end: The end of the process.
             ready_for: Seconds for which it had been ready.
-            now: The time in seconds, on a clock that never goes back.
-            chance: A random number between 0 and 1.
+            now: The time in seconds, on a monotonic clock.
+            chance: A random number between 0 and 1, for the jitter.
         """
         backoff = self.backoff
         if backoff.policy == "never" or (backoff.policy == "on_failure" and not end.failed):
             return None
         if end.code is not None and end.code in CONFIGURATION and end.code != NODE_ERROR:
-            return GiveUp(f"{end} does not get better by starting it again")
+            return GiveUp(f"a restart would not change {end}")
         if ready_for >= CALM:
             self._failures = 0
         while self._times and now - self._times[0] > backoff.within:
@@ -101,6 +104,6 @@ class Restarts:
         return Again(delay * (1.0 - JITTER + 2.0 * JITTER * chance))
 
     def forget(self) -> None:
-        """Begin anew: somebody has started the process by hand."""
+        """Forget earlier failures, as after a restart by hand."""
         self._failures = 0
         self._times.clear()

@@ -197,7 +197,7 @@ def test_topics_that_nobody_publishes() -> None:
 def test_calls_of_which_nobody_tells() -> None:
     """A service has to have introspection; a name that none has is answered with the nearest, or with what it is."""
     cache = cache_of(*GRAPH)
-    text = "/add does not tell of its calls yet; its node must call configure_intro"
+    text = "/add publishes no events of its calls yet; its node must call configure_intro"
     assert cache.without_events("/add").startswith(text)
     assert cache.without_events("/ad") == "no node offers the service /ad; did you mean '/add'?"
     assert cache.without_events("/chatter") == f"no node offers the service /chatter; it is a topic, of type {STRING}"

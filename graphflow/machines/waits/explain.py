@@ -1,4 +1,4 @@
-"""A deadlock in words: who holds what and waits for what, where, and which one-line change ends it."""
+"""Reports of deadlocks and stalls: what each member holds, what it waits for and where, and the remedies."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from graphflow.machines.waits.wrapping import filled
 
 
 def explanation(deadlock: Deadlock, graph: WaitGraph) -> str:
-    """The whole report, in lines of up to 100 columns where its names allow it."""
+    """Return the report of a deadlock, in lines of up to 100 columns where its names allow it."""
     lines = [*filled("", _headline(deadlock, graph)), *_ring(deadlock, graph), *_victims(deadlock, graph)]
     return "\n".join([*lines, *_any_of(remedies(deadlock, graph))])
 
@@ -37,14 +37,17 @@ def hopeless(
     between: Sequence[ActivityView] = (),
     others: int = 0,
 ) -> str:
-    """Why a call to `service` can never be answered: all slots are held by activities that wait for it.
+    """Return the report of a call that can never be answered: every slot it needs is held by an activity awaiting it.
 
     Args:
-        between: What serves the holders' calls, directly or for each other, and makes this one in the end.
-        others: How many of those there are in other processes, besides.
+        service: The full name of the service.
+        queue: The queue at the server.
+        holders: The activities that hold the slots.
+        between: The runs in this process that lie on the chain of calls from a holder to this call.
+        others: Number of such runs in other processes.
     """
     [group] = [graph.groups[name] for name in queue.needs if graph.groups[name].name] or [graph.groups[queue.needs[0]]]
-    if not holders:  # they have gone meanwhile
+    if not holders:  # they ended between the test and the snapshot
         return (
             f"DEADLOCK: {queue.label} of {queue.node} waits for {_slot(group)}, whose holders wait for this very call"
         )
@@ -58,14 +61,14 @@ def hopeless(
         way_to_it = between if holder is holders[-1] else ()
         for server in way_to_it:
             lines += [f"    -> which {title(server)} must give", *_member(server, Edge("", server.wait), graph)]
-        told = f", after {others} more callback{'s' * (others > 1)}" * bool(others)
-        way = "" if is_direct or (way_to_it and not others) else f"which calls {service} in the end{told}, and "
+        after = f", after {others} more callback{'s' * (others > 1)}" * bool(others)
+        way = "" if is_direct or (way_to_it and not others) else f"which calls {service} in the end{after}, and "
         lines += filled("    -> ", [f"{way}{queue.label} of {queue.node}", *_needs(group, [holder], "waits for")])
     return "\n".join([*lines, *_any_of(remedies_of(holders[0], edge, graph))])
 
 
 def again(head: str, times: int) -> str:
-    """The headline of a report that has been told whole before."""
+    """Return the headline for a deadlock whose full report has been logged before."""
     return head.replace("DEADLOCK:", f"DEADLOCK again ({times} times so far):", 1)
 
 
@@ -77,10 +80,10 @@ def stall(
     seconds: float,
     graph: WaitGraph,
 ) -> str:
-    """The report of a group that the same runs hold for long.
+    """Return the report of a group that the same runs hold for long.
 
     Args:
-        dropped: How many items each queue had dropped before.
+        dropped: By queue: the number of items it had dropped when the stall began.
     """
     who = " and ".join(title(a) + (f" ({a.line} in {a.function})" if a.place.file else "") for a in holders)
     slots = f"have held all {len(holders)} slots of group '{group.name}' of {group.node}"
@@ -97,24 +100,24 @@ def stall(
 
 
 def is_in_vain(deadlock: Deadlock, graph: WaitGraph) -> bool:
-    """Whether a deadline of its own ends one of the waits, and nothing else does."""
+    """Whether the only end of a deadlock is the deadline of one of its own waits."""
     ways = zip(deadlock.ring, deadlock.edges, strict=True)
     bounded = [edge.via for name, edge in ways if graph.activities[name].left is not None]
     return any(isinstance(via, SetBy) and via.gives_up for via in bounded)
 
 
 def title(activity: ActivityView) -> str:
-    """What an activity is called: `timer tick of /arm`."""
+    """Return the name of an activity in reports: `timer tick of /arm`."""
     return f"{activity.label} of {activity.node}"
 
 
 def group_of(activity: ActivityView, graph: WaitGraph) -> str:
-    """The name of the group whose slot an activity holds; empty for none."""
+    """Return the name of the group whose slot an activity holds; empty for none."""
     return next((graph.groups[g].name for g in activity.holds if g in graph.groups and graph.groups[g].name), "")
 
 
 def wanted(edge: Edge, graph: WaitGraph) -> str:
-    """What an activity waits for."""
+    """Return the noun phrase for what an activity waits for."""
     match edge.via:
         case Call(id=call) if call.startswith("tick:"):
             return "the next tick of its rate"
@@ -138,40 +141,40 @@ def wanted(edge: Edge, graph: WaitGraph) -> str:
 
 
 def offer(service: str) -> str:
-    """What a service is to users: itself, or the action that it is a part of."""
+    """Return a service's name with its kind; for a service inside an action, those of the action."""
     name, is_action, _ = service.partition("/_action/")
     return f"{'action' if is_action else 'service'} {name}"
 
 
 def where(activity: ActivityView) -> str:
-    """Where an activity waits, and for how long."""
-    words = [f"{activity.line} in {activity.function}"] if activity.place.file else []
-    words += [f"called in {activity.called}"] if activity.called else []
-    words += [f"for {activity.age:.2f} s"]
-    words += [] if activity.left is None else [f"times out in {max(0.0, activity.left):.1f} s"]
-    return f"({', '.join(words)})"
+    """Return the place and the duration of a wait, in parentheses."""
+    parts = [f"{activity.line} in {activity.function}"] if activity.place.file else []
+    parts += [f"called in {activity.called}"] if activity.called else []
+    parts += [f"for {activity.age:.2f} s"]
+    parts += [] if activity.left is None else [f"times out in {max(0.0, activity.left):.1f} s"]
+    return f"({', '.join(parts)})"
 
 
 def _where(activity: ActivityView) -> list[str]:
-    """The same in clauses."""
+    """Return the same as clauses, between which a line may break."""
     place, called, rest = where(activity).partition(" called in")
     return [f"  {place}", *([f"called in{rest}"] if called else [])]
 
 
 def headline(deadlock: Deadlock, graph: WaitGraph) -> str:
-    """What has happened, in one line."""
+    """Return the first sentence of the report, on one line."""
     return " ".join(_headline(deadlock, graph))
 
 
 def _headline(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
-    """The clauses of the headline."""
+    """Return the clauses of the headline."""
     count, more = len(deadlock.ring), len(deadlock.victims)
-    word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
+    kind = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
     are_starts = all(edge.group and graph.groups[edge.group].is_start for edge in deadlock.edges)
     who = f"the on_starts of {count} nodes" if are_starts else f"{count} callbacks"
     clauses = [f"{who} wait for each other in a ring"] if count > 1 else _alone(deadlock, graph)
     if is_in_vain(deadlock, graph):
-        word = "WAITS IN VAIN"
+        kind = "WAITS IN VAIN"
         left = min(a.left for a in map(graph.activities.__getitem__, deadlock.ring) if a.left is not None)
         clauses[-1] += ","
         clauses.append(f"until a deadline of its own ends that in {max(0.0, left):.1f} s")
@@ -180,11 +183,11 @@ def _headline(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     if more:
         clauses[-1] += ";"
         clauses.append(f"{more} more wait{'s' if more == 1 else ''} for {'it' if count == 1 else 'them'}")
-    return [f"{word}: {clauses[0]}", *clauses[1:]]
+    return [f"{kind}: {clauses[0]}", *clauses[1:]]
 
 
 def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
-    """How one activity keeps itself waiting."""
+    """Return the clauses for a ring of one: an activity that keeps itself waiting."""
     [name], [edge] = deadlock.ring, deadlock.edges
     who = title(graph.activities[name])
     if isinstance(edge.via, Opening):
@@ -208,8 +211,8 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     is_one = len(others) == 1
     if edge.group and graph.groups[edge.group].is_start:
         return [f"{who} waits for {what},", f"and {kept}, which {edge.via.deed} it, runs when on_start has returned"]
-    deed = edge.via.deed if is_one else edge.via.deed.removesuffix("s")
-    return [f"{who} waits for {what},", f"and {kept}, which {deed} it, {'is' if is_one else 'are'} kept out"]
+    verb = edge.via.deed if is_one else edge.via.deed.removesuffix("s")
+    return [f"{who} waits for {what},", f"and {kept}, which {verb} it, {'is' if is_one else 'are'} kept out"]
 
 
 def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
@@ -224,23 +227,25 @@ def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
 
 
 def _member(activity: ActivityView, edge: Edge, graph: WaitGraph, beside: Sequence[Edge] = ()) -> list[str]:
-    group = group_of(activity, graph)
-    deeds = [_held(activity, graph)] if group else []
-    deeds += ["blocks the event loop"] if edge.loop and edge.to == activity.id else []
+    """Return the lines on one member: what it holds, what it waits for, and where."""
+    predicates = [_held(activity, graph)] if group_of(activity, graph) else []
+    predicates += ["blocks the event loop"] if edge.loop and edge.to == activity.id else []
+    # The activity's own wait names the call even where the edge was made up for the headline.
     via = edge if not (isinstance(activity.wait, Call) and isinstance(edge.via, Call)) else Edge("", activity.wait)
     waits = f"waits for {_all_wanted(activity, [via, *beside], graph)}"
-    doing = [f"{title(activity)} {', '.join(deeds)}", f"and {waits}"] if deeds else [f"{title(activity)} {waits}"]
-    return filled("  ", [*doing, *_where(activity)])
+    who = title(activity)
+    clauses = [f"{who} {', '.join(predicates)}", f"and {waits}"] if predicates else [f"{who} {waits}"]
+    return filled("  ", [*clauses, *_where(activity)])
 
 
 def _all_wanted(activity: ActivityView, edges: Sequence[Edge], graph: WaitGraph) -> str:
-    """The conditions that an activity waits for, all or any of them."""
+    """Return the phrase for several conditions of one wait, joined by `and` or `or`."""
     joint = " or " if isinstance(activity.wait, AnyOf) else " and "
     return joint.join(dict.fromkeys(wanted(edge, graph) for edge in edges))
 
 
 def _held(activity: ActivityView, graph: WaitGraph) -> str:
-    """What an activity holds, in words."""
+    """Return the verb phrase for the resources that an activity holds."""
     own = [graph.groups[name] for name in activity.holds if name in graph.groups and graph.groups[name].name]
     if not own[0].sort:
         return f"holds group '{own[0].name}'"
@@ -250,10 +255,10 @@ def _held(activity: ActivityView, graph: WaitGraph) -> str:
 
 
 def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph, *, is_alone: bool = True) -> list[str]:
-    """Why an activity waits for another, in clauses.
+    """Return the clauses for why an activity waits for another.
 
     Args:
-        is_alone: Whether that is all that it waits for.
+        is_alone: Whether the wait has no other parts.
     """
     other = graph.activities[edge.to]
     if edge.loop:
@@ -266,18 +271,18 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph, *, is_alone: b
         return [f"{'which' if is_alone else wanted(edge, graph)} {title(other)} must give"]
     group = graph.groups[edge.group]
     queues = [queue for queue in queues_of(edge, graph) if edge.group in queue.needs]
-    # Of several runs of one handler, only the others could do it.
+    # Another run of the waiting handler itself is the last to mention: the others are what it was written to wait for.
     queues = [q for q in queues if q.handler != activity.handler] or queues
     who = " and ".join(queue.label for queue in queues) + f" of {queues[0].node}" if queues else "that"
     if group.is_start:
         return [who, f"{'opens' if isinstance(edge.via, Opening) else 'runs'} when {title(other)} has returned"]
     if not isinstance(edge.via, SetBy):
         return [who, *_needs(group, [other], "waits for")]
-    deed, needs = edge.via.deed, "needs"
+    verb, needs = edge.via.deed, "needs"
     if len(queues) > 1:
-        deed, needs = deed.removesuffix("s"), "need"
+        verb, needs = verb.removesuffix("s"), "need"
     waiting, dropped = sum(q.waiting for q in queues), sum(q.dropped for q in queues)
-    clauses = _needs(group, [other], f"{deed} {'it' if is_alone else edge.via.what} and {needs}")
+    clauses = _needs(group, [other], f"{verb} {'it' if is_alone else edge.via.what} and {needs}")
     if group.sort:
         return [who, *clauses]
     return [who, *clauses[:-1], f"{clauses[-1]};", f"{waiting} queued, {dropped} dropped meanwhile"]
@@ -294,7 +299,7 @@ _SORTS = {
     "executor": "{threads} of the {name} of {node}",
     "spinner": "a thread that spins {node}",
 }
-"""What acts as a group where code is rclpy's."""
+"""Phrases for the resources of rclpy code that act as groups, by kind."""
 
 
 def _slot(group: GroupView) -> str:

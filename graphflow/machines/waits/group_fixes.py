@@ -1,20 +1,20 @@
-"""Changes of groups that end a deadlock, each of which can be made while the graph runs."""
+"""Fixes: changes of groups that end a deadlock and that a command can apply while the graph runs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.machines.regrouping import THREADS, Regrouping
-from graphflow.machines.waits.group_moves import Move, moves
+from graphflow.machines.waits.group_moves import Move, Request, Setting, moves
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import Deadlock, Edge
 from graphflow.machines.waits.wait_graph import GroupView, SetBy, WaitGraph
 
 
 class Limit(NamedTuple):
-    """Allow more runs at a time in a group of a node."""
+    """The fix that allows more runs at a time in a group."""
 
     node: str
     group: str
@@ -22,73 +22,73 @@ class Limit(NamedTuple):
 
     @property
     def handlers(self) -> tuple[str, ...]:
-        """The handlers that change their group: none."""
+        """Handlers that change their group: none."""
         return ()
 
     @property
-    def settings(self) -> dict[str, Any]:
-        """Settings of the group, as a graph file has them."""
+    def settings(self) -> dict[str, Setting]:
+        """Settings of the group, as in a graph file."""
         return {"limit": self.limit}
 
     @property
     def command(self) -> str:
-        """The shell command that makes the change."""
+        """Shell command that applies the fix."""
         return f"graphflow groups limit {self.node} {self.group} {self.limit}"
 
     @property
     def title(self) -> str:
-        """The change in words."""
+        """Imperative phrase for the fix."""
         return f"allow {self.limit} runs at a time in group '{self.group}' of {self.node}"
 
     @property
-    def requests(self) -> list[dict[str, Any]]:
-        """The requests to the node: see `deadlock.inspection`."""
+    def requests(self) -> list[Request]:
+        """Requests that apply it to the node: see `deadlock.inspection`."""
         return [{"node": self.node, "group": self.group, "limit": self.limit}]
 
     @property
     def caution(self) -> str:
-        """A caution for the user."""
+        """Caution for the user."""
         return "if its handlers share no state"
 
     def made_in(self, regrouping: Regrouping) -> Regrouping:
-        """The node's groups, as a graph file has them with this change."""
+        """Return the node's groups with the fix applied, for the graph file."""
         return regrouping.limited(self.group, self.limit)
 
 
 class Thread(NamedTuple):
-    """Run handlers that block the event loop in threads; their node is started again for it."""
+    """The fix that runs handlers which block the event loop in threads; it restarts their node."""
 
     node: str
     handlers: tuple[str, ...]
 
     @property
     def group(self) -> str:
-        """The group that the handlers are put in."""
+        """Name of the group that the handlers move to."""
         return THREADS
 
     @property
-    def settings(self) -> dict[str, Any]:
-        """Settings of the group, as a graph file has them."""
+    def settings(self) -> dict[str, Setting]:
+        """Settings of the group, as in a graph file."""
         return {"thread": True}
 
     @property
     def command(self) -> str:
-        """The shell command that makes the change."""
+        """Shell command that applies the fix."""
         return f"graphflow groups thread {self.node} {' '.join(self.handlers)}"
 
     @property
     def title(self) -> str:
-        """The change in words."""
+        """Imperative phrase for the fix."""
         threads = "a thread" if len(self.handlers) == 1 else "threads"
         return f"run {' and '.join(self.handlers)} of {self.node} in {threads}"
 
     @property
     def caution(self) -> str:
-        """A caution for the user."""
+        """Caution for the user."""
         return "starts the node again"
 
     def made_in(self, regrouping: Regrouping) -> Regrouping:
-        """The node's groups, as a graph file has them with this change."""
+        """Return the node's groups with the fix applied, for the graph file."""
         return regrouping.in_threads(self.handlers)
 
 
@@ -96,12 +96,12 @@ Fix = Move | Limit | Thread
 
 
 def fixes(deadlock: Deadlock, graph: WaitGraph) -> list[Fix]:
-    """The changes after each of which the ring can go on, the least invasive first."""
+    """Return the fixes after each of which the ring can proceed, the least invasive first."""
     return [*moves(deadlock, graph), *_limits(deadlock, graph), *_threads(deadlock, graph)]
 
 
 def larger(edge: Edge, graph: WaitGraph) -> Limit | None:
-    """The limit of a group that lets one more run in; None where it is not a limit that keeps it out."""
+    """Return the fix that makes room for one more run; None if no limit of a group causes the edge."""
     group = graph.groups.get(edge.group)
     if group is None or not group.name or group.sort or group.limit is None or isinstance(edge.via, SetBy):
         return None

@@ -1,4 +1,8 @@
-"""One-line changes, in rclpy's words, that end a deadlock of code that is written for it."""
+"""Remedies for code written for rclpy, in terms of its callback groups, executors and futures.
+
+The model is the same; the resources are a callback group (one slot), an executor (one slot per thread) and a thread
+that spins, which a node without an executor lacks altogether.
+"""
 
 from __future__ import annotations
 
@@ -17,15 +21,15 @@ class Way(NamedTuple):
     """A member of a ring."""
 
     edge: Edge
-    """Why the one before it waits for it."""
+    """Reason why the member before it waits for it."""
     wait: Edge
-    """Why it cannot go on."""
+    """Reason why it cannot proceed itself."""
 
 
 def members_of(deadlock: Deadlock, graph: WaitGraph) -> tuple[list[Way], list[Way]]:
-    """The members of a ring for whose callback group, or thread, another waits; and those that keep their answers out.
+    """Return the members whose callback group or thread another one wants, and those that block their own responses.
 
-    The latter wait for an answer that needs what they hold: no change anywhere else would free them.
+    The latter wait for a response whose delivery needs what they hold: no change elsewhere would free them.
     """
     found = [Way(deadlock.edges[i - 1], edge) for i, edge in enumerate(deadlock.edges)]
     holding = [way for way in found if way.edge.group and graph.groups[way.edge.group].sort]
@@ -41,7 +45,7 @@ def _keeps_its_answer_out(way: Way, graph: WaitGraph) -> bool:
 
 
 def in_rclpys_words(holding: Sequence[Way], alone: Sequence[Way], graph: WaitGraph) -> Iterator[str]:
-    """The changes that end a deadlock: of one member, or of all that keep their answers out."""
+    """Yield the remedies: for one member, or for all that block their own responses."""
     for way in holding:
         needs = [graph.groups[name] for name in _needs(way.edge, graph)]
         if any(group.sort == "spinner" for group in needs):
@@ -54,7 +58,7 @@ def in_rclpys_words(holding: Sequence[Way], alone: Sequence[Way], graph: WaitGra
     for way in chosen:
         reply = _reply_queue(graph.activities[way.edge.to], way.wait, graph)
         if reply is not None and _is_spun_inside(graph.activities[way.edge.to], reply, graph):
-            return  # which takes the node from its executor for good: nothing else helps
+            return  # spinning inside takes the node from its executor for good: nothing else helps
     apart = _apart(chosen, graph)
     if apart:
         yield _text(*apart)
@@ -66,7 +70,7 @@ def _needs(edge: Edge, graph: WaitGraph) -> tuple[str, ...]:
 
 
 def _queue_of(edge: Edge, graph: WaitGraph) -> QueueView | None:
-    """What waits for the holder."""
+    """Return the queue that waits for the holder of an edge's group."""
     if not isinstance(edge.via, SetBy):
         return graph.queues.get(edge.queue)
     holder = graph.activities[edge.to]
@@ -75,7 +79,7 @@ def _queue_of(edge: Edge, graph: WaitGraph) -> QueueView | None:
 
 
 def _joined(ways: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Clauses that belong together, with an `and` between what each asks for."""
+    """Join the clauses of several changes that only help together."""
     for i, clauses in enumerate(ways):
         first, *rest = clauses
         yield f"and {first}" if i else first
@@ -85,7 +89,7 @@ def _joined(ways: Sequence[Sequence[str]]) -> Iterator[str]:
 
 
 def _spun(way: Way, graph: WaitGraph) -> Iterator[str]:
-    """Have somebody spin while a thread waits."""
+    """Yield the remedies for a thread that waits while nothing spins the node."""
     holder, place = graph.activities[way.edge.to], graph.activities[way.edge.to].line
     reply = _reply_queue(holder, way.wait, graph)
     waiting = [_queue_of(way.edge, graph), reply]
@@ -113,7 +117,7 @@ def _is_unspun(queue: QueueView, graph: WaitGraph) -> bool:
 
 
 def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
-    """The same work by a callback that does not keep what others need; empty if there is no such way."""
+    """Return the clauses for doing the same without waiting; empty if there is no such way."""
     place, handler = holder.line, holder.handler
     answers = holder.label.partition(" ")[0] in ("service", "action")
     if holder.is_inner:
@@ -144,13 +148,13 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
 
 
 def _own(holder: ActivityView, graph: WaitGraph) -> str:
-    """The queue that its next run would come from."""
+    """Return the id of the queue of an activity's own handler; empty if there is none."""
     own = (holder.node, holder.label)
     return next((queue.id for queue in graph.queues.values() if (queue.node, queue.label) == own), "")
 
 
 def _handlers(queues: Sequence[str], graph: WaitGraph) -> list[str]:
-    """What brings something about, in a user's words."""
+    """Return the phrases for the handlers of some queues."""
     known = [graph.queues[name] for name in queues if name in graph.queues]
     return [queue.work for queue in known]
 
@@ -160,7 +164,7 @@ _OF_PARAMETERS |= {"describe_parameters", "get_parameter_types"}
 
 
 def _asynchronous(call: Call) -> str:
-    """The call that does not block in place of one that does."""
+    """Return the asynchronous counterpart of a blocking call."""
     if call.id.startswith("goal:"):
         return "client.send_goal_async(goal)"
     name = call.name.rpartition("/")[2]
@@ -171,7 +175,7 @@ def _asynchronous(call: Call) -> str:
 
 
 def _reply_queue(holder: ActivityView, edge: Edge, graph: WaitGraph) -> QueueView | None:
-    """Where the answer to a call of the holder's own will be waiting."""
+    """Return the queue through which the response to a holder's own call must come."""
     if not isinstance(edge.via, Call):
         return None
     node, label = holder.node, f"reply {edge.via.name.partition('/_action/')[0]}"
@@ -179,7 +183,7 @@ def _reply_queue(holder: ActivityView, edge: Edge, graph: WaitGraph) -> QueueVie
 
 
 def _is_spun_inside(holder: ActivityView, reply: QueueView, graph: WaitGraph) -> bool:
-    """Whether a callback spins its own node: what that waits for needs another executor than the callback has."""
+    """Whether a callback spins its own node: the response then needs another executor than the one it holds."""
     mine, wanted = (
         {name for name in names if name in graph.groups and graph.groups[name].sort == "executor"}
         for names in (holder.holds, reply.needs)
@@ -188,7 +192,7 @@ def _is_spun_inside(holder: ActivityView, reply: QueueView, graph: WaitGraph) ->
 
 
 def _apart(ways: Sequence[Way], graph: WaitGraph) -> list[str]:
-    """Let the holders wait beside what they keep out: in groups of their own, and with more threads."""
+    """Return the clauses that let the awaited callbacks run beside the holders: other groups, more threads."""
     moved: list[tuple[ActivityView, bool]] = []
     clients: list[str] = []
     executors: dict[str, int] = {}
@@ -230,7 +234,7 @@ def _runs_twice(executor: str, graph: WaitGraph) -> bool:
 
 
 def _named(holder: ActivityView) -> str:
-    """A callback, also one without a name."""
+    """Return a callback's name, or a phrase for a lambda."""
     kind = holder.label.partition(" ")[0]
     return holder.handler if holder.handler.isidentifier() else f"the {kind} that waits in {holder.line}"
 

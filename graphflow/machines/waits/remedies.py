@@ -1,4 +1,11 @@
-"""One-line changes, each of which ends a deadlock: in the graph file, in the class, or where the code waits."""
+"""Remedies: one-line changes in the graph file, in the class or at the wait, each of which ends a deadlock.
+
+Of the conditions that are necessary for deadlock (mutual exclusion, hold and wait, no preemption, circular wait), each
+kind of remedy removes one from the ring: a group of its own or a thread removes the exclusion, a larger limit adds
+units of the resource, `released()` removes hold and wait, and one lock order removes the circle.
+
+Source: Coffman, Elphick and Shoshani, "System deadlocks", ACM Computing Surveys 3 (1971).
+"""
 
 from __future__ import annotations
 
@@ -13,10 +20,10 @@ from graphflow.machines.waits.wrapping import filled
 
 
 def remedies(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
-    """The changes, each as lines; of a kind that would help at several members of the ring, the first."""
+    """Return the remedies, each as lines; of one kind that would help at several members, the first."""
     found: list[str] = []
     holding, alone = members_of(deadlock, graph)
-    if alone:  # whatever is changed elsewhere, they would not go on
+    if alone:  # no change elsewhere would free these
         return list(in_rclpys_words(holding, alone, graph))
     for move in moves(deadlock, graph)[:1]:
         queues = [q for q in graph.queues.values() if q.node == move.node and q.handler in move.handlers]
@@ -31,7 +38,7 @@ def remedies(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
 
 
 def remedies_of(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
-    """The changes that end the wait of one activity for itself."""
+    """Return the remedies for an activity that waits for itself."""
     queue, group = graph.queues[edge.queue], graph.groups[edge.group]
     is_other = (queue.node, queue.handler) != (activity.node, activity.handler)
     own = own_group([queue], graph) if group.name and is_other else []
@@ -39,7 +46,7 @@ def remedies_of(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[st
 
 
 def own_group(queues: Sequence[QueueView], graph: WaitGraph) -> Iterator[str]:
-    """Give handlers of a node a group of their own, together."""
+    """Yield the remedy that gives handlers of a node a common group of their own."""
     node, handlers = queues[0].node, list(dict.fromkeys(queue.handler for queue in queues))
     who, own = " and ".join(handlers), f"{handlers[0]}_group"
     its = "a group of its own" if len(handlers) == 1 else "a group of their own"
@@ -58,6 +65,7 @@ def own_group(queues: Sequence[QueueView], graph: WaitGraph) -> Iterator[str]:
 
 
 def _one_of_a_kind(fixes: Sequence[str]) -> list[str]:
+    """Keep the first remedy of each kind; the verb tells the kind."""
     kinds: dict[str, str] = {}
     for fix in fixes:
         kinds.setdefault(fix.split()[0], fix)
@@ -65,6 +73,7 @@ def _one_of_a_kind(fixes: Sequence[str]) -> list[str]:
 
 
 def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
+    """Yield the remedies that remove one edge of the ring."""
     if edge.loop:
         yield from _off_the_loop(edge, graph)
         return
@@ -76,8 +85,12 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         yield from _apart_from_the_lock(edge.via.what, graph.activities[edge.to])
     if isinstance(edge.via, SetBy) and edge.via.deed == "offers" and group is None:
         yield _text(f"make {edge.via.what} before {graph.activities[edge.to].line} waits for it")
-    if queue is None or group is None:
-        return
+    if queue is not None and group is not None:
+        yield from _more_runs(edge, queue, group, graph)
+
+
+def _more_runs(edge: Edge, queue: QueueView, group: GroupView, graph: WaitGraph) -> Iterator[str]:
+    """Yield the remedies that let the awaited handler run although the group is full."""
     if queue.has_answers:
         yield _text("let replies through:", f"declare the client of {queue.handler} without group=")
     if group.name:
@@ -93,7 +106,7 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
 
 
 def _apart_from_the_lock(lock: str, holder: ActivityView) -> Iterator[str]:
-    """What ends a wait for a lock whose holder waits as well."""
+    """Yield the remedy for a lock whose holder waits: hold it for less code, or always take locks in one order."""
     wait, other = "await" if holder.is_async else "wait", holder.wait
     if isinstance(other, SetBy) and other.is_held and not holder.is_async:
         if other.what == lock:
@@ -105,6 +118,7 @@ def _apart_from_the_lock(lock: str, holder: ActivityView) -> Iterator[str]:
 
 
 def _off_the_loop(edge: Edge, graph: WaitGraph) -> Iterator[str]:
+    """Yield the remedies for an activity that blocks the event loop."""
     blocker = graph.activities[edge.to]
     wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
     yield _text(f"{wait} in {blocker.line}")
@@ -121,7 +135,7 @@ def _off_the_loop(edge: Edge, graph: WaitGraph) -> Iterator[str]:
 
 
 def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
-    """Releasing a slot helps where the previous activity in the ring wants it."""
+    """Yield the remedy that releases an activity's slot during its wait, if the one before it in the ring wants it."""
     if wanted is not None and wanted.name and not wanted.sort and activity.is_async:
         yield _text(
             f"release the slot while waiting, in {activity.line}:",
@@ -141,5 +155,5 @@ def _larger(group: GroupView, limit: Limit, graph: WaitGraph) -> str:
 
 
 def _text(*clauses: str, yaml: Sequence[str] = (), instead: Sequence[str] = ()) -> str:
-    """A remedy: a sentence, the lines to paste, and another way to do the same."""
+    """Format a remedy: a sentence, the lines to paste, and an alternative to them."""
     return "\n".join([*filled("  ", clauses), *yaml, *(filled("    ", instead) if instead else [])])

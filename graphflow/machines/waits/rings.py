@@ -1,4 +1,13 @@
-"""Why activities are dead: the rings in which they wait for each other, and what waits behind them."""
+"""The rings in a reduced graph: for each deadlock, one cycle of waits that shows why it exists, and its victims.
+
+The reduction leaves a set of dead activities, which may contain several independent deadlocks and many activities that
+only wait behind them. In the graph of the dead, each strongly connected component that stays dead when it is reduced by
+itself is a deadlock of its own: it would remain if all others were fixed. Everything else waits behind one.
+
+A component can be large. A report shows one cycle through it, the shortest, because a person can follow that, and
+because breaking it is what the remedies are about. Every process must choose the same cycle without talking to the
+others, so the choice depends on nothing but ids.
+"""
 
 from __future__ import annotations
 
@@ -25,55 +34,59 @@ from graphflow.machines.waits.wait_graph import (
 )
 
 STARTS = 32
-"""Activities of one deadlock from which to look for a ring, at most."""
+"""Activities of one deadlock from which a ring is searched, at most."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """Why one activity cannot proceed before another does."""
+    """The reason why one activity cannot proceed before another does."""
 
     to: str
-    """The activity that is waited for."""
+    """Id of the activity that is waited for."""
     via: Condition
+    """Leaf of the waiter's condition that leads there."""
     queue: str = ""
-    """The queue that the call is in."""
+    """Id of the queue whose next run would meet it."""
     group: str = ""
-    """The group whose slot is missing."""
+    """Id of the group of which that run, or the waiter, lacks a slot."""
     loop: bool = False
     """Whether the other activity blocks the event loop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Deadlock:
-    """Activities that wait for each other in a ring, and those that wait for them."""
+    """Activities that wait for each other in a ring, and the victims behind them."""
 
     ring: tuple[str, ...]
-    """Each waits for the next, and the last for the first."""
+    """Members: each waits for the next, and the last for the first."""
     edges: tuple[Edge, ...]
-    """`edges[i]` is why `ring[i]` waits for the next."""
+    """Reasons: `edges[i]` is why `ring[i]` waits for the next member."""
     victims: tuple[str, ...]
-    """Dead activities outside the ring that wait for it and are in no deadlock that would remain without it."""
+    """Dead activities outside the ring that wait for it and would proceed if it were broken."""
     is_likely: bool
-    """Whether the deadlock is certain only if the source code shows everything that sets what a member waits for."""
+    """Whether the deadlock rests on the closed-world assumption for some member's wait."""
     is_partial: bool = False
-    """Whether the failure of something alive, one of several things waited for, could still end the deadlock."""
+    """Whether an error in another part of a joint wait, a part that is alive, could still end the deadlock."""
     beside: Mapping[str, tuple[Edge, ...]] = field(default_factory=dict)
-    """Further conditions of the same `await` that cannot come true either, by member."""
+    """By member: reasons why the other alternatives of the same wait cannot come true either."""
 
 
 def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:
-    """The deadlocks among dead activities, those that have lasted longest first, and what waits for each.
+    """Return the deadlocks among dead activities, the oldest first, each with its victims.
 
-    Each would remain if all the others were fixed.
+    Each would remain if all the others were fixed. A ring that is certain is preferred to a likely one.
     """
     index = Index(graph)
     guess_free = Index(graph, may_guess=False)
     waits = _Waits(index, dead)
     firm = reduced(Index(graph, may_fail=True), waits.dead.activities)
-    knots = [reduced(index, knot & waits.dead.activities) for knot in _knots(waits.dead.activities, waits.after)]
-    alone = set[str]().union(*knots)
+    components = [
+        reduced(index, component & waits.dead.activities)
+        for component in _components(waits.dead.activities, waits.after)
+    ]
+    alone = set[str]().union(*components)
     found: list[tuple[float, Deadlock]] = []
-    for stuck in filter(None, knots):  # of the others, each only waits for another
+    for stuck in filter(None, components):  # a component that reduces to nothing only waits behind another
         certain = reduced(guess_free, stuck)
         inner = _Waits(guess_free, certain) if certain else _Waits(index, stuck)
         ring = inner.ring()
@@ -88,7 +101,7 @@ def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:
 
 
 def is_ring(names: Sequence[str], graph: WaitGraph, dead: Iterable[str]) -> bool:
-    """Whether each of these waits for the next, and the last for the first, for whatever reason; and all are dead."""
+    """Whether these activities are all dead, and each waits for the next, the last for the first, for any reason."""
     waits = _Waits(Index(graph), dead)
     return all(waits.leads(here, there) for here, there in zip(names, [*names[1:], names[0]], strict=True))
 
@@ -96,7 +109,8 @@ def is_ring(names: Sequence[str], graph: WaitGraph, dead: Iterable[str]) -> bool
 class _Waits:
     """The wait-for graph of dead activities.
 
-    The way from one that wants a slot to those that hold it leads through the group: there may be many on both sides.
+    A full group is a vertex of its own between those that want a slot and those that hold one. With n of the former
+    and m of the latter that is n + m edges in place of n * m.
     """
 
     def __init__(self, index: Index, dead: Iterable[str]) -> None:
@@ -106,7 +120,7 @@ class _Waits:
 
     @cached_property
     def _before(self) -> dict[str, list[str]]:
-        """The reverse of `after`."""
+        """The predecessors of each vertex: the reverse of `after`."""
         found: dict[str, list[str]] = {}
         for thing in (*self._edges, *self.dead.groups):
             for other in self.after(thing):
@@ -114,7 +128,7 @@ class _Waits:
         return found
 
     def after(self, thing: str) -> Sequence[str]:
-        """What an activity waits for, activities and groups; for a group, what holds its slots."""
+        """Return the successors of a vertex: of an activity what it waits for, of a group its holders."""
         if thing in self._edges:
             return [edge.to for edge in self._edges[thing]]
         return self._index.holders[thing]
@@ -125,7 +139,7 @@ class _Waits:
         return any(there == edge.to or (edge.group and there in self._index.holders[edge.group]) for edge in edges)
 
     def behind(self, members: set[str], others: set[str]) -> set[str]:
-        """The activities that wait for any of them, directly or through others, except `others`."""
+        """Return the members and the activities that wait for them, directly or through any but `others`."""
         found, todo = set(members), list(members)
         while todo:
             new = [thing for thing in self._before.get(todo.pop(), ()) if thing not in found and thing not in others]
@@ -134,16 +148,17 @@ class _Waits:
         return found & self.dead.activities
 
     def beside(self, name: str, chosen: Edge) -> tuple[Edge, ...]:
-        """Why an activity cannot proceed besides one reason: an edge for each other thing that it waits for."""
+        """Return one edge for each other leaf of an activity's condition, besides the edge that is in the ring."""
         others = {edge.via: edge for edge in self._edges[name] if edge.via != chosen.via and not edge.loop}
         holders = self._index.holders
         return tuple(replace(e, to=min(holders[e.group])) if e.group else e for e in others.values())
 
     def ring(self) -> list[tuple[str, Edge]]:
-        """A ring through some of them, the shortest through one, beginning with the one that has waited longest.
+        """Return the ring to report, beginning with the member that has waited longest.
 
-        Every process must choose the same: so the choice depends on ids, not on ages, and a ring within one process,
-        which that process sees by itself, comes before one through several.
+        Every process must choose the same one, so the choice depends on ids and not on ages, which each process
+        measures by itself. A ring within one process comes before one through several, because that process reports it
+        without asking the others.
         """
         rings = islice(filter(None, map(self._ring_of, sorted(self._edges))), STARTS)
         ring = min(rings, key=lambda ring: len({self._activities[name].process for name, _ in ring}))
@@ -151,6 +166,7 @@ class _Waits:
         return ring[first:] + ring[:first]
 
     def _ring_of(self, start: str) -> list[tuple[str, Edge]]:
+        """Return a shortest ring through an activity, by breadth-first search; empty if there is none."""
         came: dict[str, tuple[str, Edge]] = {}
         seen: set[str] = set()
         todo = deque([start])
@@ -176,7 +192,7 @@ class _Waits:
         yield from self._of_condition(activity.wait)
 
     def _of_condition(self, condition: Condition) -> Iterator[Edge]:
-        """Why a condition is not met; the edges to a group stand for one to each that holds a slot of it."""
+        """Yield an edge for each leaf that is not met; one to a group stands for an edge to each of its holders."""
         index, dead = self._index, self.dead
         if not index.lacking_for(condition, dead):
             return
@@ -184,67 +200,75 @@ class _Waits:
             case Call(id=call):
                 serving, queued = index.ways_of(call)
                 yield from (Edge(one, condition) for one in serving)
-                for queue in queued:
-                    yield from self._of_queue(queue, condition)
+                yield from self._of_queues(queued, condition)
             case Slot(group=group):
                 yield Edge(group, condition, group=group)
             case Opening(service=service):
-                for queue in index.opening[service]:
-                    yield from self._of_queue(queue, condition)
+                yield from self._of_queues(index.opening[service], condition)
             case Join(activity=other):
                 yield Edge(other, condition)
-            case SetBy(queues=queues, activities=activities):
-                for name in queues:
-                    yield from self._of_queue(index.graph.queues[name], condition)
+            case SetBy(queues=names, activities=activities):
+                yield from self._of_queues(map(index.graph.queues.__getitem__, names), condition)
                 yield from (Edge(other, condition) for other in activities)
             case All(of=conditions) | AnyOf(of=conditions):
                 for inner in conditions:
                     yield from self._of_condition(inner)
 
-    def _of_queue(self, queue: QueueView, via: Condition) -> Iterator[Edge]:
-        blocker = self._index.graph.blocked.get(queue.process)
-        if blocker in self.dead.activities:
-            yield Edge(blocker, via, queue.id, loop=True)
-        for group in queue.needs:
-            if group in self.dead.groups:
-                yield Edge(group, via, queue.id, group)
+    def _of_queues(self, queues: Iterable[QueueView], via: Condition) -> Iterator[Edge]:
+        """Yield the reasons why no handler of these queues can run."""
+        for queue in queues:
+            blocker = self._index.graph.blocked.get(queue.process)
+            if blocker in self.dead.activities:
+                yield Edge(blocker, via, queue.id, loop=True)
+            for group in queue.needs:
+                if group in self.dead.groups:
+                    yield Edge(group, via, queue.id, group)
 
 
-def _knots(starts: Iterable[str], after: Callable[[str], Sequence[str]]) -> Iterator[set[str]]:
-    """The sets of things that all lead to each other, that is the strongly connected components.
+def _components(starts: Iterable[str], after: Callable[[str], Sequence[str]]) -> Iterator[set[str]]:
+    """Yield the strongly connected components that can be reached from some vertices, each before its predecessors.
 
-    Source: Tarjan, "Depth-first search and linear graph algorithms", 1972.
+    Tarjan's algorithm with an explicit stack: chains of waits may be longer than Python's recursion limit.
+
+    Source: Tarjan, "Depth-first search and linear graph algorithms", SIAM Journal on Computing 1 (1972).
     """
     number: dict[str, int] = {}
     lowest: dict[str, int] = {}
-    open_: list[str] = []
-    """Things whose knot is not known yet, in the order they were met."""
-    is_open: set[str] = set()
+    stack: list[str] = []
+    """Vertices whose component is not complete, in the order of discovery."""
+    on_stack: set[str] = set()
     for start in starts:
         path: list[tuple[str, Iterator[str]]] = []
-        here: str | None = start if start not in number else None
-        while here is not None or path:
-            if here is not None:
-                number[here] = lowest[here] = len(number)
-                open_.append(here)
-                is_open.add(here)
-                path.append((here, iter(after(here))))
-            thing, rest = path[-1]
-            here = None
-            for other in rest:
-                if other not in number:
-                    here = other
-                    break
-                if other in is_open:
-                    lowest[thing] = min(lowest[thing], number[other])
-            if here is not None:
+        new: str | None = start if start not in number else None
+        while new is not None or path:
+            if new is not None:
+                number[new] = lowest[new] = len(number)
+                stack.append(new)
+                on_stack.add(new)
+                path.append((new, iter(after(new))))
+            here, successors = path[-1]
+            new = _next_new(here, successors, number, lowest, on_stack)
+            if new is not None:
                 continue
             path.pop()
             if path:
-                lowest[path[-1][0]] = min(lowest[path[-1][0]], lowest[thing])
-            if lowest[thing] == number[thing]:
-                knot = set[str]()
-                while thing not in knot:
-                    knot.add(open_.pop())
-                is_open -= knot
-                yield knot
+                above = path[-1][0]
+                lowest[above] = min(lowest[above], lowest[here])
+            if lowest[here] == number[here]:  # the root of its component, which lies above it on the stack
+                component = set[str]()
+                while here not in component:
+                    component.add(stack.pop())
+                on_stack -= component
+                yield component
+
+
+def _next_new(
+    here: str, successors: Iterator[str], number: dict[str, int], lowest: dict[str, int], on_stack: set[str]
+) -> str | None:
+    """Return the next undiscovered successor of a vertex; note in `lowest` how far back the others lead."""
+    for other in successors:
+        if other not in number:
+            return other
+        if other in on_stack:
+            lowest[here] = min(lowest[here], number[other])
+    return None

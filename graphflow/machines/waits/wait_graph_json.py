@@ -1,4 +1,7 @@
-"""Snapshots of waits as JSON, as processes exchange them."""
+"""Snapshots as JSON, the form in which processes exchange them.
+
+The data comes from other processes of the network and is not trusted: every value's type is tested while it is read.
+"""
 
 from __future__ import annotations
 
@@ -30,11 +33,11 @@ Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | Non
 
 VERSION = 7
 DEEPEST = 50
-"""How deep conditions may be nested: what comes from the network must not exhaust the stack."""
+"""Greatest nesting of conditions, so that data from the network cannot exhaust the stack."""
 
 
 def to_json(graph: WaitGraph) -> dict[str, Json]:
-    """A snapshot as plain data that `from_json` reads back."""
+    """Convert a snapshot to plain data that `from_json` reads back."""
     return {
         "v": VERSION,
         "activities": [_activity(a) for a in graph.activities.values()],
@@ -65,7 +68,7 @@ def _regrouping(regrouping: Regrouping) -> Json:
 def _condition(condition: Condition, depth: int = 0) -> Json:
     match condition:
         case All() | AnyOf() if depth >= DEEPEST:
-            return None  # the snapshot only says less then
+            return None  # reads back as FREE, which can only hide a deadlock
         case Call(id=call, name=name, servers=servers):
             return ["call", call, name, servers]
         case Slot(group=group, ticket=ticket):
@@ -85,7 +88,7 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
 
 
 def from_json(data: Mapping[str, object]) -> WaitGraph:
-    """Read a snapshot.
+    """Read a snapshot from plain data.
 
     Raises:
         ValueError, KeyError, TypeError: The data is not a snapshot.
@@ -156,7 +159,7 @@ def _sort(data: object) -> Sort:
         if data == known:
             found: Sort = known
             return found
-    raise ValueError(f"{data!r} is not what may act as a group")
+    raise ValueError(f"{data!r} is not a kind of group")
 
 
 def _when_full(data: object) -> WhenFull:
@@ -164,7 +167,7 @@ def _when_full(data: object) -> WhenFull:
         if data == known:
             found: WhenFull = known
             return found
-    raise ValueError(f"{data!r} is not what happens when a group is full")
+    raise ValueError(f"{data!r} is not a policy for full groups")
 
 
 def _read_condition(data: object, depth: int) -> Condition:

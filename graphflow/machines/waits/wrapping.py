@@ -1,17 +1,17 @@
-"""Sentences for a terminal: broken between their clauses, where they are too long for a line."""
+"""Line breaks for reports: long sentences break between their clauses rather than between any two words."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 WIDTH = 100
-"""Columns that a line of a report has at most, where its names allow that."""
+"""Columns of a line of a report, where its names allow that."""
 _FURTHER = 4
 """Columns by which the rest of a sentence is indented."""
 
 
 def filled(indent: str, clauses: Sequence[str]) -> list[str]:
-    """Clauses as lines, the first after `indent`."""
+    """Fill lines with clauses; the first line begins with `indent`, the others are indented further."""
     lines = [f"{indent}{clauses[0]}"]
     margin = " " * (len(indent) - len(indent.lstrip()) + _FURTHER)
     for clause in clauses[1:]:
