@@ -1,9 +1,9 @@
-"""Copies of frames, taken while the owner of their locals is known to be there.
+"""Safe copies of frames, for code that inspects coroutines and threads while they run.
 
-The locals of a generator's or coroutine's frame lie in the generator. CPython 3.13 reads freed memory when it is asked
-for them after the generator was closed (gh-125723), which another thread may do at any moment. So nothing keeps a frame
-to look into it later: a `Frame` is a copy, made where no other thread can run in between. Between the look at the owner
-and the copy there is no call and no loop, and only at those does CPython let another thread have the GIL.
+The locals of a coroutine's frame lie in the coroutine object. CPython 3.13 reads freed memory if they are requested
+after the coroutine was closed (gh-125723), which another thread may do at any moment. Hence nothing keeps a frame to
+read it later: a `Frame` is a copy, made while the coroutine is known to be suspended. Between that test and the copy
+there must be no call and no loop, because only at those does CPython switch to another thread.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from types import CodeType, CoroutineType, FrameType, GeneratorType
 from typing import Any
 
 _OWNED = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
-"""Flags of code whose frames lie in a generator of some kind."""
+"""Flags of code whose frames lie in a generator or coroutine object."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """A frame as it was at one moment, under the names that CPython uses. Copies of one frame are equal."""
+    """A copy of a frame at one moment, with CPython's names. Copies of one frame are equal."""
 
     f_code: CodeType
     f_lineno: int
     f_locals: dict[str, Any]
-    """Empty where they could not be read safely."""
+    """Local variables; empty if they could not be read safely."""
     f_globals: dict[str, Any]
     original: FrameType
-    """To compare frames by; never to be read."""
+    """The frame itself, for comparisons; its locals must not be read."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Frame) and self.original is other.original
@@ -41,8 +41,8 @@ class Frame:
 def running(frame: FrameType) -> Frame:
     """Copy a frame from the stack of a thread, which may run on meanwhile.
 
-    A function's frame survives its end. A generator's has a caller as long as it runs, and keeps it if it ends by
-    itself; one without a caller is suspended or was closed, and is not looked into.
+    A function's frame outlives the function. A generator's frame has a caller as long as it runs, and keeps it when it
+    ends by itself; one without a caller is suspended or was closed, and its locals are left alone.
     """
     code, lineno = frame.f_code, frame.f_lineno or 0
     names: dict[str, Any] = {}
@@ -51,8 +51,11 @@ def running(frame: FrameType) -> Frame:
     return Frame(code, lineno, names, frame.f_globals, frame)
 
 
-def suspended(owner: Any) -> Frame | None:
-    """Copy the frame of a suspended coroutine or generator; None for one that has ended, or is of another kind."""
+def suspended(owner: object) -> Frame | None:
+    """Copy the frame of a suspended coroutine or generator; None for one that has ended, or for another object.
+
+    The two branches differ in an attribute only, yet must not share code: a call in between could switch threads.
+    """
     if isinstance(owner, CoroutineType):
         frame = owner.cr_frame
         if frame is None:
@@ -68,16 +71,18 @@ def suspended(owner: Any) -> Frame | None:
     return Frame(frame.f_code, frame.f_lineno or 0, names, frame.f_globals, frame)
 
 
-def code_of(owner: Any) -> CodeType | None:
-    """The code of a suspended coroutine or generator; None for one that has ended, or is of another kind."""
+def code_of(owner: object) -> CodeType | None:
+    """Return the code of a suspended coroutine or generator; None for one that has ended, or for another object."""
+    # By attribute: Cython's coroutines have them, too, and are instances of none of CPython's types.
     frame = getattr(owner, "cr_frame", None) or getattr(owner, "gi_frame", None) or getattr(owner, "ag_frame", None)
     return None if frame is None else frame.f_code
 
 
-def awaited(owner: Any) -> Iterator[Any]:
-    """A suspended coroutine and those that it awaits, the outermost first.
+def awaited(owner: object) -> Iterator[object]:
+    """Yield a suspended coroutine and those that it awaits, the outermost first.
 
-    They end before an asynchronous generator: its loops can be left by who iterates over it, and so tell nothing.
+    An asynchronous generator ends the chain: whoever iterates over it can leave its loops at any `yield`, so they say
+    nothing about the wait.
     """
     while owner is not None:
         yield owner
@@ -85,12 +90,12 @@ def awaited(owner: Any) -> Iterator[Any]:
 
 
 def stack_of(thread: int) -> list[Frame]:
-    """The frames of a running thread, the outermost first."""
+    """Copy the frames of a running thread, the outermost first."""
     return stack_from(sys._current_frames().get(thread))
 
 
 def stack_from(innermost: FrameType | None) -> list[Frame]:
-    """A frame of a running thread and those that called it, the outermost first."""
+    """Copy a frame of a running thread and its callers, the outermost first."""
     frames: list[Frame] = []
     frame = innermost
     while frame is not None:

@@ -1,9 +1,9 @@
-"""What a suspended coroutine reveals of its wait: all that is read from asyncio's internals and CPython's frames.
+"""Inspection of suspended coroutines: the only module that reads asyncio's internals and CPython's frames.
 
-asyncio says only which future a task awaits. What that future stands for (all of these tasks, any of them, a
-lock, a deadline) is read here from the coroutines in between, which are known by their code, and from the local names
-and private attributes that CPython 3.11 to 3.14 have in common. A test pins each of them, so that a new Python in which
-one is missing is reported by that test and not by a search that has gone blind.
+asyncio reveals only which future a task awaits. Its meaning (all of several tasks, any of them, a lock, a deadline) is
+in the coroutines between the task and the future. These are recognized by their code objects, and read through local
+names and private attributes that CPython 3.11 to 3.14 have in common. A test pins each of them, so that a Python
+release without one fails that test rather than blinds the search.
 """
 
 from __future__ import annotations
@@ -18,15 +18,28 @@ import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Iterable, Iterator
 from types import CodeType, FunctionType, MethodType
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from graphflow.analysis.frames import Frame, awaited, code_of, suspended
 from graphflow.analysis.user_code import is_users
 
+AnyFuture: TypeAlias = "asyncio.Future[object]"
+"""A future, or a task as a future."""
+
+
+@runtime_checkable
+class TaskLike(Protocol):
+    """The driver of a coroutine: an `asyncio.Task`, or an `Activity` of graphflow's executor."""
+
+    def get_coro(self) -> object: ...
+
+    def done(self) -> bool: ...
+
+
 FUTURE = ("set_result", "set_exception", "cancel")
 """Methods that end a future."""
 BARRIER = ("wait", "abort", "reset")
-"""Methods that let those go on who wait at a barrier."""
+"""Methods that release the waiters of a barrier."""
 _WAITS: dict[CodeType, tuple[str, ...]] = {
     asyncio.Event.wait.__code__: ("set",),
     asyncio.Queue.get.__code__: ("put", "put_nowait"),
@@ -44,7 +57,7 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {
     concurrent.futures.Future.result.__code__: FUTURE,
     asyncio.Barrier.wait.__code__: BARRIER,
 }
-"""Waits of asyncio and of threads, and the methods of the same object that end them."""
+"""The waits of asyncio's and threading's primitives, by code, and the methods of the same object that end them."""
 DEEDS = {
     FUTURE: "ends",
     ("set",): "sets",
@@ -55,8 +68,9 @@ DEEDS = {
     ("release",): "releases",
     BARRIER: "comes to",
 }
-"""What those methods do, in words, by the methods."""
+"""Verbs for reports, by those methods."""
 ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)} - {"wait"}
+"""Methods of primitives that change whether a wait ends."""
 _TASK_GROUP_EXITS = tuple(
     getattr(asyncio.TaskGroup, name).__code__ for name in ("__aexit__", "_aexit") if hasattr(asyncio.TaskGroup, name)
 )
@@ -67,22 +81,23 @@ _ENTER = asyncio.Lock.__aenter__.__code__
 _EXITS = ("__aexit__", "__exit__")
 
 
-def coroutines(task: Any) -> Iterator[Any]:
-    """The coroutine of a suspended task and those that it awaits, the outermost first."""
+def coroutines(task: TaskLike) -> Iterator[object]:
+    """Yield the coroutine of a suspended task and those that it awaits, the outermost first."""
     return awaited(task.get_coro())
 
 
-def frames_of(task: Any) -> list[Frame]:
-    """The frames of a suspended task, the outermost first."""
+def frames_of(task: TaskLike) -> list[Frame]:
+    """Return the frames of a suspended task, the outermost first."""
     return [frame for frame in map(suspended, coroutines(task)) if frame is not None]
 
 
-def entered(coroutine: Any) -> Iterator[Any]:
-    """What a suspended coroutine has entered by `with`: CPython keeps the method that leaves it on the stack.
+def entered(coroutine: object) -> Iterator[object]:
+    """Yield the context managers that a suspended coroutine is inside of.
 
-    Until 3.13 that is a bound method. Since 3.14 it is a function with its object above it.
+    For each `with`, CPython keeps the exit method on the value stack, which the garbage collector can see. Until 3.13
+    it is a bound method; since 3.14 it is a function with its object above it.
     """
-    below: Any = None
+    below: object = None
     for referent in gc.get_referents(coroutine):
         if isinstance(referent, MethodType) and referent.__name__ in _EXITS:
             yield referent.__self__
@@ -91,10 +106,10 @@ def entered(coroutine: Any) -> Iterator[Any]:
         below = referent
 
 
-def files_entered(coroutine: Any) -> Iterator[str]:
-    """The source files of what a suspended coroutine has entered by `with`; empty for what is not known."""
+def files_entered(coroutine: object) -> Iterator[str]:
+    """Yield the source file of each context manager that a suspended coroutine is inside of; empty if unknown."""
     for context in entered(coroutine):
-        generator = getattr(context, "gen", None)  # of contextlib's decorators
+        generator = getattr(context, "gen", None)  # of `contextmanager` and `asynccontextmanager`
         code = code_of(generator)
         if code is not None:
             yield code.co_filename
@@ -104,8 +119,8 @@ def files_entered(coroutine: Any) -> Iterator[str]:
             yield getattr(sys.modules.get(type(context).__module__), "__file__", None) or ""
 
 
-def may_give_up(task: Any) -> bool:
-    """Whether a suspended task has entered something of the user's by `with`, in which there may be a timeout."""
+def may_give_up(task: TaskLike) -> bool:
+    """Whether a suspended task is inside a context manager of the user's, which may contain a timeout."""
     return any(is_users(file) for coroutine in coroutines(task) for file in files_entered(coroutine))
 
 
@@ -113,27 +128,28 @@ def _is_method_of(function: FunctionType, thing: object) -> bool:
     return any(vars(cls).get(function.__name__) is function for cls in type(thing).__mro__)
 
 
-def waiter_of(task: Any) -> Any:
-    """The future that a task awaits; None when its next step is due."""
-    return getattr(task, "_fut_waiter", None)
+def waiter_of(task: object) -> AnyFuture | None:
+    """Return the future that a task awaits; None if its next step is due."""
+    waiter: AnyFuture | None = getattr(task, "_fut_waiter", None)
+    return waiter
 
 
-def is_done(future: Any) -> bool:
+def is_done(future: AnyFuture | TaskLike) -> bool:
     """Whether a future or task is done; callable from any thread."""
     return bool(future.done())
 
 
 class JointWait(NamedTuple):
-    """A wait for several tasks together."""
+    """A wait for several futures together."""
 
-    tasks: list[Any]
+    tasks: list[AnyFuture]
     wants: Literal["all", "any"]
     fails_early: bool
     """Whether an error in one of them ends the wait."""
 
 
 def joint_wait(frame: Frame) -> JointWait | None:
-    """The tasks that one of asyncio's primitives waits for, if this is the frame of one."""
+    """Return the futures that one of asyncio's functions waits for; None for a frame of any other function."""
     code, names = frame.f_code, frame.f_locals
     if code in _TASK_GROUP_EXITS:
         return JointWait(list(names["self"]._tasks), "all", True)
@@ -145,13 +161,13 @@ def joint_wait(frame: Frame) -> JointWait | None:
     return None
 
 
-def gathered(future: Any) -> JointWait | None:
-    """What `asyncio.gather` waits for, if that made the future."""
-    children = getattr(future, "_children", None)
+def gathered(future: object) -> JointWait | None:
+    """Return the parts of an `asyncio.gather`; None for a future that it did not make."""
+    children: Iterable[AnyFuture] | None = getattr(future, "_children", None)
     return None if children is None else JointWait(list(children), "all", not _returns_errors(children))
 
 
-def _returns_errors(children: Iterable[Any]) -> bool:
+def _returns_errors(children: Iterable[AnyFuture]) -> bool:
     """Whether `asyncio.gather` was called with `return_exceptions`, by the callback that it adds to its parts."""
     for child in children:
         for callback in _callbacks(child):
@@ -161,21 +177,25 @@ def _returns_errors(children: Iterable[Any]) -> bool:
     return False
 
 
-def shielded(outer: Any) -> Any:
-    """What `asyncio.shield` protects, found by the callback that it adds to the outer future; None without a shield."""
+def shielded(outer: object) -> AnyFuture | None:
+    """Return the future that `asyncio.shield` protects; None if it did not make the outer one.
+
+    The inner future is only in the closure of the callback that `shield` adds to the outer one.
+    """
     for callback in _callbacks(outer):
-        if getattr(callback, "__name__", "") == "_outer_done_callback":
-            return _enclosed(callback, "inner")  # since 3.14 the closure has whoever shields, too
+        if isinstance(callback, FunctionType) and callback.__name__ == "_outer_done_callback":
+            inner = _enclosed(callback, "inner")  # since 3.14 the closure has the outer future, too
+            return inner if asyncio.isfuture(inner) else None
     return None
 
 
-def awaited_tasks(task: Any) -> Iterator[Any]:
-    """The tasks whose end a suspended task waits for, one of them or all."""
+def awaited_tasks(task: TaskLike) -> Iterator[TaskLike]:
+    """Yield the tasks whose end a suspended task waits for, be it one of them or all."""
     joint = (joint_wait(frame) for frame in frames_of(task))
     todo = [waiter_of(task), *(future for wait in joint if wait is not None for future in wait.tasks)]
     while todo:
         future = todo.pop()
-        if hasattr(future, "get_coro"):
+        if isinstance(future, TaskLike):
             if not future.done():
                 yield future
         elif future is not None:
@@ -183,32 +203,36 @@ def awaited_tasks(task: Any) -> Iterator[Any]:
             todo += [shielded(future)] if together is None else together.tasks
 
 
-def stands_for_others(future: Any) -> bool:
-    """Whether a future ends as others do, which may have been made later: it is a task, or asyncio made it of some."""
-    return hasattr(future, "get_coro") or gathered(future) is not None or shielded(future) is not None
+def stands_for_others(future: object) -> bool:
+    """Whether the end of a future depends on others, which may be younger: it is a task, a `gather` or a `shield`."""
+    return isinstance(future, TaskLike) or gathered(future) is not None or shielded(future) is not None
 
 
-def has_failed(future: Any) -> bool:
+def has_failed(future: AnyFuture) -> bool:
     """Whether a future that is done was cancelled or has an error."""
     return bool(future.cancelled() or future.exception() is not None)
 
 
-def _enclosed(function: Any, name: str) -> Any:
-    """The variable of that name in the closure of a function; None if it has none."""
-    names = getattr(getattr(function, "__code__", None), "co_freevars", ())
-    return function.__closure__[names.index(name)].cell_contents if name in names else None
+def _enclosed(function: object, name: str) -> object:
+    """Return the variable of that name in the closure of a function; None if it has none."""
+    if not isinstance(function, FunctionType) or name not in function.__code__.co_freevars:
+        return None
+    cells = function.__closure__ or ()
+    return cells[function.__code__.co_freevars.index(name)].cell_contents
 
 
-def _callbacks(future: Any) -> Iterator[Any]:
+def _callbacks(future: object) -> Iterator[object]:
+    # asyncio stores pairs of a callback and its context; other futures may store the callback alone.
     for entry in getattr(future, "_callbacks", None) or ():
         yield entry[0] if isinstance(entry, tuple) else entry
 
 
-def deadlines(coroutine: Any) -> Iterator[float]:
-    """When a suspended coroutine times out by asyncio's means, in seconds of its loop's clock."""
+def deadlines(coroutine: object) -> Iterator[float]:
+    """Yield the times at which asyncio ends the wait of a suspended coroutine, in seconds of its loop's clock."""
     frame = suspended(coroutine)
     if frame is not None and frame.f_code in (_WAIT, _WAIT_FOR):
-        when = getattr(frame.f_locals.get("timeout_handle"), "when", None)  # uvloop's has one too
+        # By attribute: uvloop's handle has the method, too, but is no `asyncio.TimerHandle`.
+        when = getattr(frame.f_locals.get("timeout_handle"), "when", None)
         if when is not None:
             yield when()
     for context in entered(coroutine):
@@ -216,26 +240,28 @@ def deadlines(coroutine: Any) -> Iterator[float]:
             yield due
 
 
-def sent_to_loop(frame: Frame) -> Any:
-    """The task of the coroutine that a thread has sent to a loop and waits for in this frame; None for no such wait."""
+def sent_to_loop(frame: Frame) -> AnyFuture | None:
+    """Return the task that a thread waits for after `run_coroutine_threadsafe`; None for a frame of another wait."""
     if frame.f_code is not concurrent.futures.Future.result.__code__:
         return None
+    # The concurrent future knows its task only through the callback by which asyncio chains the two.
     found = (_enclosed(callback, "source") for callback in frame.f_locals["self"]._done_callbacks)
     return next((task for task in found if asyncio.isfuture(task)), None)
 
 
 class ObjectWait(NamedTuple):
-    """A wait for an event, a queue, a lock or the like."""
+    """A wait at a synchronization primitive: an event, a queue, a lock, a future."""
 
-    thing: Any
+    thing: object
+    """The primitive."""
     endings: tuple[str, ...]
-    """The object's methods that end the wait."""
+    """Its methods that end the wait."""
     is_bounded: bool
-    """Whether a thread gives up the wait after some time."""
+    """Whether a thread waits with a timeout."""
 
 
 def object_wait(frame: Frame) -> ObjectWait | None:
-    """What one of asyncio's or threading's primitives waits for, if this is the frame of one."""
+    """Return the wait of a frame that is in a primitive of asyncio or threading; None for any other frame."""
     endings = _WAITS.get(frame.f_code)
     if endings is None:
         return None
@@ -247,31 +273,34 @@ _OTHER_FUTURES: set[type] = set()
 
 
 def know_futures(cls: type) -> None:
-    """Have the instances of a class, not those of its subclasses, taken for futures that code may set."""
+    """Treat the instances of a class, but not of its subclasses, as futures that code may set."""
     _OTHER_FUTURES.add(cls)
 
 
-def awaited_future(future: Any) -> ObjectWait | None:
-    """A wait for a future that is not a task; a task would end by itself."""
+def awaited_future(future: object) -> ObjectWait | None:
+    """Return the wait for a future that some code must set; None for a task, which ends by itself."""
     is_plain = isinstance(future, asyncio.Future) and not isinstance(future, asyncio.Task)
     is_plain |= type(future) in _OTHER_FUTURES
     return ObjectWait(future, FUTURE, False) if is_plain else None
 
 
-def is_inside(thing: Any, lock: Any) -> bool:
-    """Whether something is a given lock, or a condition that has it."""
+def is_inside(thing: object, lock: object) -> bool:
+    """Whether an object is a given lock, or a condition that uses it."""
     return lock is thing or lock is getattr(thing, "_lock", None)
 
 
-def times_inside(task: Any, lock: Any) -> int:
-    """How often a suspended task has entered a lock, or a condition that has it, by `with`, and is inside now."""
+def times_inside(task: TaskLike, lock: object) -> int:
+    """Count the `with` blocks of a suspended task that hold a lock, or a condition that uses it, right now.
+
+    A task that waits in `Condition.wait`, or still in `Lock.__aenter__`, is in the block but does not hold the lock.
+    """
     chain = list(coroutines(task))
-    entries = sum(is_inside(context, lock) for coroutine in chain for context in entered(coroutine))
-    inside = [frame for frame in map(suspended, chain) if frame is not None]
-    outside = [frame.f_locals["self"] for frame in inside if frame.f_code in (_CONDITION_WAIT, _ENTER)]
-    return entries - sum(is_inside(context, lock) for context in outside)
+    blocks = sum(is_inside(context, lock) for coroutine in chain for context in entered(coroutine))
+    frames = [frame for frame in map(suspended, chain) if frame is not None]
+    outside = [frame.f_locals["self"] for frame in frames if frame.f_code in (_CONDITION_WAIT, _ENTER)]
+    return blocks - sum(is_inside(context, lock) for context in outside)
 
 
-def current_task(loop: AbstractEventLoop) -> Any:
-    """What a loop is stepping just now; from any thread."""
+def current_task(loop: AbstractEventLoop) -> object:
+    """Return the task or activity that a loop steps right now; None if there is none. Callable from any thread."""
     return asyncio.current_task(loop)

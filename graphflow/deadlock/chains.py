@@ -1,8 +1,11 @@
-"""Calls that cannot succeed, reported at once.
+"""Detection of hopeless calls at their server, without a snapshot.
 
-A request carries what waits for it. If its server's group is full of such runs, it can never be answered.
+A request carries the chain of calls that led to it, with a hop for each run that waits. If its server's group is full
+of runs from that chain, the request waits for itself: it can never be answered, and the server knows at once. This is
+the edge-chasing approach to deadlock detection, with the probe attached to the request.
 
-Source: docs/architecture.md, "The life of a call".
+Source: Chandy, Misra and Haas, "Distributed deadlock detection", ACM TOCS 1 (1983); docs/architecture.md, "The life of
+a call".
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ from graphflow.wire import attachment, chain
 
 
 class Chains:
-    """The chains of one process's calls.
+    """The chains of calls that pass through one process.
 
     Args:
         zid: The id of the process's session.
@@ -27,7 +30,10 @@ class Chains:
         self._process = chain.process_of(zid)
 
     def of(self, call: PendingCall) -> bytes:
-        """What a call that begins to wait carries: nothing unless a handler makes it in its own body."""
+        """Return the chain for a new call; empty unless a handler makes the call in its own body.
+
+        A task that a handler creates runs beside it, so its calls do not keep the handler from returning.
+        """
         run = asyncio.current_task()
         if not isinstance(run, Run):
             return b""
@@ -36,7 +42,7 @@ class Chains:
         return chain.extended((asked or b"")[attachment.SIZE :], hop)
 
     def holders(self, runner: Runner, asked: bytes) -> list[Run]:
-        """The runs that hold every slot which a queued request needs, if all of them wait for that very request.
+        """Return the runs that hold every slot a queued request needs, if all of them wait for that very request.
 
         Args:
             asked: The attachment of the request.
@@ -56,10 +62,11 @@ class Chains:
         return holders if waits and len(holders) >= limit else []
 
     def between(self, holders: list[Run], asked: bytes) -> tuple[list[int], int]:
-        """The runs that a request has come through on its way from its first caller.
+        """Return the runs on the chain of a request, without the holders.
 
         Returns:
-            The numbers of this process's runs on that way, and how many runs there are of other processes.
+            The numbers of this process's runs on the chain, and the number of other processes' runs between a holder
+            and the request.
         """
         numbers = {run.number for run in holders}
         way = chain.hops(asked[attachment.SIZE :])
@@ -69,6 +76,7 @@ class Chains:
         return own, here[first:].count(False)
 
     def _awaits(self, run: Run, hop: chain.Hop) -> bool:
-        """Whether a run still waits for the call that it was seen waiting for: it may have given up."""
-        call = self._ledger.calls.get(waiter_of(run))
+        """Whether a run still waits for the call of its hop: it may have given up since."""
+        waiter = waiter_of(run)
+        call = None if waiter is None else self._ledger.calls.get(waiter)
         return call is not None and (call.gid, call.sequence) == (hop.gid, hop.sequence)

@@ -1,11 +1,13 @@
-"""What a process reports of its handlers and groups, and lets others change, on keys that ROS 2 does not know.
+"""The introspection interface of a process: four Zenoh keys outside ROS 2's names.
 
 @graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
-@graphflow/<domain>/numbers/<zid>    what its nodes have counted, how late its loop is, the time on its clock, and what
-                                     its nodes know to be wrong with themselves; answered likewise
-@graphflow/<domain>/look/<zid>       makes it look for a deadlock that another process found and it must report
-@graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node;
-                                     {"node", "group", "limit"}: let so many run in it at a time, null for any number
+@graphflow/<domain>/numbers/<zid>    the statistics and complaints of its nodes, the lag of its loop and the time of its
+                                     clock; answered while the loop is blocked, too
+@graphflow/<domain>/look/<zid>       search for a deadlock that another process found and that this one must report
+@graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler to another group of its node;
+                                     {"node", "group", "limit"}: set the limit of a group, null for none
+
+Anyone on the network can send requests, so their rate and their size are bounded.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ import inspect
 import json
 import threading
 import time
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TypedDict
 
 from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.search import Search
@@ -28,21 +31,36 @@ from graphflow.wire import attachment
 from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 
 LAG_LIMIT = 0.2
-"""Seconds to wait for the event loop to come round before it is called late."""
+"""Seconds to wait for the event loop to run a callback, at most."""
 ANSWERS, LOOKS, MOVES = 50, 20, 200
-"""How often a second other processes can have the waits or the numbers told anew, a deadlock looked for, or groups
-changed."""
+"""Requests per second that are served: for fresh waits or numbers, for a search, for changes of groups."""
 MOVES_AT_ONCE = 64
-"""Requests that are taken in before others have a turn of the loop."""
+"""Requests that are handled before other callbacks of the loop run."""
 MOVE_BOUND = 10_000
-"""Bytes of a request to change groups."""
+"""Bytes of a request to change groups, at most."""
 LIMIT_BOUND = 1_000_000
-"""The largest limit that a group can be given."""
+"""Largest limit of a group that can be requested."""
 _KINDS = ("timer", "subscription", "service", "action")
+
+HandlerRow = TypedDict(
+    "HandlerRow",
+    {"handler": str, "kind": str, "async": bool, "running": int, "waiting": int, "runs": int, "errors": int},
+)
+"""A handler as plain data."""
+
+
+class GroupRow(TypedDict):
+    """A group as plain data; the last one of a node has no name, and the handlers that are in no group."""
+
+    name: str
+    limit: int | None
+    when_full: str
+    thread: bool
+    handlers: list[HandlerRow]
 
 
 class Inspection:
-    """The answers of one process."""
+    """The server of one process's introspection interface."""
 
     def __init__(self, process: ProcessContext, search: Search) -> None:
         self._process, self._search = process, search
@@ -51,7 +69,7 @@ class Inspection:
         self._waits_allowed, self._numbers_allowed = Allowance(ANSWERS, now_ns), Allowance(ANSWERS, now_ns)
         self._looks_allowed, self._moves_allowed = Allowance(LOOKS, now_ns), Allowance(MOVES, now_ns)
         self._last_waits = self._last_numbers = b"{}"
-        """What is answered to those who ask too often."""
+        """Answers that are repeated to requests above the rate."""
         session, domain = process.session, process.domain
         self._reports = (
             session.open_report(answer_key(domain, WAITS, session.zid), self._waits),
@@ -62,16 +80,18 @@ class Inspection:
         self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox, is_paced=True)
 
     def _waits(self) -> bytes:
-        """Runs on any thread."""
+        """Answer a request for the waits. Runs on any thread."""
         if not self._waits_allowed.take():
             return self._last_waits
         search, watchdog = self._search, self._search.watchdog
-        nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
+        nodes: dict[str, Sequence[Mapping[str, object]]] = {
+            n.full_name: groups_of(n) for n in list(self._process.nodes)
+        }
         others = list(self._process.elsewhere)
         for other in others:
             nodes |= other.groups()
         reports = dict(search.reports)
-        told = {
+        data = {
             **to_json(search.snapshot.take_for_others()),
             "reports": [report.text for report in reports.values()],
             "rings": [list(ring) for ring in reports],
@@ -82,40 +102,40 @@ class Inspection:
             "late": watchdog.late,
             "longest": watchdog.longest,
         }
-        self._last_waits = json.dumps(told).encode()
+        self._last_waits = json.dumps(data).encode()
         return self._last_waits
 
     def _numbers(self) -> bytes:
-        """Runs on any thread."""
+        """Answer a request for the numbers. Runs on any thread."""
         if not self._numbers_allowed.take():
             return self._last_numbers
         lag = self._lag()
         nodes = {node.full_name: node.statistics() for node in list(self._process.nodes)}
         complaints = {node.full_name: list(node.complaints()) for node in list(self._process.nodes)}
-        told = {
+        data = {
             "process": self._process.session.zid,
             "lag": lag,
             "time_ns": time.time_ns(),
             "nodes": nodes,
             "complaints": {name: texts for name, texts in complaints.items() if texts},
         }
-        self._last_numbers = json.dumps(told, default=str).encode()
+        self._last_numbers = json.dumps(data, default=str).encode()
         return self._last_numbers
 
     def _lag(self) -> float:
-        """Seconds that the event loop takes to come round; where it has not, those since it should have."""
+        """Return the seconds that the event loop takes to run a callback, or has taken so far without running it."""
         loop = self._process.loop
         if not loop.is_running():
             return 0.0
-        came = threading.Event()
-        asked = time.monotonic()
-        loop.call_soon_threadsafe(came.set)
+        answered = threading.Event()
+        sent = time.monotonic()
+        loop.call_soon_threadsafe(answered.set)
         if threading.get_ident() != self._thread:
-            came.wait(LAG_LIMIT)
-        return max(time.monotonic() - asked, self._search.watchdog.blocked_for)
+            answered.wait(LAG_LIMIT)
+        return max(time.monotonic() - sent, self._search.watchdog.blocked_for)
 
     def _look(self) -> bytes:
-        """Runs on any thread."""
+        """Search as another process asks. Runs on any thread."""
         if self._looks_allowed.take():
             self._search.look_now()
         return b""
@@ -124,7 +144,7 @@ class Inspection:
         for _ in range(min(MOVES_AT_ONCE, len(self._inbox.items))):
             request = self._inbox.items.popleft()
             if not self._moves_allowed.take():
-                continue  # it ends without an answer
+                continue  # dropped without an answer, which the sender sees as a timeout
             try:
                 if len(request.payload) > MOVE_BOUND:
                     raise InvalidName(f"a request of {len(request.payload)} bytes names no handler")
@@ -134,13 +154,13 @@ class Inspection:
                 request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             else:
                 request.reply(json.dumps(answer).encode(), attachment.pack(0, 0, bytes(16)))
-        if self._inbox.items:  # whoever asks all the time must not hold the loop
+        if self._inbox.items:  # a flood of requests must not occupy the loop
             self._process.loop.call_soon(self._asked)
 
-    def _regroup(self, wanted: Any) -> dict[str, Any]:
-        """Move a handler, or change the limit of a group; returns the groups and how to keep them."""
+    def _regroup(self, wanted: Mapping[str, object]) -> dict[str, object]:
+        """Move a handler, or change the limit of a group; return the groups, and the YAML that keeps the change."""
         name, group = str(wanted["node"]), str(wanted["group"])
-        node = self._named(name)
+        node = self._node(name)
         if "limit" in wanted:
             self._limit(node, group, wanted["limit"])
         else:
@@ -148,7 +168,7 @@ class Inspection:
         regrouping = node.groups.regrouping
         return {"groups": groups_of(node), "where": regrouping.where, "yaml": regrouping.lines(name, "  ")}
 
-    def _named(self, name: str) -> Subject:
+    def _node(self, name: str) -> Subject:
         node = next((n for n in self._process.nodes if n.full_name == name), None)
         if node is None:
             raise InvalidName(f"there is no node {name} in this process")
@@ -188,24 +208,36 @@ class Inspection:
         self._server.close()
 
 
-def groups_of(node: Subject) -> list[dict[str, Any]]:
-    """A node's groups with their handlers, those in no group last, as plain data."""
+def groups_of(node: Subject) -> list[GroupRow]:
+    """Return a node's groups with their handlers as plain data, last the handlers in no group."""
     runners = _handlers(node)
-    found = []
-    for name, group in list(node.groups.by_name.items()):
-        about = {"name": name, "limit": group.limit, "when_full": group.when_full, "thread": group.is_threaded}
-        found.append({**about, "handlers": [_handler(node, r) for r in runners if r.group is group]})
+    groups = list(node.groups.by_name.items())
+    found: list[GroupRow] = [
+        {
+            "name": name,
+            "limit": group.limit,
+            "when_full": group.when_full,
+            "thread": group.is_threaded,
+            "handlers": [_handler(node, r) for r in runners if r.group is group],
+        }
+        for name, group in groups
+    ]
     rest = [_handler(node, r) for r in runners if r.group not in node.groups.by_name.values()]
     return [*found, {"name": "", "limit": 1, "when_full": "wait", "thread": False, "handlers": rest}]
 
 
 def _handlers(node: Subject) -> list[Runner]:
-    """What runs the handlers that the node's class has declared or made."""
+    """Return the runners of the handlers that users wrote."""
     return [r for r in list(node.runners) if r.spec.kind in _KINDS and not r.spec.is_inner and not r.closed]
 
 
-def _handler(node: Subject, runner: Runner) -> dict[str, Any]:
-    is_async = inspect.iscoroutinefunction(getattr(type(node.instance), runner.spec.handler, None))
-    numbers = {"running": len(runner.active), "waiting": len(runner.items), "runs": runner.runs}
-    about = {"handler": runner.spec.handler, "kind": runner.spec.kind, "async": is_async}
-    return {**about, **numbers, "errors": runner.errors}
+def _handler(node: Subject, runner: Runner) -> HandlerRow:
+    return {
+        "handler": runner.spec.handler,
+        "kind": runner.spec.kind,
+        "async": inspect.iscoroutinefunction(getattr(type(node.instance), runner.spec.handler, None)),
+        "running": len(runner.active),
+        "waiting": len(runner.items),
+        "runs": runner.runs,
+        "errors": runner.errors,
+    }

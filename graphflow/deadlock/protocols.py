@@ -1,12 +1,12 @@
-"""What the search sees of a node, and what it needs around it."""
+"""The interfaces between the search and the runtime: protocols, so that the search imports neither nodes nor rclpy."""
 
 from __future__ import annotations
 
 import asyncio
 from asyncio import AbstractEventLoop
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups
@@ -18,16 +18,16 @@ from graphflow.transport.base import Session
 
 
 class Unopened(NamedTuple):
-    """What a node runs only once its `on_start` has returned."""
+    """A handler that a node will run only once its `on_start` has returned."""
 
     title: str
     """Kind and handler: `service add`."""
     services: tuple[str, ...] = ()
-    """The full names of the services that it offers."""
+    """Full names of the services that it will offer."""
 
 
 class Subject(Protocol):
-    """A node, as the search sees it."""
+    """A node, as the search needs it."""
 
     @property
     def full_name(self) -> str:
@@ -35,27 +35,27 @@ class Subject(Protocol):
 
     @property
     def instance(self) -> object:
-        """The user's object: its attributes are looked at, and the source of its class is read."""
+        """User's object, whose attributes and source the search reads."""
 
     @property
     def runners(self) -> Sequence[Runner]:
-        """The runners of its handlers."""
+        """Runners of its handlers."""
 
     @property
-    def starting(self) -> asyncio.Task[Any] | None:
-        """The task in which its `on_start` runs, until that returns."""
+    def starting(self) -> asyncio.Task[object] | None:
+        """Task that runs its `on_start`; None once that has returned."""
 
     @property
     def unopened(self) -> Sequence[Unopened]:
-        """What will run once `on_start` has returned."""
+        """Handlers that will run once `on_start` has returned."""
 
     @property
-    def tasks(self) -> AbstractSet[asyncio.Task[Any]]:
-        """The tasks that run alongside them."""
+    def tasks(self) -> AbstractSet[asyncio.Task[object]]:
+        """Tasks that run alongside the handlers."""
 
     @property
     def groups(self) -> Groups:
-        """The groups whose slots they take."""
+        """Groups whose slots the handlers take."""
 
     @property
     def handlers(self) -> AbstractSet[str]:
@@ -63,30 +63,30 @@ class Subject(Protocol):
 
     @property
     def hooks(self) -> AbstractSet[str]:
-        """Methods that are called outside any handler: checks of parameters, events, whether a goal is wanted."""
+        """Methods called outside any handler: parameter checks, event callbacks, decisions about goals."""
 
-    def statistics(self) -> dict[str, dict[str, Any]]:
-        """Numbers since the start, by the name of each handler, endpoint and group."""
+    def statistics(self) -> Mapping[str, Mapping[str, object]]:
+        """Return counts since the start, by the name of each handler, endpoint and group."""
 
     def complaints(self) -> Sequence[str]:
-        """What is wrong with it that it knows itself, a sentence for each."""
+        """Return the problems that the node has detected in itself, a sentence for each."""
 
 
 class Elsewhere(Protocol):
-    """Callbacks that run elsewhere than on the loop, in threads of somebody else's."""
+    """Callbacks that run in threads of another executor than the loop: rclpy's."""
 
     def waits(self) -> WaitGraph:
-        """Who waits for whom among them. Called on any thread."""
+        """Return the waits of these callbacks. Called on any thread."""
 
-    def groups(self) -> dict[str, list[dict[str, Any]]]:
-        """What they are in, by node, as plain data. Called on any thread."""
+    def groups(self) -> Mapping[str, Sequence[Mapping[str, object]]]:
+        """Return the groups of these callbacks as plain data, by node. Called on any thread."""
 
     def stalls(self) -> list[str]:
-        """Reports of runs among them that keep others waiting for long. Called on any thread."""
+        """Return the reports of runs that keep others waiting for long. Called on any thread."""
 
 
 class ProcessContext(Protocol):
-    """What the nodes of one process share, as far as the search needs it."""
+    """The state that the nodes of one process share, as the search needs it."""
 
     @property
     def session(self) -> Session: ...
@@ -113,7 +113,7 @@ class ProcessContext(Protocol):
     def elsewhere(self) -> Sequence[Elsewhere]: ...
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
-        """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""
+        """Return the requests that have arrived but not reached the loop: runner, the client's GID, sequence number."""
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
-        """Call `listener` for every node or endpoint that comes or goes; returns a function that stops this."""
+        """Call `listener` for every node or endpoint that comes or goes; return a function that stops this."""

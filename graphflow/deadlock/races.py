@@ -1,14 +1,15 @@
-"""Looks for lost updates in the attributes of nodes, while it is switched on (`up --races`, GRAPHFLOW_RACES=1).
+"""Detection of lost updates in the attributes of nodes, an option (`up --races`, GRAPHFLOW_RACES=1).
 
-A handler reads `self.x` and suspends; another writes it meanwhile; the first then writes what it made of the old value.
-The other's write is lost in silence, since no line is wrong by itself.
+A handler reads `self.x` and suspends; another writes it meanwhile; the first then writes a value derived from the old
+one. The other's write is lost in silence, since no line is wrong by itself. In the terms of transactions, the schedule
+is not serializable: read(A), write(B), write(A).
 
 A write is reported only if all of this holds: the same run has read the attribute before; another one has written it
 since; the new value differs from the one it overwrites; and by the source of the method the write derives from the
-read: its right side uses the attribute or a variable made from it, or it is in an `if` or `while` that tests it.
+read: its right side uses the attribute or a variable derived from it, or it is in an `if` or `while` that tests it.
 
-Not seen are changes inside objects (`self.points.append`), handlers in threads, attributes set by
-`setattr` or through another name, and values that reach the write through another method.
+Not detected are changes inside objects (`self.points.append`), handlers in threads, attributes set by `setattr` or
+through another name, and values that reach the write through another method.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ from collections.abc import Set as AbstractSet
 from functools import cache
 from pathlib import Path, PurePath
 from types import FrameType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
+from graphflow.deadlock.asyncio_frames import TaskLike
 from graphflow.errors import Place
 from graphflow.executor.runner import Run
 from graphflow.reading import found_text
@@ -34,7 +36,7 @@ VARIABLE = "GRAPHFLOW_RACES"
 
 
 def is_wanted() -> bool:
-    """Whether the environment asks for the search."""
+    """Whether the environment switches the detection on."""
     return os.environ.get(VARIABLE, "") not in ("", "0")
 
 
@@ -42,16 +44,20 @@ class _Access(NamedTuple):
     """One read or write of an attribute."""
 
     version: int
+    """Number of writes of the attribute so far, this one included."""
     who: str
+    """Name of the run or task for reports."""
     method: str
-    """The name of the handler or the task."""
+    """Name of the handler or of the task's function."""
     place: Place
-    by: object
-    """The run or task."""
+    by: TaskLike | None
+    """Run or task; None outside of any."""
 
 
 def watch(node: object, full_name: str, logger: logging.Logger, ignored: AbstractSet[str]) -> None:
-    """Watch every access to a node's own attributes, by giving the node a class that does so.
+    """Record every access to a node's own attributes.
+
+    The node gets a subclass of its class with the two attribute hooks, so that other instances are not slowed down.
 
     Args:
         node: The user's object.
@@ -60,13 +66,13 @@ def watch(node: object, full_name: str, logger: logging.Logger, ignored: Abstrac
     cls, log = type(node), _Log(node, full_name, logger)
     mine = {name for name in dir(cls) if _is_method(cls, name)} | ignored
 
-    def read(self: Any, name: str) -> Any:
-        value = object.__getattribute__(self, name)
+    def read(self: object, name: str) -> object:
+        value: object = object.__getattribute__(self, name)
         if name not in mine and not name.startswith("__"):
             log.read(name, sys._getframe(1))
         return value
 
-    def write(self: Any, name: str, value: Any) -> None:
+    def write(self: object, name: str, value: object) -> None:
         if name not in mine:
             log.write(name, value, sys._getframe(1))
         object.__setattr__(self, name, value)
@@ -82,7 +88,7 @@ def watch(node: object, full_name: str, logger: logging.Logger, ignored: Abstrac
 
 
 def _is_method(cls: type, name: str) -> bool:
-    """Whether a name is anything other than plain data with a default on the class."""
+    """Whether a class attribute is a method or descriptor rather than the default of plain data."""
     value = next((vars(c)[name] for c in cls.__mro__ if name in vars(c)), None)
     return callable(value) or hasattr(value, "__get__")
 
@@ -93,8 +99,8 @@ class _Log:
     def __init__(self, node: object, full_name: str, logger: logging.Logger) -> None:
         self._node, self._full_name, self._logger = node, full_name, logger
         self._written: dict[str, _Access] = {}
-        self._read: WeakKeyDictionary[Any, dict[str, _Access]] = WeakKeyDictionary()
-        self._told: set[tuple[str, Place, Place]] = set()
+        self._read: WeakKeyDictionary[TaskLike, dict[str, _Access]] = WeakKeyDictionary()
+        self._reported: set[tuple[str, Place, Place]] = set()
 
     def read(self, name: str, frame: FrameType) -> None:
         actor = _actor()
@@ -102,7 +108,7 @@ class _Log:
             last = self._written.get(name)
             self._read.setdefault(actor, {})[name] = self._access(0 if last is None else last.version, actor, frame)
 
-    def write(self, name: str, value: Any, frame: FrameType) -> None:
+    def write(self, name: str, value: object, frame: FrameType) -> None:
         actor, last = _actor(), self._written.get(name)
         access = self._access(1 if last is None else last.version + 1, actor, frame)
         if actor is not None:
@@ -112,17 +118,19 @@ class _Log:
             self._read.setdefault(actor, {})[name] = access
         self._written[name] = access
 
-    def _compare(self, name: str, value: Any, seen: _Access, other: _Access, access: _Access, frame: FrameType) -> None:
+    def _compare(
+        self, name: str, value: object, seen: _Access, other: _Access, access: _Access, frame: FrameType
+    ) -> None:
+        """Report a write over another one, if the value derives from a read before that."""
         now = vars(self._node).get(name, value)
         spot = (name, access.place, other.place)
-        if spot in self._told or now is value or _is_equal(now, value) or not _comes_of_read(name, frame):
+        if spot in self._reported or now is value or _is_equal(now, value) or not _comes_of_read(name, frame):
             return
-        self._told.add(spot)
-        # Told as if by the line that writes, which a reader of /rosout opens: it is above `write` here and in `watch`.
+        self._reported.add(spot)
+        # Logged as if by the line that writes, which users open from /rosout: it is above `write` here and in `watch`.
         self._logger.warning("%s", _text(self._full_name, name, seen, other, access), stacklevel=4)
 
-    def _access(self, version: int, actor: Any, frame: FrameType) -> _Access:
-        # The line of the node's own code, where a helper of its class is the caller.
+    def _access(self, version: int, actor: TaskLike | None, frame: FrameType) -> _Access:
         place = Place(frame.f_code.co_filename, frame.f_lineno)
         if isinstance(actor, Run):
             return _Access(version, actor.runner.title, actor.runner.spec.handler, place, actor)
@@ -130,18 +138,18 @@ class _Log:
         return _Access(version, f"task {method}" if actor is not None else method, method, place, actor)
 
 
-def _actor() -> Any:
-    """The run or task that is current; None for a `def` on the loop, which nothing interrupts, and in threads."""
+def _actor() -> TaskLike | None:
+    """Return the current run or task; None in a `def` handler on the loop, which nothing interrupts, and in threads."""
     try:
         return asyncio.current_task()
     except RuntimeError:
         return None
 
 
-def _is_equal(a: Any, b: Any) -> bool:
+def _is_equal(a: object, b: object) -> bool:
     try:
         return bool(a == b)
-    except Exception:  # objects of users' classes, numpy arrays: comparing them may do anything
+    except Exception:  # comparison of users' objects or numpy arrays may raise anything
         return False
 
 
@@ -162,7 +170,7 @@ def _text(node: str, name: str, seen: _Access, other: _Access, access: _Access) 
 
 
 def _comes_of_read(name: str, frame: FrameType) -> bool:
-    """Whether by the source what is written derives from a read of the same attribute."""
+    """Whether, by the source, the value that a line writes to an attribute derives from a read of the same one."""
     function = _function(frame.f_code.co_filename, frame.f_code.co_firstlineno)
     if function is None:
         return False
@@ -182,7 +190,7 @@ def _comes_of_read(name: str, frame: FrameType) -> bool:
 
 
 def _uses(expression: ast.AST, name: str, derived: set[str]) -> bool:
-    """Whether `self.name`, or a variable made from it, occurs in an expression."""
+    """Whether `self.name`, or a variable derived from it, occurs in an expression."""
     return any(
         (isinstance(n, ast.Attribute) and n.attr == name and isinstance(n.value, ast.Name) and n.value.id == "self")
         or (isinstance(n, ast.Name) and n.id in derived)
@@ -191,7 +199,7 @@ def _uses(expression: ast.AST, name: str, derived: set[str]) -> bool:
 
 
 def _derived(function: ast.AST, name: str) -> set[str]:
-    """The local variables that are made from `self.name`, directly or through each other."""
+    """Return the local variables that derive from `self.name`, directly or through each other."""
     found: set[str] = set()
     while True:
         more = {
@@ -208,7 +216,7 @@ def _derived(function: ast.AST, name: str) -> set[str]:
 
 
 def _statements(function: ast.AST) -> Iterator[tuple[ast.AST, tuple[ast.expr, ...]]]:
-    """The statements of a function, each with the tests of the branches that it is in."""
+    """Yield the nodes of a function, each with the tests of the branches that it is in."""
     todo: list[tuple[ast.AST, tuple[ast.expr, ...]]] = [(function, ())]
     while todo:
         node, guards = todo.pop()

@@ -1,8 +1,13 @@
-"""What the handlers and tasks of this process wait for, read on request, as a `WaitGraph`.
+"""Snapshots: the wait-for graph of this process, built on request from the state of its handlers and tasks.
 
-Nothing is recorded while a handler runs, except the entries of the ledger. What an activity waits for is read
-from the future that it awaits; where that says nothing, from the coroutines in between. A snapshot can be taken on any
-thread, so also while the event loop is blocked.
+Nothing is recorded while a handler runs, except the entries of the ledger. A wait is derived backwards, from the future
+that a task awaits: the ledger knows the futures of calls, goals, services and threads; a future of asyncio's own is
+resolved through the coroutines in between (`asyncio_frames`); and one that neither explains through the source of the
+node's class (`closed_world`). Whatever remains unexplained is `FREE`.
+
+A snapshot can be taken on any thread, so also while the event loop is blocked. The loop may then change what is being
+read: containers are copied before they are iterated over, and a `RuntimeError` from a change in between starts the
+snapshot again.
 """
 
 from __future__ import annotations
@@ -12,24 +17,22 @@ import queue
 import threading
 from collections import Counter
 from functools import cached_property
-from typing import Any
 from weakref import WeakKeyDictionary
 
 from graphflow.analysis.class_source import Unknown
 from graphflow.analysis.frames import Frame, stack_of
 from graphflow.analysis.user_code import Pause, where
 from graphflow.deadlock import asyncio_frames as aio
-from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
+from graphflow.deadlock.asyncio_frames import AnyFuture, TaskLike, current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world.object_waits import setters
 from graphflow.deadlock.closed_world.wakers import Setters, cancellers, entries_of, handler_in, handler_of, method_of
 from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.startup_waits import start_of, unopened
+from graphflow.deadlock.vertices import Item, Vertices, arrived_calls, call_of
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.deadlock.ways import Subtask, Way, gathered, limit_of, subtasks
-from graphflow.errors import DecodeError
 from graphflow.executor.activity import Activity
 from graphflow.executor.clock import WallClock
-from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Run, Runner
 from graphflow.machines.waits.wait_graph import (
     FREE,
@@ -38,112 +41,112 @@ from graphflow.machines.waits.wait_graph import (
     AnyOf,
     Call,
     Condition,
-    GroupView,
     Join,
     Opening,
     QueueView,
     SetBy,
     Slot,
     WaitGraph,
-    call_id,
     calls_of,
     goal_id,
     joined,
     parts_of,
 )
-from graphflow.wire import attachment
 from graphflow.wire.liveliness import Kind
 
 _ATTEMPTS = 5
+"""Attempts at a snapshot while the loop changes what is read."""
 LOOP_LIMIT = 0.2
-"""Seconds that the loop has to take a snapshot of itself."""
+"""Seconds for the loop to take a snapshot of itself."""
 
 
 class Snapshot:
-    """Takes the wait-for graph of one process, and remembers between two of them what has been seen before."""
+    """The maker of a process's snapshots, with the state that it keeps between them: task numbers and ages of waits."""
 
     def __init__(self, process: ProcessContext, watchdog: Watchdog) -> None:
         self._process, self._watchdog = process, watchdog
         self._count = 0
-        """The numbers of tasks that have one."""
-        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        """Number of tasks that were numbered."""
+        self._numbers: WeakKeyDictionary[TaskLike, int] = WeakKeyDictionary()
         self._lock = threading.RLock()
         self._since: dict[tuple[str, Condition], int] = {}
+        """By activity and wait: time at which it was first seen, in nanoseconds."""
 
     def take(self) -> WaitGraph:
-        """The waits of this process, from any thread."""
+        """Take a snapshot, on any thread."""
         with self._lock:
             for _ in range(_ATTEMPTS):
                 try:
-                    own = _Look(self._process, self, self._watchdog).graph()
+                    own = _Builder(self._process, self, self._watchdog).graph()
                     return joined([own, *(other.waits() for other in list(self._process.elsewhere))])
-                except RuntimeError:  # something changed its size meanwhile
+                except RuntimeError:  # a container changed its size while it was copied
                     continue
         return WaitGraph()
 
     def take_for_others(self) -> WaitGraph:
-        """The same for another thread: taken on the loop, whose coroutines must not be inspected while they run."""
+        """Take a snapshot for another thread, but on the loop: its coroutines must not be inspected while they run."""
         if threading.get_ident() == self._process.ledger.thread or self._watchdog.is_blocked:
             return self.take()
         taken: queue.SimpleQueue[WaitGraph] = queue.SimpleQueue()
         try:
             self._process.loop.call_soon_threadsafe(lambda: taken.put(self.take()))
             return taken.get(timeout=LOOP_LIMIT)
-        except (queue.Empty, RuntimeError):  # the loop is blocked, and they stand still; or it is closed
+        except (queue.Empty, RuntimeError):  # the loop is blocked, so its coroutines stand still; or it is closed
             return self.take()
 
-    def number_of(self, task: Any) -> int:
-        """A number that no other task ever has."""
+    def number_of(self, task: TaskLike) -> int:
+        """Return the number of a task, which no other task ever has, unlike its `id()`."""
         if task not in self._numbers:
             self._count += 1
         return self._numbers.setdefault(task, self._count)
 
     def age(self, activity: str, wait: Condition, now_ns: int) -> float:
-        """Seconds since this wait was first seen."""
+        """Return the seconds since a wait was first seen."""
         return (now_ns - self._since.setdefault((activity, wait), now_ns)) / 1e9
 
     def forget(self, keep: set[tuple[str, Condition]]) -> None:
-        """Keep account of these waits only."""
+        """Forget the ages of all waits but these."""
         self._since = {key: when for key, when in self._since.items() if key in keep}
 
 
-class _Look:
-    """One wait-for graph in the making."""
+class _Builder:
+    """The construction of one wait-for graph."""
 
     def __init__(self, process: ProcessContext, memory: Snapshot, watchdog: Watchdog) -> None:
         self._process, self._memory, self._watchdog = process, memory, watchdog
         self._ledger = process.ledger
         self._zid = process.session.zid
+        self._vertices = Vertices(self._zid, memory.number_of)
         self._now_ns = process.clock.monotonic_ns()
         self._nodes = list(process.nodes)
         self._runners = [(node, runner) for node in self._nodes for runner in list(node.runners)]
         self._activities: dict[str, ActivityView] = {}
-        self._groups: dict[str, GroupView] = {}
         self._queues: dict[str, QueueView] = {}
         self._seen: set[tuple[str, Condition]] = set()
         self._limit_ns: int | None = None
-        """When the activity being looked at gives up waiting."""
+        """Deadline of the activity that is being read, in nanoseconds of the clock."""
         self._pause: Pause | None = None
-        """Where the loop pauses in which it waits."""
+        """Line at which it pauses, if it waits in a polling loop."""
         self._inner: dict[str, tuple[Subject, Subtask]] = {}
-        """Tasks below activities that are inside a lock, by id."""
+        """By id: tasks below activities that are vertices of their own, since some condition names them."""
 
     @cached_property
     def _servers(self) -> Counter[str]:
-        """How many servers there are, by service."""
+        """Number of servers, by service."""
         return Counter(entity.name for entity in list(self._process.cache) if entity.kind is Kind.SERVICE)
 
     def graph(self) -> WaitGraph:
-        arrived = self._arrived()
+        """Build the graph."""
+        arrived = arrived_calls(self._process)
         for node, runner in self._runners:
-            calls = [c for c in (self._call_of(runner, item) for item in list(runner.items)) if c]
+            calls = [c for c in (call_of(runner, item) for item in list(runner.items)) if c]
             calls += arrived.get(runner.number, [])
-            id_ = self.queue_id(runner)
+            id_ = self._vertices.queue_id(runner)
             self._queues[id_] = QueueView(
                 id_,
                 runner.title,
                 node.full_name,
-                self._slots(node, runner, runner.group),
+                self._vertices.slots(node, runner, runner.group),
                 tuple(calls),
                 len(runner.items) + len(arrived.get(runner.number, [])),
                 runner.spec.dropped(),
@@ -156,80 +159,33 @@ class _Look:
             for task in list(node.tasks):
                 self._add_task(node, task)
             self._add_start(node)
+        # Conditions name tasks that no loop above has visited; their own conditions may name further ones.
         while unseen := self._inner.keys() - self._activities.keys():
             self._add_inner(min(unseen))
         blocker = self._blocker()
         blocked = {} if blocker is None else {self._zid: blocker}
         self._memory.forget(self._seen)
         regroupings = {node.full_name: node.groups.regrouping for node in self._nodes}
-        return WaitGraph(self._activities, self._groups, self._queues, blocked, regroupings)
-
-    # ids
-
-    def run_id(self, run: Run) -> str:
-        return f"{self._zid}:{run.number}"
-
-    def task_id(self, task: Any) -> str:
-        return self.run_id(task) if isinstance(task, Run) else f"{self._zid}:t{self._memory.number_of(task)}"
-
-    def queue_id(self, runner: Runner) -> str:
-        return f"{self._zid}:q{runner.number}"
-
-    def _slots(self, node: Subject, runner: Runner, group: HandlerGroup | None) -> tuple[str, ...]:
-        """The ids of the groups whose slots a run in `group` takes; its own queue acts as one."""
-        named = () if group is None else (self._named(node, group),)
-        if not runner.is_serial:
-            return named
-        own = f"{self._zid}:own{runner.number}"
-        self._groups[own] = GroupView(own, "", node.full_name, 1)
-        return (*named, own)
-
-    def _named(self, node: Subject, group: HandlerGroup) -> str:
-        name = f"{self._zid}:{node.full_name}:{group.name}"
-        # A group that cancels what runs is never full for good.
-        limit = None if group.when_full == "cancel_running" else group.limit
-        known = group.name if group in node.groups.by_name.values() else ""  # else it is the runtime's own
-        is_declared = known in node.groups.known
-        self._groups[name] = GroupView(name, known, node.full_name, limit, is_declared, group.is_threaded)
-        return name
-
-    def _call_of(self, runner: Runner, item: Any) -> str:
-        """The call or goal that an item of a queue is."""
-        if runner.spec.kind == "service":
-            try:
-                sequence, _, gid = attachment.fields((item.attachment or b"")[: attachment.SIZE])
-            except DecodeError:
-                return ""
-            return call_id(gid, sequence)
-        if runner.spec.kind == "reply":
-            return str(item.call)
-        return goal_id(item.goal_id) if runner.spec.kind == "action" else ""
-
-    def _arrived(self) -> dict[int, list[str]]:
-        """Calls that have arrived and that the loop has not seen yet, by the number of the runner they are for."""
-        found: dict[int, list[str]] = {}
-        for runner, gid, sequence in self._process.arrived():
-            found.setdefault(runner.number, []).append(call_id(gid, sequence))
-        return found
+        return WaitGraph(self._activities, self._vertices.groups, self._queues, blocked, regroupings)
 
     # activities
 
     def _add_run(self, node: Subject, runner: Runner, run: Run) -> None:
-        item = getattr(run, "item", None)
-        serves = "" if item is None else self._call_of(runner, item)
-        holds = self._slots(node, runner, run.group)
-        self._add(self.run_id(run), runner.title, node, run, holds, serves, is_inner=runner.spec.is_inner)
+        item = getattr(run, "item", None)  # a run that ends on the loop right now has deleted it
+        serves = "" if item is None else call_of(runner, item)
+        holds = self._vertices.slots(node, runner, run.group)
+        self._add(self._vertices.run_id(run), runner.title, node, run, holds, serves, is_inner=runner.spec.is_inner)
 
     def _add_start(self, node: Subject) -> None:
         if (task := node.starting) is not None:
             start = start_of(node, self._zid)
-            self._groups[start.id] = start
+            self._vertices.groups[start.id] = start
             self._queues |= {queue.id: queue for queue in unopened(node, self._zid)}
-            self._add(self.task_id(task), "on_start", node, task, (start.id,), "")
+            self._add(self._vertices.task_id(task), "on_start", node, task, (start.id,), "")
 
-    def _add_task(self, node: Subject, task: Any) -> None:
+    def _add_task(self, node: Subject, task: asyncio.Task[object]) -> None:
         name = task.get_name().removeprefix(f"{node.full_name}.")
-        self._add(self.task_id(task), f"task {name}", node, task, (), "")
+        self._add(self._vertices.task_id(task), f"task {name}", node, task, (), "")
 
     def _add_inner(self, id_: str) -> None:
         node, inner = self._inner[id_]
@@ -240,13 +196,18 @@ class _Look:
         id_: str,
         label: str,
         node: Subject,
-        task: Any,
+        task: TaskLike,
         holds: tuple[str, ...],
         serves: str,
         *,
         is_inner: bool = False,
         below: Subtask | None = None,
     ) -> None:
+        """Add an activity with its wait.
+
+        Args:
+            below: The activity as a task below another one, whose deadlines bound its wait, too.
+        """
         self._pause, self._limit_ns = None, below and below.limit_ns
         wait = self._condition(task, Way(node, task, is_bounded=below is not None and below.is_bounded))
         self._seen.add((id_, wait))
@@ -269,26 +230,25 @@ class _Look:
             found.called,
         )
 
-    def _times(self, id_: str, wait: Condition, task: Any) -> tuple[float, float | None]:
-        """Seconds that an activity has waited, and seconds left until it gives up; None for no limit."""
+    def _times(self, id_: str, wait: Condition, task: TaskLike) -> tuple[float, float | None]:
+        """Return the seconds that an activity has waited, and those until its deadline, or None for no deadline."""
         began, deadline = self._bounds(wait)
         if wait is not FREE and self._limit_ns is not None:
             deadline = min(self._limit_ns, deadline or self._limit_ns)
         if began is None:
             age = 0.0 if wait is FREE else self._memory.age(id_, wait, self._now_ns)
-            if isinstance(wait, SetBy) and self._knows_begin(task):
+            if isinstance(wait, SetBy) and isinstance(task, Activity) and self._is_steady(task):
                 age = max(age, self._process.loop.time() - task.suspended_at)
         else:
             age = (self._now_ns - began) / 1e9
         return age, None if deadline is None else (deadline - self._now_ns) / 1e9
 
-    def _knows_begin(self, task: Any) -> bool:
-        """Whether an activity has waited for the same since it was suspended, by the clock that counts here."""
-        is_real = isinstance(self._process.clock, WallClock)
-        return is_real and isinstance(task, Activity) and not aio.stands_for_others(waiter_of(task))
+    def _is_steady(self, activity: Activity) -> bool:
+        """Whether an activity has had the same wait since it was suspended, and by the loop's clock."""
+        return isinstance(self._process.clock, WallClock) and not aio.stands_for_others(waiter_of(activity))
 
     def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
-        """When the first of the awaited calls began, and when the first times out."""
+        """Return the time at which the first of the awaited calls began, and that of their first deadline."""
         wanted = {call.id for call in calls_of(wait)}
         services = {part.service for part in parts_of(wait) if isinstance(part, Opening)}
         found = [c for c in list(self._ledger.calls.values()) if c.id in wanted]
@@ -300,14 +260,15 @@ class _Look:
 
     # conditions
 
-    def _condition(self, task: Any, way: Way) -> Condition:
-        """What a task or an activity ultimately waits for; `way` leads to it."""
-        if id(task) in way.tasks or task.done():
+    def _condition(self, task: TaskLike, way: Way) -> Condition:
+        """Return the condition of a task or an activity to which `way` leads."""
+        if id(task) in way.tasks or task.done():  # tasks that await each other are no handlers' concern
             return FREE
         if isinstance(task, Activity) and task.returning_to is not None:
             for owner in self._nodes:
                 if task.returning_to in owner.groups.by_name.values():
-                    return Slot(self._named(owner, task.returning_to), getattr(task, "number", 0))
+                    ticket = task.number if isinstance(task, Run) else 0
+                    return Slot(self._vertices.group_id(owner, task.returning_to), ticket)
         waiter = waiter_of(task)
         if waiter is None:
             return FREE
@@ -317,6 +278,7 @@ class _Look:
         way = Way(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
         if limit_ns is not None:
             self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
+        # The innermost joint wait decides: its waiter is a future of asyncio's own that says nothing by itself.
         for frame in reversed(frames):
             together = aio.joint_wait(frame)
             if together is not None:
@@ -326,36 +288,34 @@ class _Look:
     def _of_joint_wait(self, wait: aio.JointWait, way: Way) -> Condition:
         ends = [f for f in wait.tasks if f.done() and (wait.wants == "any" or (wait.fails_early and aio.has_failed(f)))]
         if ends:
-            return FREE  # the waiter's next step is due
+            return FREE  # the wait is over, and the waiter's next step is due
         conditions = tuple(self._of_future(f, way) for f in wait.tasks if not f.done())
         return All(conditions) if wait.wants == "all" else AnyOf(conditions)
 
-    def _frames_of(self, task: Any) -> list[Frame]:
-        """The frames of a task, the outermost first; of one that waits for a thread, the thread's too."""
+    def _frames_of(self, task: TaskLike) -> list[Frame]:
+        """Return the frames of a task, the outermost first, and those of the thread that it waits for, if any."""
         frames = frames_of(task)
         waiter = waiter_of(task)
-        thread = self._ledger.threads.get(aio.shielded(waiter) or waiter)
+        awaited = aio.shielded(waiter) or waiter
+        thread = None if awaited is None else self._ledger.threads.get(awaited)
         if thread is not None and thread.ident is not None:
             frames += stack_of(thread.ident)
         return frames
 
-    def _limit_of(self, task: Any) -> int | None:
+    def _limit_of(self, task: TaskLike) -> int | None:
         return limit_of(task, self._now_ns, self._process.loop.time())
 
-    def _of_future(self, future: Any, way: Way) -> Condition:
+    def _of_future(self, future: AnyFuture, way: Way) -> Condition:
+        """Return the condition that a future stands for: by the ledger, by asyncio, or by the source."""
         ledger = self._ledger
         if future in ledger.threads:
-            sent = next((task for task in map(aio.sent_to_loop, reversed(way.frames)) if task is not None), None)
-            if sent is not None and id(sent) not in way.tasks:
-                return self._of_future(sent, way)
-            asking = ledger.asking.get(ledger.threads[future].ident or 0)
-            return self._closed_world(way, None) if asking is None else self._condition(asking, way)
+            return self._of_thread(future, way)
         if future in ledger.calls:
             call = ledger.calls[future]
             return Call(call.id, call.service, max(1, self._servers[call.service]))
         if future in ledger.openings:
             service = ledger.openings[future].service
-            return FREE if self._servers[service] else Opening(service)  # it is there, and will be reached
+            return FREE if self._servers[service] else Opening(service)  # a server is known, and is being connected to
         if future in ledger.goals:
             goal = ledger.goals[future]
             servers = max(1, self._servers[f"{goal.action}/_action/send_goal"])  # several may have accepted it
@@ -363,25 +323,38 @@ class _Look:
         if future in ledger.served:
             return Call(goal_id(ledger.served[future]), "")
         if isinstance(future, Activity) or asyncio.isfuture(future):
-            if hasattr(future, "get_coro"):
-                known = self._known(future)
-                return known if known is not None else self._or_cancelled(self._condition(future, way), future, way)
-            together = aio.gathered(future)
-            if together is not None:
-                return self._of_joint_wait(together, way)
-            inner = aio.shielded(future)
-            return self._closed_world(way, future) if inner is None else self._of_future(inner, way)
+            return self._of_asyncio(future, way)
         return FREE
 
-    def _known(self, task: Any) -> Condition | None:
-        """An activity of the snapshot by its own name; any other task is looked into."""
+    def _of_thread(self, future: AnyFuture, way: Way) -> Condition:
+        """Return the condition of a thread, which may wait for the loop in turn."""
+        ledger = self._ledger
+        sent = next((task for task in map(aio.sent_to_loop, reversed(way.frames)) if task is not None), None)
+        if sent is not None and id(sent) not in way.tasks:
+            return self._of_future(sent, way)
+        asking = ledger.asking.get(ledger.threads[future].ident or 0)
+        return self._closed_world(way, None) if asking is None else self._condition(asking, way)
+
+    def _of_asyncio(self, future: AnyFuture, way: Way) -> Condition:
+        """Return the condition of a task, a `gather`, a `shield`, or a future that the node's code must set."""
+        if isinstance(future, TaskLike):
+            known = self._join(future)
+            return known if known is not None else self._or_cancelled(self._condition(future, way), future, way)
+        together = aio.gathered(future)
+        if together is not None:
+            return self._of_joint_wait(together, way)
+        inner = aio.shielded(future)
+        return self._closed_world(way, future) if inner is None else self._of_future(inner, way)
+
+    def _join(self, task: TaskLike) -> Condition | None:
+        """Return the wait for a task that is a vertex of its own; None for any other, whose wait is followed."""
         for node in self._nodes:
             if task in node.tasks or task is node.starting:
-                return Join(self.task_id(task))
+                return Join(self._vertices.task_id(task))
         return None
 
-    def _closed_world(self, way: Way, waiter: Any) -> Condition:
-        """A wait for something that, as far as the source code shows, only handlers of the node bring about."""
+    def _closed_world(self, way: Way, waiter: AnyFuture | None) -> Condition:
+        """Return the wait for a change that, by the source code, only handlers of the node make."""
         found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
         if found is None or found.is_shared(way.node, self._nodes) or any(task.done() for task in found.tasks):
             return FREE
@@ -391,8 +364,8 @@ class _Look:
             ends.insert(0, self._set_by(found, way))
         return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
 
-    def _or_cancelled(self, condition: Condition, thing: Any, way: Way) -> Condition:
-        """The wait for a task or goal of the node's, which others of its handlers may cancel."""
+    def _or_cancelled(self, condition: Condition, thing: object, way: Way) -> Condition:
+        """Return the wait for a task or goal, or for one of the node's handlers to cancel it."""
         if condition is FREE:
             return FREE
         try:
@@ -402,23 +375,23 @@ class _Look:
         return condition if found is None else AnyOf((condition, self._set_by(found, way)))
 
     def _set_by(self, found: Setters, way: Way) -> Condition:
+        """Return the wait for setters: by the queues of their handlers, and by the activities that run them."""
         node = way.node
         runners = [r for n, r in self._runners if n is node and handler_of(r) in found.handlers]
         # Runs under way count too, even those that have released their slot.
-        others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
+        others: list[TaskLike] = [run for r in runners for run in list(r.active) if run is not way.root]
         others += [t for t in list(node.tasks) if t is not way.root and method_of(t) in found.handlers]
         if node.starting not in (None, way.root) and "on_start" in found.handlers:
             others.append(node.starting)
         waiting = [queue for queue in unopened(node, self._zid) if handler_in(queue.label) in found.handlers]
-        known = entries_of(node)
-        if not found.handlers <= known:  # one of them does not exist and cannot be waited for
+        if not found.handlers <= entries_of(node):  # one of them has no queue yet, so its next run is not in the graph
             return FREE
         if found.parts:
             above = [activity for activity in (way.root, *others) if activity is not None]
             parts = gathered(found.parts, above, self._limit_of, self._process.loop)
             if parts is None:
                 return FREE
-            self._inner |= {self.task_id(part.task): (node, part) for part in parts}
+            self._inner |= {self._vertices.task_id(part.task): (node, part) for part in parts}
             others += [part.task for part in parts if id(part.task) not in way.tasks]
         is_held = False
         if found.lock is not None:
@@ -427,13 +400,13 @@ class _Look:
             if not is_held and not found.handlers:  # something else is in it, and no explicit release is seen
                 return FREE
             others += inside
-        queues = sorted([*(self.queue_id(r) for r in runners), *(queue.id for queue in waiting)])
-        activities = sorted({self.task_id(other) for other in others})
+        queues = sorted([*(self._vertices.queue_id(r) for r in runners), *(queue.id for queue in waiting)])
+        activities = sorted({self._vertices.task_id(other) for other in others})
         return SetBy(found.what, tuple(queues), tuple(activities), is_held, found.deed, found.gives_up)
 
-    def _inside(self, lock: Any) -> list[Any]:
-        """The activities, and tasks below them, that are inside of a lock, or of its condition, by `with`."""
-        activities: list[tuple[Subject, Any]] = [(node, run) for node, r in self._runners for run in list(r.active)]
+    def _inside(self, lock: object) -> list[TaskLike]:
+        """Return the activities, and tasks below them, that hold a lock by `with`, each once per block."""
+        activities: list[tuple[Subject, TaskLike]] = [(n, run) for n, r in self._runners for run in list(r.active)]
         activities += [(node, task) for node in self._nodes for task in list(node.tasks)]
         known = {id(task) for _, task in activities}
         found = [task for _, task in activities for _ in range(aio.times_inside(task, lock))]
@@ -441,14 +414,17 @@ class _Look:
             for inner in subtasks(activity, self._limit_of):
                 if id(inner.task) not in known and (times := aio.times_inside(inner.task, lock)):
                     known.add(id(inner.task))
-                    self._inner[self.task_id(inner.task)] = node, inner
+                    self._inner[self._vertices.task_id(inner.task)] = node, inner
                     found += [inner.task] * times
         return found
 
     # the loop
 
     def _blocker(self) -> str | None:
-        """The activity that blocks the event loop; None when it is not blocked, or this is its thread."""
+        """Add the activity that blocks the event loop; return its id, or None if it is not blocked.
+
+        A handler called synchronously is no `Run` yet: `ledger.at_work` and `Runner.at_hand` name it.
+        """
         if threading.get_ident() == self._ledger.thread or not self._watchdog.is_blocked:
             return None
         task, runner = current_task(self._process.loop), self._ledger.at_work
@@ -460,16 +436,16 @@ class _Look:
             runner, item = run.runner, getattr(run, "item", None)
         else:
             return None
-        if item is None:  # a run that has ended and whose result is being sent
+        if item is None:  # the run has ended, and its result is being sent
             return None
         node = next((n for n, r in self._runners if r is runner), None)
         if node is None:
             return None
         return self._add_blocker(node, runner, run, item)
 
-    def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Any) -> str:
+    def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Item) -> str:
         stack = stack_of(self._ledger.thread)
-        id_ = self.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
+        id_ = self._vertices.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
         way = Way(node, run, tuple(stack))
         self._pause = None
         if self._ledger.blocking is None:
@@ -482,9 +458,9 @@ class _Look:
             id_,
             runner.title,
             node.full_name,
-            self._slots(node, runner, runner.group),
+            self._vertices.slots(node, runner, runner.group),
             wait,
-            self._call_of(runner, item),
+            call_of(runner, item),
             found.place,
             found.function,
             self._watchdog.blocked_for,

@@ -1,4 +1,4 @@
-"""Groups that the same runs hold for long while other handlers wait: not a deadlock, but worth a warning."""
+"""Stalls: groups that the same runs hold for long while other handlers wait; no deadlock, but worth a warning."""
 
 from __future__ import annotations
 
@@ -12,41 +12,43 @@ from graphflow.times import NANOSECONDS
 logger = logging.getLogger("graphflow")
 
 STALL_AFTER = 5.0
-"""Seconds that others wait before a stall is reported."""
+"""Seconds for which others must wait before a stall is reported."""
 LOOK_EVERY = 1.0
-"""Seconds between two looks whether a stall is over."""
+"""Seconds between two checks whether a stall is over."""
 
 
 @dataclass
 class _Stall:
+    """A group that the same runs hold while others wait."""
+
     holders: frozenset[str]
     since_ns: int
-    """When something was first seen to wait for them."""
+    """Time at which something was first seen to wait for them."""
     dropped: dict[str, int]
-    """What each queue had dropped by then."""
+    """By queue: number of items it had dropped by then."""
     text: str = ""
-    """The report."""
+    """Report; empty until the stall has lasted long enough."""
 
 
 class Stalls:
-    """What keeps what waiting in one process. One per process."""
+    """The stalls of one process. One per process."""
 
     def __init__(self) -> None:
         self._by_group: dict[str, _Stall] = {}
 
     @property
     def texts(self) -> list[str]:
-        """The stalls that last, as they were reported."""
+        """Reports of the stalls that still last."""
         return [kept.text for kept in list(self._by_group.values()) if kept.text]
 
     def look(self, graph: WaitGraph, dead: set[str], now_ns: int) -> float | None:
-        """Report new stalls, and those that are over.
+        """Report new stalls, and the ends of reported ones.
 
         Args:
             dead: Activities that are in a reported deadlock.
 
         Returns:
-            Seconds until the next look; None if nothing keeps anything waiting.
+            Seconds until the next check; None if no group keeps anything waiting.
         """
         holders: dict[str, list[ActivityView]] = {}
         for activity in graph.activities.values():
@@ -78,13 +80,13 @@ class Stalls:
 
 
 def _wanted(graph: WaitGraph, holders: dict[str, list[ActivityView]]) -> dict[str, list[QueueView]]:
-    """Groups that have a name and no free slot, with the queues of handlers that want one and hold none."""
+    """Return the full groups that users named, with the queues of handlers that want a slot and hold none."""
     found: dict[str, list[QueueView]] = {}
     for queue in graph.queues.values():
         for name in queue.needs if queue.waiting else ():
             group, by = graph.groups[name], holders.get(name, [])
             is_full = group.limit is not None and len(by) >= group.limit
-            # A handler's own runs queueing for each other is what groups are for.
+            # Runs of one handler that queue for each other are the purpose of a group, not a stall.
             if group.name and not group.sort and is_full and any(a.label != queue.label for a in by):
                 found.setdefault(name, []).append(queue)
     return found

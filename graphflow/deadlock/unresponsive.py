@@ -1,6 +1,7 @@
-"""Processes that something here waits for and that do not answer: stopped, unreachable, or held by a C extension.
+"""Unresponsive processes: something here waits for them, and they do not answer the search.
 
-Nothing is known about their deadlocks, so they count as alive; but the user must know why others wait for them.
+They are stopped, unreachable, or inside a C extension that holds the GIL. Nothing is known about their waits, so they
+count as alive and no deadlock is found; but users must learn why others wait for them.
 """
 
 from __future__ import annotations
@@ -19,18 +20,18 @@ from graphflow.wire.process import ProcessToken
 logger = logging.getLogger("graphflow")
 
 SILENT_AFTER = 1.0
-"""Seconds between two unanswered questions before a process is reported."""
+"""Seconds between two unanswered questions after which a process is reported."""
 
 
 class Unresponsive:
-    """The processes that did not answer. One per process."""
+    """The awaited processes that did not answer. One per process."""
 
     def __init__(self, here: ProcessContext) -> None:
         self._here = here
         self._processes: dict[str, ProcessToken] = {}
         self._since: dict[str, int] = {}
-        """When each silent process was first found to be silent, in nanoseconds."""
-        self._told: set[str] = set()
+        """Time at which each silent process was first found silent, in nanoseconds."""
+        self._reported: set[str] = set()
         self._watch: Closable | None = None
 
     def __bool__(self) -> bool:
@@ -38,13 +39,13 @@ class Unresponsive:
         return bool(self._since)
 
     def compare(self, mine: WaitGraph, answered: set[str]) -> None:
-        """All processes were asked: see which of the awaited ones have answered.
+        """Compare the awaited processes with those that answered when all were asked; report the silent ones.
 
         Args:
             mine: The waits of this process.
             answered: The sessions that answered.
         """
-        if self._watch is None:  # existing ones are announced soon, and are looked for the next time
+        if self._watch is None:  # tokens of existing processes arrive soon, in time for the next comparison
             domain = self._here.domain
             self._watch = self._here.session.watch(process.watch_key(domain), self._changed)
         for zid in answered.intersection(self._since):
@@ -54,8 +55,8 @@ class Unresponsive:
             if zid in answered or zid not in self._processes:
                 continue
             seconds = (now - self._since.setdefault(zid, now)) / NANOSECONDS
-            if seconds >= SILENT_AFTER and zid not in self._told:
-                self._told.add(zid)
+            if seconds >= SILENT_AFTER and zid not in self._reported:
+                self._reported.add(zid)
                 server = self._processes[zid]
                 text = (
                     f"NODE UNRESPONSIVE: {self._nodes(zid)} ({server}) has not answered for {seconds:.1f} s, and "
@@ -64,7 +65,7 @@ class Unresponsive:
                 logger.warning("%s", text)
 
     def _waited_for(self, mine: WaitGraph) -> dict[str, tuple[ActivityView, str]]:
-        """Sessions that must answer calls, each with one activity that waits, and for what."""
+        """Return the sessions that must answer calls, each with one activity that waits, and the name it waits for."""
         found: dict[str, tuple[ActivityView, str]] = {}
         for activity in mine.activities.values():
             for call in calls_of(activity.wait):
@@ -90,6 +91,6 @@ class Unresponsive:
 
     def _goes_on(self, zid: str, how: str) -> None:
         self._since.pop(zid, None)
-        if zid in self._told:
-            self._told.discard(zid)
+        if zid in self._reported:
+            self._reported.discard(zid)
             logger.warning("%s (%s) %s", self._nodes(zid), self._processes[zid], how)

@@ -1,7 +1,7 @@
-"""Watches the event loop from a thread: how long it has not come round, and what keeps it.
+"""The watchdog: a thread that detects when the event loop is blocked, for how long, and by which line.
 
-Looking costs a wake-up twice a second. An idle loop waits in its selector and is left alone; only one that is found
-busy is pinged, and counts as blocked when it does not answer.
+It wakes up twice a second. An idle loop is in its selector and is left alone, so that it is not woken up; only a busy
+one is pinged, and counts as blocked until it answers.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from graphflow.analysis.user_code import called_by_loop, innermost, is_ours, is_
 logger = logging.getLogger("graphflow")
 
 LOOK_EVERY = 0.5
-"""Seconds between two looks at a loop that is idle, on average."""
+"""Seconds between two checks of a loop, on average."""
 ANSWER_WITHIN = 0.1
-"""Seconds after which a busy loop that was pinged counts as late."""
+"""Seconds after which a busy loop that was pinged counts as blocked."""
 REPORT_AFTER = 1.0
 """Seconds after which a blocked loop is reported with its stack."""
 LOOKS, TOO_MANY = 10, 7
-"""Of so many looks in a row, how many that find the loop blocked, each for a shorter time, are reported."""
+"""Checks in a row, and the number of them that must find the loop blocked to be reported, if each block is shorter."""
 STACK_SHOWN = 6
-"""Lines of that stack, from the user's code inwards."""
+"""Lines of the stack in a report, from the user's code inwards."""
 _REMEDY = "Await what takes long, or move it to a thread: thread=True, or await self.offload(...)"
 _LOCKED = re.compile(r"(?:^with\s+|^)(?P<name>\w+(?:\.\w+)*)(?:\.acquire\(|\s*:)")
-"""A line that waits for a lock."""
+"""Pattern of a line that waits for a lock."""
 _LOCKS = (type(threading.Lock()), type(threading.RLock()))
 _IDLE = ("select", "poll", "_poll", "run_forever", "_run_once", "run_until_complete")
-"""Functions in which asyncio's loop waits for something to happen."""
+"""Functions in which asyncio's loop waits for events."""
 RING_ANYWAY = 4
-"""Every so many looks a loop that seems to idle is pinged, where a built-in function that blocks it looks the same."""
+"""Checks between two pings of a foreign loop that seems idle: a built-in function that blocks it looks the same."""
 
 
 class Watchdog:
@@ -55,21 +55,23 @@ class Watchdog:
         self._loop_thread = threading.get_ident()
         self._ended = threading.Event()
         self._rung_at: float | None = None
+        """Time of the ping that the loop has not answered."""
         self._reported = False
+        """Whether the present block was reported."""
         self._resting: tuple[CodeType, int] | None = None
-        """The place in Python from which a loop that is not written in it, such as uvloop's, calls back, and in which
-        its thread stays while it waits."""
+        """Code and instruction at which the thread of a loop not written in Python, such as uvloop's, waits for events:
+        its own frames are invisible, so an idle loop can only be recognized by the caller of its callbacks."""
         self._rests = 0
-        """How often the loop was found there."""
+        """Number of checks that found the loop there."""
         self._looks: deque[tuple[str, float]] = deque(maxlen=LOOKS)
-        """The line of the user's in which each of the last looks has found the loop blocked, and for how many seconds;
-        an empty line for those that did not."""
+        """Results of the last checks: the user's line that blocked the loop, and for how many seconds; an empty line
+        if it was not blocked."""
         self._told: set[str] = set()
-        """The lines that were reported."""
+        """Lines that were reported for blocking the loop often."""
         self.late = 0
-        """How often the loop has taken more than `ANSWER_WITHIN` seconds to come round."""
+        """Number of pings that took more than `ANSWER_WITHIN` seconds."""
         self.longest = 0.0
-        """The longest of those times, in seconds."""
+        """Longest time of those, in seconds."""
         self._thread = threading.Thread(target=self._watch, name="graphflow-watchdog", daemon=True)
 
     def start(self) -> None:
@@ -88,20 +90,20 @@ class Watchdog:
 
     def _watch(self) -> None:
         began = time.monotonic()
-        # At random, since a loop may be free for a moment just as often.
+        # At random intervals: a fixed one could beat with a periodic block and always find the loop free.
         while not self._ended.wait(pause := LOOK_EVERY * random.uniform(0.5, 1.5)):  # noqa: S311
-            held = time.monotonic() - began - pause
-            if held > REPORT_AFTER:
-                logger.warning("nothing in this process could run for %.1f s: it was stopped, or C code held it", held)
+            lost = time.monotonic() - began - pause
+            if lost > REPORT_AFTER:
+                logger.warning("nothing in this process could run for %.1f s: it was stopped, or C code held it", lost)
             if self._is_busy():
-                self._ring_and_wait()
+                self._ping()
             else:
                 self._looks.append(("", 0.0))
             began = time.monotonic()
 
     def _is_busy(self) -> bool:
-        """Whether the loop is doing something right now."""
-        if not self._loop.is_running():  # it has been stopped, and may go on later
+        """Whether the loop may be doing something right now."""
+        if not self._loop.is_running():  # stopped, and perhaps resumed later
             return False
         frame = sys._current_frames().get(self._loop_thread)
         if frame is not None and (frame.f_code, frame.f_lasti) == self._resting:
@@ -109,7 +111,8 @@ class Watchdog:
             return self._rests % RING_ANYWAY == 0
         return frame is not None and frame.f_code.co_name not in _IDLE
 
-    def _ring_and_wait(self) -> None:
+    def _ping(self) -> None:
+        """Ping the loop, and wait for its answer; report it if that takes long."""
         answered = threading.Event()
         self._rung_at = time.monotonic()
         try:
@@ -134,17 +137,17 @@ class Watchdog:
             self._looks.clear()
             logger.warning("the event loop runs again after %.1f s", took)
         else:
-            self._add_up(place, took)
+            self._count_short(place, took)
 
     def _answer(self, answered: threading.Event) -> None:
-        """Runs on the loop."""
+        """Answer a ping. Runs on the loop."""
         caller = sys._getframe().f_back
         if caller is not None and not isinstance(self._loop, BaseEventLoop):
             self._resting = caller.f_code, caller.f_lasti
         answered.set()
 
-    def _add_up(self, place: str, took: float) -> None:
-        """Tell of blocks that are short, and of which there is one nearly whenever the loop is looked at."""
+    def _count_short(self, place: str, took: float) -> None:
+        """Report short blocks if nearly every check finds one."""
         self._looks.append((place, took))
         blocked = [place for place, _ in self._looks if place]
         if len(blocked) < TOO_MANY:
@@ -158,17 +161,18 @@ class Watchdog:
             logger.warning(text, len(blocked), LOOKS, longest, most, _REMEDY)
 
     def _place(self) -> str:
-        """The user's line in which the loop's thread is; empty if it is in none."""
+        """Return the user's line that the loop's thread is in; empty if it is in none."""
         frame = innermost(called_by_loop(stack_of(self._loop_thread)))
         return "" if frame is None else f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}"
 
     def _stack(self) -> str:
+        """Return the report of a loop that is blocked now, with the stack from the user's code inwards."""
         frames = called_by_loop(stack_of(self._loop_thread))
         files = [frame.f_code.co_filename for frame in frames]
         shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
-        begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # before it is what has started graphflow
+        begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # the frames before started graphflow
         last = max((i for i, file in enumerate(files) if i >= begun and is_users(file)), default=-1)
-        above = next((i for i, file in enumerate(files) if is_users(file)), 0)  # asyncio's own come first
+        above = next((i for i, file in enumerate(files) if is_users(file)), 0)  # skips asyncio's own frames
         first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=above)
         where = f" in {shown[last]}" if last >= 0 else ""
         remedy = _of_lock(frames[last]) or _REMEDY if last >= 0 else _REMEDY
@@ -180,7 +184,7 @@ class Watchdog:
 
     @property
     def is_closed(self) -> bool:
-        """Whether it has been told to stop watching."""
+        """Whether the watchdog was stopped."""
         return self._ended.is_set()
 
     def close(self) -> None:
@@ -189,14 +193,14 @@ class Watchdog:
 
 
 def _of_lock(frame: Frame) -> str:
-    """What to do about a lock of threads that the loop waits for in a line; empty if it waits for something else."""
+    """Return the remedy for a `threading` lock that the loop waits for in a line; empty for any other wait."""
     line = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
     found = _LOCKED.match(line)
     if found is None:
         return ""
     first, *rest = found["name"].split(".")
     thing = {**frame.f_globals, **frame.f_locals}.get(first)
-    for part in rest:  # without running any code of the user's
+    for part in rest:  # by `__dict__`, since `getattr` could run a property of the user's
         thing = getattr(thing, "__dict__", {}).get(part)
     if not isinstance(thing, _LOCKS):
         return ""

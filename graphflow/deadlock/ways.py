@@ -1,4 +1,9 @@
-"""How waits are reached: from an activity, through the tasks that it waits for."""
+"""Paths from an activity to its wait, through the tasks that it waits for.
+
+Tasks that a user creates are not vertices of the wait-for graph by themselves: `await task` is followed into the task,
+and its wait becomes the activity's. `Way` records the path, so that no task is followed twice and deadlines on the way
+are known; `subtasks` enumerates the tasks at the other end.
+"""
 
 from __future__ import annotations
 
@@ -6,47 +11,47 @@ import asyncio
 from collections.abc import Callable, Iterable, Iterator
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from graphflow.analysis.frames import Frame
 from graphflow.deadlock import asyncio_frames as aio
+from graphflow.deadlock.asyncio_frames import TaskLike
 from graphflow.deadlock.closed_world.wakers import method_of
 from graphflow.deadlock.protocols import Subject
 from graphflow.executor.clock import ClockTimeout
 from graphflow.times import to_ns
 
+LimitOf: TypeAlias = Callable[[TaskLike], int | None]
+"""Function for the time at which a task gives up waiting, in nanoseconds of the clock; None for never."""
+
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """How a wait was reached: from a run of a handler, through the tasks that it waits for."""
+    """The path from a run of a handler to its wait, through the tasks that it waits for."""
 
     node: Subject
-    root: Any
-    """The activity."""
+    root: TaskLike | None
+    """The activity; None for a handler that runs synchronously on the loop."""
     frames: tuple[Frame, ...] = ()
-    """The frames of all of them, the outermost first."""
+    """Frames of the activity and of the tasks, the outermost first."""
     tasks: frozenset[int] = frozenset()
-    """The ids of those tasks."""
+    """Ids (`id()`) of the activity and the tasks."""
     is_bounded: bool = False
-    """Whether one of them gives up after some time, or may."""
+    """Whether one of them has a deadline, or may have one."""
 
 
 class Subtask(NamedTuple):
     """A task of the user's that an activity waits for, directly or through others."""
 
-    task: Any
+    task: TaskLike
     limit_ns: int | None
-    """When the first of those that wait for it gives up, in nanoseconds of the clock."""
+    """Time of the first deadline of the tasks that wait for it, in nanoseconds of the clock."""
     is_bounded: bool
-    """Whether one of them gives up after some time, or may."""
+    """Whether one of them has a deadline, or may have one."""
 
 
-def subtasks(activity: Any, limit_of: Callable[[Any], int | None]) -> Iterator[Subtask]:
-    """The tasks that an activity waits for, and those that they wait for.
-
-    Args:
-        limit_of: Says when a task gives up waiting.
-    """
+def subtasks(activity: TaskLike, limit_of: LimitOf) -> Iterator[Subtask]:
+    """Yield the tasks that an activity waits for, and those that they wait for."""
     seen = {id(activity)}
     todo = [Subtask(activity, None, False)]
     while todo:
@@ -64,14 +69,14 @@ def subtasks(activity: Any, limit_of: Callable[[Any], int | None]) -> Iterator[S
 
 def gathered(
     methods: AbstractSet[str],
-    activities: Iterable[Any],
-    limit_of: Callable[[Any], int | None],
+    activities: Iterable[TaskLike],
+    limit_of: LimitOf,
     loop: asyncio.AbstractEventLoop,
 ) -> list[Subtask] | None:
-    """The tasks of some methods that activities wait for.
+    """Return the tasks of some methods that activities wait for.
 
     Returns:
-        None if there are others: a `gather` in which one fails leaves the rest behind.
+        None if other tasks run these methods, too: when one part of a `gather` fails, the rest run on unawaited.
     """
     found = [below for above in activities for below in subtasks(above, limit_of) if method_of(below.task) in methods]
     known = {id(below.task) for below in found}
@@ -79,12 +84,12 @@ def gathered(
     return found if all(id(task) in known for task in living) else None
 
 
-def limit_of(task: Any, now_ns: int, now: float) -> int | None:
-    """When a task gives up waiting, in nanoseconds of the clock; None for never.
+def limit_of(task: TaskLike, now_ns: int, now: float) -> int | None:
+    """Return the time at which a task gives up waiting, in nanoseconds of the clock; None for never.
 
     Args:
         now_ns: The time by that clock.
-        now: The time by the loop's.
+        now: The time by the loop's clock, which asyncio's timeouts use.
     """
     found: list[float] = []
     for coroutine in aio.coroutines(task):

@@ -819,7 +819,7 @@ async def test_a_ring_that_grows_is_one_report(graph: Graph, caplog: Caplog, del
     assert len(said) == 1
     assert said[0].startswith(f"service obey of {late.full_name} waits behind the deadlock of ")
 
-    assert not late.context.search._foreign  # it has no part in what was reported
+    assert not late.context.search._reporter.foreign  # it has no part in what was reported
     [run] = [run for runner in core_of(other).runners for run in runner.active]
     run.cancel()
     await graph.clock.advance(10.0)
@@ -839,9 +839,9 @@ async def test_what_another_has_reported(graph: Graph, caplog: Caplog) -> None:
     whole = joined([peer.context.search.snapshot.take() for peer in peers])
     [deadlock] = explained(whole, deadlocked(whole))
     first, second = sorted((peer.context for peer in peers), key=lambda context: context.session.zid)
-    first.search._tell(deadlock, whole, {frozenset(deadlock.ring): second.session.zid})
+    first.search._reporter.report(deadlock, whole, {frozenset(deadlock.ring): second.session.zid})
     assert reports(caplog) == []
-    first.search._tell(deadlock, whole)
+    first.search._reporter.report(deadlock, whole)
     assert len(reports(caplog)) == 1
 
 

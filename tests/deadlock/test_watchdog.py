@@ -136,10 +136,10 @@ async def test_short_blocks_with_breaks(
 ) -> None:
     """Looks that find the loop free, or none of the user's lines, count as such."""
     for place in ["a.py:1 in f", ""] * 20:
-        watched.watchdog._add_up(place, 0.2)
+        watched.watchdog._count_short(place, 0.2)
     assert caplog.messages == []
     for _ in range(20):
-        watched.watchdog._add_up("a.py:1 in f", 0.2)
+        watched.watchdog._count_short("a.py:1 in f", 0.2)
     assert len(caplog.messages) == 1
 
 
@@ -191,7 +191,7 @@ def native() -> Iterator[tuple[NativeLoop, Watchdog]]:
 def test_a_native_loop_that_idles(native: tuple[NativeLoop, Watchdog]) -> None:
     """Once it has answered, it is known where its thread waits, and it is pinged now and then only."""
     _, watchdog = native
-    watchdog._ring_and_wait()
+    watchdog._ping()
 
     assert [watchdog._is_busy() for _ in range(2 * module.RING_ANYWAY)] == 2 * [False, False, False, True]
 
@@ -199,7 +199,7 @@ def test_a_native_loop_that_idles(native: tuple[NativeLoop, Watchdog]) -> None:
 def test_a_native_loop_that_is_busy(native: tuple[NativeLoop, Watchdog]) -> None:
     """It is found in any other place."""
     loop, watchdog = native
-    watchdog._ring_and_wait()
+    watchdog._ping()
     is_kept, goes_on = threading.Event(), threading.Event()
 
     def keep() -> None:
@@ -218,7 +218,7 @@ def test_uvloop_that_idles() -> None:
 
     async def watch() -> list[bool]:
         watchdog = Watchdog(asyncio.get_running_loop(), lambda: None)
-        await asyncio.to_thread(watchdog._ring_and_wait)
+        await asyncio.to_thread(watchdog._ping)
         return await asyncio.to_thread(lambda: [watchdog._is_busy() for _ in range(module.RING_ANYWAY)])
 
     assert uvloop.run(watch()).count(True) == 1
@@ -238,7 +238,7 @@ def test_a_loop_that_does_not_run() -> None:
 
     assert not watchdog._is_busy()
     loop.close()
-    watchdog._ring_and_wait()
+    watchdog._ping()
     assert (told, watchdog.is_blocked, watchdog.late) == ([], False, 0)
 
 

@@ -58,7 +58,7 @@ async def test_the_parts_of_a_gather(graphflow_runner: asyncio.Runner) -> None:
     failing.set_exception(ValueError())
     await settle()
     assert gathered({"part"}, [outer], lambda _: None, loop) is None
-    outer.cancel()
-    for below in found:
-        below.task.cancel()
-    await asyncio.wait([outer, *(below.task for below in found)])
+    tasks = [outer, *(below.task for below in found if isinstance(below.task, asyncio.Task))]
+    for task in tasks:
+        task.cancel()
+    await asyncio.wait(tasks)

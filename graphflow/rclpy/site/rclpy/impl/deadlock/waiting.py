@@ -110,7 +110,7 @@ class Waiting:
 
     def _is_told(self, thing: Any, prefix: str, title: str) -> bool:
         """Whether a run or thread is in a deadlock that was reported, or waits behind one."""
-        return self.context.search.tells_of(f"{self.context.session.zid}:{prefix}{self.number_of(thing)}", title)
+        return self.context.search.has_reported(f"{self.context.session.zid}:{prefix}{self.number_of(thing)}", title)
 
     def stalls(self) -> list[str]:
         """The callbacks that keep others waiting, and the nodes that nobody spins, as they were told."""

@@ -155,11 +155,11 @@ def test_a_callback_in_a_deadlock(node: Node, caplog: Caplog, monkeypatch: pytes
     """Is told as that alone; and one for which nothing waits, not at all."""
     asked = []
 
-    def tells_of(self: Search, activity: str, title: str) -> bool:
+    def has_reported(self: Search, activity: str, title: str) -> bool:
         asked.append(title)
         return True
 
-    monkeypatch.setattr(Search, "tells_of", tells_of)
+    monkeypatch.setattr(Search, "has_reported", has_reported)
     slow = Slow()
     with spun(slow):
         until(lambda: asked)

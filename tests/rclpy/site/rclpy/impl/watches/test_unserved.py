@@ -179,11 +179,11 @@ def test_a_wait_of_which_the_search_tells(node: Node, caplog: Caplog, monkeypatc
     """Is in a deadlock, whose report says more."""
     asked = []
 
-    def tells_of(self: Search, activity: str, title: str) -> bool:
+    def has_reported(self: Search, activity: str, title: str) -> bool:
         asked.append(title)
         return True
 
-    monkeypatch.setattr(Search, "tells_of", tells_of)
+    monkeypatch.setattr(Search, "has_reported", has_reported)
     with waiting_for(node.create_client(Trigger, "switch").wait_for_service):
         until(lambda: "thread own" in asked)
     assert told(caplog) == []
