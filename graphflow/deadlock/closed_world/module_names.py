@@ -1,7 +1,7 @@
-"""What changes a value that a module holds, such as an array beside the node's class: which of its methods do.
+"""Changes of a module-level value, such as an array next to the node's class, by methods of the class.
 
-The world is closed only as long as no other module can reach the value: neither holds it under a name of its own, nor
-has imported the module.
+The world is closed only if no other module can reach the value: none has a name for it, and none has imported the
+module.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from graphflow.analysis.class_source import ClassSource, Unknown
 from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new
 from graphflow.analysis.syntax import FunctionNode, is_nested, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
-from graphflow.deadlock.closed_world.conditions import LOOKING, VIEWLESS, arrays
+from graphflow.deadlock.closed_world.values import LOOKING, VIEWLESS, arrays
 
 
 def changes(name: str, module_name: str, source: ClassSource) -> Iterator[Use]:
-    """What the methods of a class do to a name of a module that may change its value.
+    """Yield the uses of a module's name, in methods of a class, that may change its value.
 
     Raises:
         Unknown: Something else may change it.
@@ -51,12 +51,13 @@ def changes(name: str, module_name: str, source: ClassSource) -> Iterator[Use]:
 
 
 def _is_known_elsewhere(name: str, module: ModuleType) -> bool:
-    """Whether another module holds the value, the module, or a package by which it can be reached."""
+    """Whether another module has a name for the value, the module, or a package that leads to it."""
     path = module.__name__.split(".")
     way = [sys.modules.get(".".join(path[:length])) for length in range(1, len(path) + 1)]
     ways = {id(found) for found in (module, *way) if found is not None}
     value = vars(module).get(name)
-    known = ways | ({id(value)} if type(value).__hash__ is None else set())  # what can be hashed is shared by many
+    # A hashable value (a number, a string) may be shared by chance, and cannot change itself.
+    known = ways | ({id(value)} if type(value).__hash__ is None else set())
     for other_name, other in list(sys.modules.items()):
         if id(other) in ways or not isinstance(other, ModuleType) or not _may_import(other_name):
             continue
@@ -66,16 +67,16 @@ def _is_known_elsewhere(name: str, module: ModuleType) -> bool:
 
 
 def _may_import(module: str) -> bool:
-    """Whether a module is one that could know of a user's."""
+    """Whether a module could import a user's: it is no part of the standard library or of graphflow."""
     return is_users_module(module) and module.partition(".")[0] not in sys.stdlib_module_names
 
 
 def _has_its_own(function: FunctionNode | ast.Lambda, name: str) -> bool:
-    """Whether a function means something else by a name."""
+    """Whether a name is local to a function."""
     given = [node.arg for node in ast.walk(function.args) if isinstance(node, ast.arg)]
     if name in given:
         return True
-    nodes = [node for node, parents in walk(function) if not is_nested(parents)]  # those inside have their own, too
+    nodes = [node for node, parents in walk(function) if not is_nested(parents)]  # inner functions have their own scope
     if any(isinstance(node, ast.Global) and name in node.names for node in nodes):
         return False
     return any(isinstance(n, ast.Name) and n.id == name and isinstance(n.ctx, ast.Store) for n in nodes)

@@ -1,57 +1,59 @@
-"""What ends a wait in a method of the node, or in an object that the node holds, such as a navigator of its own.
+"""The closed world of a node and of the objects it owns, such as a navigator with an event of its own.
 
-The object belongs to the closed world if the node has made it, keeps it in one attribute, and gives it to nobody.
+An object is part of the closed world if the node creates it, keeps it in one attribute, and passes it to no other code.
+A wait inside the object then ends through calls of its methods by the node, or through the node's own access to its
+attributes.
 """
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 from graphflow.analysis.attribute_uses import Use
 from graphflow.analysis.class_source import ClassSource, Unknown, source_of
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.user_code import is_users, is_users_module, is_users_object
-from graphflow.deadlock.asyncio_frames import is_inside, object_wait
-from graphflow.deadlock.closed_world.conditions import TOOLS, Loop
+from graphflow.deadlock.asyncio_frames import AnyFuture, is_inside, object_wait
+from graphflow.deadlock.closed_world.loops import Loop, is_library, only_pauses
+from graphflow.deadlock.closed_world.values import TOOLS
 from graphflow.deadlock.closed_world.wakers import (
     BEGINNINGS,
     Question,
     Setters,
     handlers_above,
-    is_library,
-    only_pauses,
 )
 from graphflow.deadlock.protocols import Subject
 
 _HARMLESS = ("builtins", "typing", "abc")
-"""Modules that are not the user's and whose classes call no methods of those that inherit from them."""
+"""Modules whose base classes call no methods of a user's subclass."""
 _MADE_BY = {"__init__", "__post_init__"}
-"""Methods that make an object."""
+"""Methods that run while an object is created."""
 
 
-def setters(frames: list[Frame], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
-    """What can end a wait; None when that is not known.
+def setters(
+    frames: list[Frame], waiter: AnyFuture | None, node: Subject, *, is_bounded: bool = False
+) -> Setters | None:
+    """Return the code that can end a wait; None if it is not known.
 
     Args:
         frames: The frames of the coroutine that waits, the outermost first.
-        waiter: The future that it waits for, if a coroutine waits.
-        is_bounded: Whether the wait is given up after some time.
+        waiter: The future that it waits for; None if a thread or the event loop itself waits.
+        is_bounded: Whether the wait has a deadline.
     """
     try:
         question = _question(frames, node)
         is_bounded = is_bounded or question.is_bounded
-        if is_bounded and question.is_repeated:  # what matters is when it stops trying again
+        if is_bounded and question.is_repeated:  # a timeout only starts the next turn, so the loop's condition counts
             return question.of_loop()
         found = question.of_object(waiter) or question.of_loop()
         return found and found._replace(gives_up=is_bounded)
-    except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
-        return None
+    except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):
+        return None  # the source is missing, or contains something that the analysis does not expect
 
 
 def _question(frames: list[Frame], node: Subject) -> Question:
-    """What ends a wait in a method of the node, or of an object that it holds and knows alone."""
+    """Return the question of a wait: about the node, or about an object that it owns and in which it waits."""
     for frame in reversed(frames):
         if only_pauses(frame):
             continue
@@ -62,41 +64,43 @@ def _question(frames: list[Frame], node: Subject) -> Question:
         if held and is_users_object(innermost):
             return HeldQuestion(frames, node, held[0], innermost)
     things = [wait.thing for wait in map(object_wait, frames) if wait is not None]
-    for name, value in vars(node.instance).items() if things else ():  # a dataclass of the node's with an event in it
+    # The node's own method may wait for an event that lies in an object, such as a dataclass.
+    for name, value in vars(node.instance).items() if things else ():
         if is_users_object(value) and any(is_inside(part, t) for part in vars(value).values() for t in things):
             return HeldQuestion(frames, node, name, value)
     return NodeQuestion(frames, node)
 
 
 class NodeQuestion(Question):
-    """Asks what ends a wait in a method of the node, which may poll objects that it holds."""
+    """The question about a wait in a method of the node, which may poll objects that it owns."""
 
     def _changing_held(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
-        held = HeldQuestion([], self._node, owner, getattr(self._instance, owner))
-        return held.changing(names, loop, below)
+        question = HeldQuestion([], self._node, owner, getattr(self._instance, owner))
+        return question.changing(names, loop, below)
 
 
 class HeldQuestion(Question):
-    """What ends a wait in an object that the node holds in one attribute, made by the node, and given to nobody."""
+    """The question about a wait in an object that the node owns."""
 
     def __init__(self, frames: list[Frame], node: Subject, owner: str, held: object) -> None:
         if not all(is_users_module(cls.__module__) or cls.__module__ in _HARMLESS for cls in type(held).__mro__):
-            raise Unknown  # the class that it inherits from may call its methods, as that of a node calls handlers
+            raise Unknown  # a foreign base class may call its methods, as that of a node calls handlers
         self.owner = owner
         super().__init__(frames, node, held)
-        self._looked: set[str] = set()
+        self._read: set[str] = set()
+        """Attributes of the object that decide the wait."""
         self._endings: tuple[str, ...] = ()
 
     def _uses(self, name: str) -> Iterator[Use]:
-        self._looked.add(name)
+        self._read.add(name)
         return super()._uses(name)
 
     def _changes(self, name: str) -> Iterator[Use]:
-        self._looked.add(name)
+        self._read.add(name)
         return super()._changes(name)
 
     def changing(self, names: set[str], loop: Loop, below: set[str]) -> set[str]:
-        """The methods of the node that change attributes of the object, which a loop of the node's polls.
+        """Return the methods of the node that change attributes of the object which a loop of the node's polls.
 
         Args:
             names: The attributes.
@@ -118,36 +122,46 @@ class HeldQuestion(Question):
         return handlers_above(what.replace("self.", f"self.{self.owner}."), self._ending(methods), self._node)
 
     def _ending(self, methods: Iterable[str]) -> set[str]:
-        """The methods of the node that end the wait: by the object's methods, or in the object itself."""
-        known = set(self._source.methods)
-        ending = self._source.above(set(methods) - _MADE_BY, known, self.owner)
-        source, found = source_of(self._node.instance), set[str]()
-        if source.foreign(self.owner):
-            raise Unknown
-        for use in source.uses(self.owner):
-            if use.kind in ("given", "invoked", "entered") or use.is_nested:
-                raise Unknown
-            if use.kind == "assigned" and (use.method not in BEGINNINGS or not isinstance(use.value, ast.Call)):
-                raise Unknown
-            if use.kind == "called" and use.name not in known:
-                raise Unknown
-            if use.kind in ("changed", "part") and use.name in self._looked:
-                if use.part is not None:
-                    raise Unknown
-                if use.kind == "changed" and self._ends(use, source):
-                    found.add(use.method)
-            if use.kind == "part" and use.name in ending:  # a method that is handed on, or a property
-                raise Unknown
-            if use.kind == "called" and use.name in ending:
-                found.add(use.method)
-        return found
+        """Return the methods of the node that end the wait: through the object's methods, or by access to its parts.
 
-    def _ended(self, name: str, thing: Any, methods: tuple[str, ...]) -> Setters | None:
+        Raises:
+            Unknown: The node does not own the object, or other code may do so.
+        """
+        ending = self._source.above(set(methods) - _MADE_BY, set(self._source.methods), self.owner)
+        source = source_of(self._node.instance)
+        uses = source.uses(self.owner)
+        if source.foreign(self.owner) or any(self._escapes(use, ending) for use in uses):
+            raise Unknown
+        return {
+            use.method
+            for use in uses
+            if (use.kind == "called" and use.name in ending)
+            or (use.kind == "changed" and use.name in self._read and self._ends(use, source))
+        }
+
+    def _escapes(self, use: Use, ending: set[str]) -> bool:
+        """Whether a use of the object lets other code end the wait, or hides who does."""
+        match use.kind:
+            case "given" | "invoked" | "entered":
+                return True
+            case "assigned":
+                is_made = use.method in BEGINNINGS and isinstance(use.value, ast.Call)
+                return use.is_nested or not is_made
+            case "called":
+                return use.is_nested or use.name not in self._source.methods
+            case "part":  # a method that is passed on, or a property
+                is_passed_on = use.part is not None and use.name in self._read
+                return use.is_nested or is_passed_on or use.name in ending
+            case "changed":
+                return use.is_nested or (use.part is not None and use.name in self._read)
+        return use.is_nested
+
+    def _ended(self, name: str, thing: object, methods: tuple[str, ...]) -> Setters | None:
         self._endings = methods
         return super()._ended(name, thing, methods)
 
     def _ends(self, use: Use, source: ClassSource) -> bool:
-        """Whether what a method of the node does to a part of the object can end the wait."""
+        """Whether a method of the node does something to a part of the object that can end the wait."""
         nodes = [n for function in source.methods.get(use.method, []) for n in ast.walk(function)]
         parts = {n for n in nodes if isinstance(n, ast.Attribute) and n.value is use.syntax}
         called = {n.attr for n in nodes if isinstance(n, ast.Attribute) and n.value in parts}
