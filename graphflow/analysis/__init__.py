@@ -1,5 +1,6 @@
-"""The source of users' programs, read without running it: classes, handlers, waits, and mistakes that can be seen.
+"""Static analysis of users' programs: classes, handlers, waits and mistakes, read from source without running it.
 
-Begin with `syntax` (one parse of each file) and `class_source`. `deadlock_check` and `rclpy_check` search for
-deadlocks; the run-time detector in `deadlock` asks the rest. Imports the pure layer, `workspace`, `markup` and `graph`.
+Begin with `syntax`, which parses each file once and has the walker that all modules share, and with `class_source`.
+`deadlock_check` and `rclpy_check` find deadlocks before anything runs; the run-time detector in `deadlock` uses the
+rest. Imports the pure layer, `workspace`, `markup` and `graph`.
 """

@@ -1,54 +1,59 @@
-"""What code does to what it mentions: it assigns it, calls a method of it, only looks at it, or hands it on."""
+"""Classification of the uses of attributes and names: assigned, called, only read, or passed on to other code.
+
+An escape analysis in miniature. A use that cannot make an object known to other code keeps the world of
+`deadlock.closed_world` closed; any use of unknown effect counts as *given* away.
+"""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeGuard
 
-from graphflow.analysis.syntax import FunctionNode, is_nested, walk
+from graphflow.analysis.syntax import FunctionNode, is_nested, last_name, walk
 
 Kind = Literal["assigned", "changed", "called", "part", "entered", "read", "invoked", "given"]
 _LOOKS = (
     *(ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp, ast.If, ast.While, ast.Assert, ast.Await, ast.FormattedValue),
     *(ast.For, ast.AsyncFor, ast.comprehension, ast.Match, ast.Expr),
 )
+"""Nodes that read the expressions directly below them and do nothing else to them."""
 _LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozenset", "hash", "id", "int", "isinstance"}
 _LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
 _LOOKING |= {"super", "tuple", "type", "zip"}
+"""Built-in functions that read their arguments and do nothing else to them."""
 _AWAITING = {"as_completed", "create_task", "ensure_future", "gather", "isfuture", "shield", "sleep", "timeout"}
 _AWAITING |= {"timeout_at", "wait", "wait_for", "wrap_future"}
-"""Functions of asyncio that do to what they are given nothing but await it."""
+"""Functions of asyncio that only await their arguments."""
 _SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "squeeze", "transpose", "swapaxes"}
 _SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
 _SAME |= {"diagonal", "copyto"}
 """Functions of numpy that may return another view of the same array, or write to it."""
 _RCLPYS = {"ActionServer", "ActionClient", "TransformListener", "TransformBroadcaster", "StaticTransformBroadcaster"}
-"""Classes that are given the node, and do nothing to attributes that it has of its own."""
+"""Classes that take the node, and use none of the attributes that its own class defines."""
 _SPINNING = {"spin", "spin_once", "spin_until_future_complete", "spin_once_until_future_complete"}
 """rclpy's functions that run a node's callbacks, or wait for a future, and do nothing else to either."""
 _ASKING = {"call_async", "send_goal_async", "get_result_async", "cancel_goal_async"}
-"""rclpy's methods whose futures are done when an answer has been taken."""
+"""rclpy's methods that return futures of responses."""
 _FOLLOWS = "add_done_callback"
-"""The method of futures that takes a function to be called when they are done."""
 
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """One mention of an attribute, or of a name of the module.
+    """One use of an attribute, or of a name of the module.
 
     Attributes:
-        kind: What is done: it is *assigned*; a part of it is *changed* (`self.x.y = 1`, `self.x[0].pop()`); a method
-            of it is *called*; a *part* is looked at; it is *entered* by `with`; *read* where that cannot change it;
+        kind: The kind of use: it is *assigned*; a part of it is *changed* (`self.x.y = 1`, `self.x[0].pop()`); a method
+            of it is *called*; a *part* of it is read; it is *entered* by `with`; *read* in a way that cannot change it;
             *invoked*, `self.x()`; or *given* to other code or another name.
         name: The method that is called, or the part.
-        value: What is assigned, if that is an expression of its own.
-        is_nested: In a function or lambda inside the method, which may run at any time.
-        is_started: A call of an `async def` that is not awaited on the spot and runs on its own.
-        is_registered: Given to one of the node's `create_...`, as a handler is.
-        is_answered: Given to the future of an answer, which calls it.
-        part: The whole of what is looked at, where it is passed on: `self.x.y[2:]`.
+        value: The assigned expression, if it has one of its own.
+        is_nested: Whether it is in a function or lambda inside the method, which may run at any time.
+        is_started: Whether it calls an `async def` without awaiting it on the spot, so that it runs by itself.
+        is_registered: Whether it is passed to one of the node's `create_...` methods, as a handler is.
+        is_answered: Whether it is passed to the future of a response, which will call it.
+        part: The whole expression with the part, if that is passed on: `self.x.y[2:]`.
     """
 
     method: str
@@ -64,7 +69,7 @@ class Use:
 
 
 def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AST]) -> Use:
-    """What a method does to what an expression stands for, by what encloses it there, the outermost first."""
+    """Classify a use by the nodes that enclose it in the method, the outermost first."""
     above = parents[-1]
     nested = is_nested(parents)
     if isinstance(node.ctx, (ast.Store, ast.Del)):
@@ -77,21 +82,21 @@ def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AS
         return Use(method, node, "assigned", value=value, is_nested=nested)
     if isinstance(above, ast.Call) and above.func is node:
         return Use(method, node, "invoked", is_nested=nested)
-    # `self.x.y[0].z`: up to the whole of it.
+    # Climb from `self.x` to the whole of `self.x.y[0].z`.
     whole: ast.AST = node
     around = list(parents)
     while isinstance(around[-1], (ast.Attribute, ast.Subscript)) and around[-1].value is whole:
         whole = around.pop()
     if whole is not node:
         name = above.attr if isinstance(above, ast.Attribute) else ""
-        if isinstance(whole.ctx, (ast.Store, ast.Del)):  # type: ignore[attr-defined]
+        if isinstance(whole, (ast.Attribute, ast.Subscript)) and isinstance(whole.ctx, (ast.Store, ast.Del)):
             kind: Kind = "changed"
         elif isinstance(around[-1], ast.Call) and around[-1].func is whole:
             kind = "called" if whole is above else "changed"
         else:
             kind = "part"
-        handed = whole if isinstance(whole, ast.expr) and kind == "part" and not looks(whole, around) else None
-        return Use(method, node, kind, name, is_nested=nested, part=handed)
+        passed_on = whole if isinstance(whole, ast.expr) and kind == "part" and not looks(whole, around) else None
+        return Use(method, node, kind, name, is_nested=nested, part=passed_on)
     if isinstance(above, ast.withitem) and above.context_expr is node:
         return Use(method, node, "entered", is_nested=nested)
     kind = "read" if looks(node, around) else "given"
@@ -100,7 +105,7 @@ def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AS
 
 
 def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
-    """Whether a mention cannot make what is mentioned known to other code."""
+    """Whether a use only reads an object, so that it cannot become known to other code."""
     above = parents[-1]
     if isinstance(above, ast.Starred):
         return looks(above, parents[:-1])
@@ -124,7 +129,7 @@ def _awaits(function: str) -> bool:
 
 
 def _only_looked_at(name: str, function: ast.AST) -> bool:
-    """Whether a second name of something is only used to look at it."""
+    """Whether all uses of a second name of an object only read it."""
     return not any(
         isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not looks(node, parents)
         for node, parents in walk(function)
@@ -139,24 +144,15 @@ def reaches_by_name(call: ast.Call) -> bool:
         case ast.Attribute(value=ast.Call(func=ast.Name(id="vars")), attr="update"):  # vars(node).update(...)
             return True
         case _:
-            return last_word(call) == "methodcaller"
-
-
-def word(function: ast.expr) -> str:
-    return function.id if isinstance(function, ast.Name) else ""
-
-
-def last_word(call: ast.Call) -> str:
-    """The last word of what is called."""
-    return ast.unparse(call.func).rpartition(".")[2]
+            return last_name(call.func) == "methodcaller"
 
 
 def called_back(method: FunctionNode) -> set[ast.AST]:
-    """The functions inside a method that are given to futures for when they are done, and to nobody else."""
+    """Return the functions inside a method that are passed to `add_done_callback` and to no other code."""
     uses: dict[str, list[bool]] = {}
     found: set[ast.AST] = set()
     for node, parents in walk(method):
-        is_given = bool(parents) and isinstance(above := parents[-1], ast.Call) and last_word(above) == _FOLLOWS
+        is_given = bool(parents) and isinstance(above := parents[-1], ast.Call) and last_name(above.func) == _FOLLOWS
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
             uses.setdefault(node.id, []).append(is_given)
         elif isinstance(node, ast.Lambda) and is_given:
@@ -166,14 +162,14 @@ def called_back(method: FunctionNode) -> set[ast.AST]:
 
 
 def registers(above: ast.AST) -> bool:
+    """Whether a node is a call that registers handlers."""
     if not isinstance(above, ast.Call):
         return False
-    function = ast.unparse(above.func)
-    return function.startswith("self.create_") or function.rpartition(".")[2] == "ActionServer"
+    return ast.unparse(above.func).startswith("self.create_") or last_name(above.func) == "ActionServer"
 
 
 def _is_for_answer(above: ast.AST, function: ast.AST) -> bool:
-    """Whether a call is `add_done_callback` of a future that `call_async` and the like have made in the function."""
+    """Whether a call is `add_done_callback` of a future that the function got from `call_async` or a similar method."""
     match above:
         case ast.Call(func=ast.Attribute(value=ast.Call() as made, attr="add_done_callback")):
             return _asks(made)
@@ -187,11 +183,11 @@ def _is_for_answer(above: ast.AST, function: ast.AST) -> bool:
 
 
 def _asks(value: ast.expr) -> bool:
-    return isinstance(value, ast.Call) and ast.unparse(value.func).rpartition(".")[2] in _ASKING
+    return isinstance(value, ast.Call) and last_name(value.func) in _ASKING
 
 
 def is_awaited(parents: Sequence[ast.AST]) -> bool:
-    """Whether a call of a coroutine, whose function has these parents, runs on the spot and nowhere else."""
+    """Whether a call of an `async def`, whose function has these parents, is awaited on the spot."""
     call, above = parents[-1], parents[-2]
     if isinstance(above, (ast.AsyncFor, ast.comprehension)):
         return above.iter is call
@@ -201,7 +197,7 @@ def is_awaited(parents: Sequence[ast.AST]) -> bool:
 
 
 def is_gathered(parents: Sequence[ast.AST]) -> bool:
-    """Whether a call of a coroutine, whose function has these parents, is a part of `await asyncio.gather(...)`."""
+    """Whether a call of an `async def`, whose function has these parents, is a part of `await asyncio.gather(...)`."""
     match parents[:-1]:
         case [*_, ast.Await(), ast.Call(func=function)]:
             return ast.unparse(function) == "asyncio.gather"
@@ -211,23 +207,24 @@ def is_gathered(parents: Sequence[ast.AST]) -> bool:
 
 
 def knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
-    """Whether a call that receives the node leads to code that is read here too, or that only looks at it."""
+    """Whether a call that passes the node leads to code that is analysed, too, or that only reads it."""
     call = parents[-1] if isinstance(parents[-1], ast.Call) else parents[-2]
     if not isinstance(call, ast.Call):
         return False
     is_known = isinstance(call.func, ast.Name) and call.func.id in _LOOKING | _RCLPYS | defined
-    return is_known or last_word(call) in _SPINNING
+    return is_known or last_name(call.func) in _SPINNING
 
 
 def is_part_of(node: ast.expr, owner: str) -> bool:
-    part = node.value if isinstance(node, ast.Attribute) else None
-    return isinstance(part, ast.Attribute) and part.attr == owner and is_own(part)
+    """Whether an expression is `self.owner.something`."""
+    return isinstance(node, ast.Attribute) and is_own(node.value) and node.value.attr == owner
 
 
-def is_own(node: ast.AST) -> bool:
+def is_own(node: ast.AST) -> TypeGuard[ast.Attribute]:
     """Whether an expression is `self.something`."""
     return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
 
 
 def is_super(node: ast.AST) -> bool:
+    """Whether an expression is a call of `super`."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super"

@@ -1,34 +1,32 @@
-"""Local names that stand for messages, of a function read from its source: what is done to their fields is not done to
-the node.
-"""
+"""Local names of messages in a function: changes of their fields are no changes of the node."""
 
 from __future__ import annotations
 
 import ast
-from typing import Any
+from collections.abc import Mapping
 
 from graphflow.msgs.base import Message
 
 CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
 CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
-"""Functions whose results nothing else knows."""
+"""Functions whose results no other code knows."""
 
 
 _classes: list[type] = [Message]
 
 
 def know_messages(cls: type) -> None:
-    """Have the instances of a class and its subclasses taken for messages."""
+    """Treat the instances of a class and its subclasses as messages."""
     _classes.append(cls)
 
 
 def messages() -> tuple[type, ...]:
-    """The classes of messages."""
+    """Return the classes of messages."""
     return tuple(_classes)
 
 
-def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: dict[str, Any]) -> set[str]:
-    """Local names of a function that stand for messages: all that is bound to them is made there, or annotated so."""
+def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: Mapping[str, object]) -> set[str]:
+    """Return the local names of messages: each binding creates a message, or is annotated with a message class."""
     bound: dict[str, list[ast.expr | None]] = {}
     for node in ast.walk(function):
         match node:
@@ -38,7 +36,7 @@ def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: dict
                 bound.setdefault(name, []).append(annotation)
             case ast.Name(id=name, ctx=ast.Store()):
                 bound.setdefault(name, []).append(None)
-    # The name that an assignment binds was met there and as a name.
+    # The target of an assignment is counted twice: with the class at the assignment, and with None as a name.
     made_here = {name: [v for v in values if v is not None] for name, values in bound.items()}
     stored = {name: sum(v is None for v in values) for name, values in bound.items()}
     arguments = {a.arg for a in ast.walk(function.args) if isinstance(a, ast.arg)}
@@ -50,7 +48,7 @@ def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: dict
     }
 
 
-def _is_message(expression: ast.expr, globals_: dict[str, Any]) -> bool:
+def _is_message(expression: ast.expr, globals_: Mapping[str, object]) -> bool:
     """Whether an expression is a message class."""
     first, *rest = ast.unparse(expression).strip("'\"").split(".")
     value = globals_.get(first)
@@ -60,7 +58,7 @@ def _is_message(expression: ast.expr, globals_: dict[str, Any]) -> bool:
 
 
 def is_new(value: ast.expr | None, makers: set[str]) -> bool:
-    """Whether what is assigned, if anything is, is made on the spot."""
+    """Whether an assigned value is created on the spot, so that no other code knows it; true for no value."""
     if value is None:
         return True
     if isinstance(value, ast.Call):

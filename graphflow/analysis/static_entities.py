@@ -1,7 +1,7 @@
-"""What a class makes by `self.create_...` in its methods, read from their source: known before a node is made.
+"""Endpoints, parameters and timers that a class creates by `self.create_...`, read from source without a node.
 
-Literal names are read, and names of constants of the module or the class. Where a name cannot be read, its place is
-kept, so that checks can say what they do not know.
+Names may be literals, or constants of the module or the class. A call with any other name is kept as a place, so that
+checks can list what they do not know.
 """
 
 from __future__ import annotations
@@ -12,37 +12,40 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from types import FunctionType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import first_line, syntax_of
+from graphflow.analysis.syntax import first_line, last_name, syntax_of
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import ParameterError, Place
 from graphflow.interface import EndpointInfo, EndpointKind, HandlerInfo, HandlerKind, Interface, Parameter, type_of
 
 
 class _Maker(NamedTuple):
-    """One of the methods that make something: what, and where in its arguments the name and the handler stand."""
+    """One of the `create_...` methods."""
 
-    kind: EndpointKind | HandlerKind | None
+    kind: EndpointKind | None
+    """Kind of the endpoint; None for a timer or a parameter."""
     name: int | None
-    handler: int | None = None
+    """Position of the name among its arguments."""
+    handler: tuple[HandlerKind, int] | None = None
+    """Kind of the handler, and its position among the arguments."""
 
 
 _MAKERS = {
     "create_publisher": _Maker("publisher", 1),
-    "create_subscription": _Maker("subscription", 1, 2),
-    "create_service": _Maker("service", 1, 2),
+    "create_subscription": _Maker("subscription", 1, ("subscription", 2)),
+    "create_service": _Maker("service", 1, ("service", 2)),
     "create_client": _Maker("client", 1),
-    "create_action_server": _Maker("action", 1, 2),
+    "create_action_server": _Maker("action", 1, ("action", 2)),
     "create_action_client": _Maker("action client", 1),
-    "create_timer": _Maker("timer", None, 1),
+    "create_timer": _Maker(None, None, ("timer", 1)),
     "declare_parameter": _Maker(None, 0),
 }
 
 
 def with_made(cls: type, interface: Interface) -> Interface:
-    """An interface, and with it what the methods of its class make."""
+    """Return an interface with everything that the methods of its class create."""
     made, declared = _made(cls), {h.name for h in interface.handlers}
     return replace(
         interface,
@@ -55,7 +58,7 @@ def with_made(cls: type, interface: Interface) -> Interface:
 
 
 class _Made:
-    """What is found in the methods of one class."""
+    """The calls found in the methods of one class."""
 
     def __init__(self) -> None:
         self.node_name = ""
@@ -65,7 +68,7 @@ class _Made:
         self.unread: list[Place] = []
 
     def read(self, cls: type, function: FunctionType) -> None:
-        """Take in what one method makes."""
+        """Read the calls in one method."""
         file = function.__code__.co_filename
         syntax = _syntax(function)
         if syntax is None:
@@ -78,26 +81,17 @@ class _Made:
                     self._read_call(cls, node, function, Place(file, node.lineno), _kept_as(node, syntax))
 
     def _read_name(self, call: ast.Call, function: FunctionType) -> None:
-        """`super().__init__("talker")`: the name that the class gives itself."""
-        own = call.func.value  # type: ignore[attr-defined]
-        arguments = call.args if isinstance(own, ast.Call) else call.args[1:]
-        name = _argument(call, 0, "name") if isinstance(own, ast.Call) else next(iter(arguments), None)
+        """Read the node's name from `super().__init__("talker")` or `Node.__init__(self, "talker")`."""
+        is_super = isinstance(call.func, ast.Attribute) and isinstance(call.func.value, ast.Call)
+        name = _argument(call, 0, "name") if is_super else next(iter(call.args[1:]), None)
         text = _text(name, function, None)
         if text:
             self.node_name = text
 
     def _read_call(self, cls: type, call: ast.Call, function: FunctionType, place: Place, attribute: str) -> None:
-        maker = _MAKERS[call.func.attr]  # type: ignore[attr-defined]
-        handler = "" if maker.handler is None else _method(_argument(call, maker.handler, "callback"), cls)
-        if handler:
-            method = inspect.unwrap(getattr(cls, handler))
-            where = Place(method.__code__.co_filename, method.__code__.co_firstlineno)
-            is_async = inspect.iscoroutinefunction(method)
-            group = _group(_argument(call, None, "group"), cls)
-            thread = _argument(call, None, "thread")
-            threaded = isinstance(thread, ast.Constant) and thread.value is True
-            kind: Any = maker.kind
-            self.handlers.append(HandlerInfo(handler, kind, where, group, is_async, threaded))
+        """Read one call; the created object is kept in `self.attribute`, if that is not empty."""
+        maker = _MAKERS[last_name(call.func)]
+        handler = "" if maker.handler is None else self._read_handler(cls, call, *maker.handler)
         if maker.name is None:
             return
         name = _text(_argument(call, maker.name, "name"), function, cls)
@@ -107,8 +101,20 @@ class _Made:
             self.params.append(_parameter(call, name, place))
         else:
             type_name = _type(_argument(call, 0, "type_"), function)
-            kind = maker.kind
-            self.endpoints.append(EndpointInfo(kind, name, type_name, handler or attribute, place))
+            self.endpoints.append(EndpointInfo(maker.kind, name, type_name, handler or attribute, place))
+
+    def _read_handler(self, cls: type, call: ast.Call, kind: HandlerKind, at: int) -> str:
+        """Read the handler that a call passes; return its name, which is empty if it is no method of the class."""
+        name = _method(_argument(call, at, "callback"), cls)
+        if name:
+            method = inspect.unwrap(getattr(cls, name))
+            where = Place(method.__code__.co_filename, method.__code__.co_firstlineno)
+            group = _group(_argument(call, None, "group"), cls)
+            thread = _argument(call, None, "thread")
+            is_threaded = isinstance(thread, ast.Constant) and thread.value is True
+            is_async = inspect.iscoroutinefunction(method)
+            self.handlers.append(HandlerInfo(name, kind, where, group, is_async, is_threaded))
+        return name
 
 
 @cache
@@ -119,7 +125,7 @@ def _made(cls: type) -> _Made:
             continue
         for name, value in vars(parent).items():
             function = inspect.unwrap(value) if inspect.isfunction(value) else None
-            # What a parent's method makes, unless the class has replaced it.
+            # A parent's method counts unless the class overrides it; constructors call each other.
             if isinstance(function, FunctionType) and (getattr(cls, name, None) is value or name == "__init__"):
                 made_here = set(function.__code__.co_names)
                 if made_here & _MAKERS.keys() or name == "__init__":
@@ -139,16 +145,16 @@ def _syntax(function: FunctionType) -> ast.AST | None:
     return None
 
 
-def _argument(call: ast.Call, at: int | None, word: str) -> ast.expr | None:
-    """An argument by its place or its word."""
+def _argument(call: ast.Call, at: int | None, keyword: str) -> ast.expr | None:
+    """Return an argument by position or keyword."""
     if at is not None and len(call.args) > at:
         return None if any(isinstance(a, ast.Starred) for a in call.args[: at + 1]) else call.args[at]
-    return next((k.value for k in call.keywords if k.arg == word), None)
+    return next((k.value for k in call.keywords if k.arg == keyword), None)
 
 
 def _text(node: ast.expr | None, function: FunctionType, cls: type | None) -> str | None:
-    """The string that an expression surely is: a literal, or a constant of the module or the class."""
-    found: Any = None
+    """Return the string value of a literal, or of a constant of the module or the class; None for anything else."""
+    found: object = None
     if isinstance(node, ast.Constant):
         found = node.value
     elif isinstance(node, ast.Name) and node.id.isupper():
@@ -159,35 +165,35 @@ def _text(node: ast.expr | None, function: FunctionType, cls: type | None) -> st
 
 
 def _type(node: ast.expr | None, function: FunctionType) -> str:
-    """The name of a message, service or action type; empty when it cannot be told."""
-    found: Any = None
-    words = ast.unparse(node).split(".") if isinstance(node, (ast.Name, ast.Attribute)) else []
-    if words:
-        found = function.__globals__.get(words[0])
-        for word in words[1:]:
-            found = getattr(found, word, None)
+    """Return the name of a message, service or action type; empty if it is not known."""
+    found: object = None
+    path = ast.unparse(node).split(".") if isinstance(node, (ast.Name, ast.Attribute)) else []
+    if path:
+        found = function.__globals__.get(path[0])
+        for part in path[1:]:
+            found = getattr(found, part, None)
     schema = getattr(found, "SCHEMA", None)
     name = getattr(schema, "name", None) or getattr(found, "NAME", None)
     return name if isinstance(name, str) else ""
 
 
 def _method(node: ast.expr | None, cls: type) -> str:
-    """The method of the class that is passed: `self.heard`."""
-    if node is not None and is_own(node) and inspect.isfunction(getattr(cls, node.attr, None)):  # type: ignore[attr-defined]
-        return str(node.attr)  # type: ignore[attr-defined]
+    """Return the name of the method that is passed, as in `self.heard`; empty for anything else."""
+    if node is not None and is_own(node) and inspect.isfunction(getattr(cls, node.attr, None)):
+        return node.attr
     return ""
 
 
 def _group(node: ast.expr | None, cls: type) -> str:
-    """The name of the group that is passed; else that of the class's default."""
+    """Return the name of the group that is passed, or else of the class's default group."""
     if node is not None and is_own(node):
-        return str(node.attr)  # type: ignore[attr-defined]
+        return node.attr
     default = getattr(cls, "default_group", None)
     return default.name if default is not None and node is None else ""
 
 
 def _parameter(call: ast.Call, name: str, place: Place) -> Parameter:
-    """A parameter as far as the call shows it: without a literal default, one that takes anything."""
+    """Return the parameter that a call declares; without a literal default it is dynamic."""
     default = _argument(call, 1, "default")
     try:
         value = ast.literal_eval(default) if default is not None else None
@@ -197,11 +203,11 @@ def _parameter(call: ast.Call, name: str, place: Place) -> Parameter:
 
 
 def _kept_as(call: ast.Call, function: ast.AST) -> str:
-    """The attribute that a call's result is assigned to: `self.client = self.create_client(...)`."""
+    """Return the attribute of `self.client = self.create_client(...)`; empty if there is none."""
     for node in _assignments(function):
         if node.value is call:
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            return next((t.attr for t in targets if is_own(t)), "")  # type: ignore[attr-defined]
+            return next((t.attr for t in targets if is_own(t)), "")
     return ""
 
 

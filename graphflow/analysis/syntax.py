@@ -1,4 +1,4 @@
-"""Source files as syntax trees, each read and walked once however many classes it has."""
+"""Syntax trees of source files, each parsed and walked once however many classes it has, and the shared walker."""
 
 from __future__ import annotations
 
@@ -11,43 +11,56 @@ FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
-def walk(top: ast.AST) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
-    """Every node below one, with what encloses it, the outermost first."""
+def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
+    """Yield a node and all nodes below it, each with the nodes that enclose it, the outermost first.
+
+    Args:
+        into_functions: Whether to walk the bodies of functions inside `top`, too, which run at other times.
+    """
     todo: list[tuple[ast.AST, list[ast.AST]]] = [(top, [])]
     while todo:
         node, parents = todo.pop()
         yield node, parents
-        todo += [(child, [*parents, node]) for child in ast.iter_child_nodes(node)]
+        if into_functions or not parents or not isinstance(node, NESTED):
+            todo += [(child, [*parents, node]) for child in ast.iter_child_nodes(node)]
 
 
 def is_nested(parents: Sequence[ast.AST]) -> bool:
-    """Whether something is in a function inside what was walked."""
+    """Whether a node with these parents is in a function inside the walked one."""
     return any(isinstance(p, NESTED) for p in parents[1:])
 
 
 def first_line(item: FunctionNode) -> int:
-    """Where a function begins, its decorators included, as its code says too."""
+    """Return the first line of a function, decorators included, as in `co_firstlineno`."""
     return item.decorator_list[0].lineno if item.decorator_list else item.lineno
 
 
+def last_name(expression: ast.expr) -> str:
+    """Return the last part of a dotted name: `spin` of `rclpy.spin`; empty for any other expression."""
+    match expression:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
 class Syntax:
-    """One file.
+    """The syntax tree of one file, with an index of its parts.
 
     Args:
-        module: What `ast.parse` makes of it.
+        module: The result of `ast.parse`.
     """
 
     def __init__(self, module: ast.Module) -> None:
         self.module = module
         self.parts: list[tuple[ast.AST, list[ast.AST]]] = []
-        """What may do something to an attribute or a name of the module, with what encloses it."""
+        """Nodes that may use an attribute or a name of the module, with the nodes that enclose them."""
         self.classes: list[ast.ClassDef] = []
         self.functions: list[FunctionNode] = []
         self.nodes: set[ast.AST] = set()
         self.imported: set[str] = set()
-        """Names that stand for modules."""
+        """Names of modules."""
         self.fresh: dict[FunctionNode, set[str]] = {}
-        """By function, as far as that was asked for: local names of messages that it has made or received."""
+        """Cache, by function: local names of messages that it has created or received."""
         for node, parents in walk(module):
             self.nodes.add(node)
             if isinstance(node, (ast.Attribute, ast.Global, ast.Call)):
@@ -61,12 +74,12 @@ class Syntax:
 
     @cached_property
     def defined(self) -> set[str]:
-        """The names of its classes and functions."""
+        """Names of its classes and functions."""
         return {item.name for item in (*self.classes, *self.functions)}
 
     @cached_property
     def method_lines(self) -> set[int]:
-        """Where the functions in its classes begin."""
+        """First lines of the functions in its classes."""
         return {line for definition in self.classes for line in _function_lines(definition)}
 
 
@@ -80,6 +93,10 @@ def _function_lines(definition: ast.ClassDef) -> Iterator[int]:
 
 @cache
 def syntax_of(file: str) -> Syntax:
-    """The syntax of a file. Raises OSError, SyntaxError or ValueError if it cannot be read."""
+    """Parse a file.
+
+    Raises:
+        OSError, SyntaxError, ValueError: The file cannot be read or parsed.
+    """
     with tokenize.open(file) as source:
         return Syntax(ast.parse(source.read()))
