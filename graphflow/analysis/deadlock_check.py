@@ -1,27 +1,30 @@
-"""Deadlocks that the source shows before anything runs: what awaits which service while it holds what.
+"""Static detection of deadlocks in a graph: chains of calls and lock orders, read before anything runs.
 
-Followed are calls of declared clients, `await self.adder.call(...)`, and goals of declared action clients, in handlers
-and in the methods that they call. Two ways into a deadlock are looked for:
+Calls of declared clients, `await self.adder.call(...)`, and goals of declared action clients are followed in handlers
+and in the methods that they call. Each handler holds a slot of its group during its calls, so a group is a lock, and a
+call orders two locks: the caller's group before the server's. Two kinds of deadlock follow:
 
-1. One chain of calls returns to a group whose slots it holds itself. That is CERTAIN if every call on the way is
-   made whatever happens, else it holds IF THIS BRANCH RUNS.
-2. Chains that run at the same time wait for each other's groups: a ring of groups, each held while the next
-   is waited for. That is POSSIBLE; it takes the right moment.
+1. A chain of calls returns to a group whose slots the chain itself holds: an attempt to take a lock again that is not
+   reentrant. It is CERTAIN if every run makes all the calls, else it happens IF THIS BRANCH RUNS.
+2. The lock order has a cycle: chains that run at the same time can each hold one group and wait for the next. That is
+   POSSIBLE; it takes the right moment.
 
-What cannot be followed (a client that is made at run time, a name that no node offers) is listed, never silently
-dropped.
+Calls that cannot be followed (a client that is created at run time, a name that no node offers) are listed as
+unresolved, never silently dropped.
 """
 
 from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Literal
 
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode, last_name, walk
 from graphflow.errors import Place
 from graphflow.graph.checks.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
@@ -33,11 +36,14 @@ Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
 """Longest chain of calls that is followed."""
 _BRANCHES = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.Try, ast.IfExp, ast.Match, ast.BoolOp, ast.ExceptHandler)
+"""Nodes whose parts do not run every time."""
+_TASK_MAKERS = ("create_task", "ensure_future", "spawn")
+"""Functions that start a task, which runs beside its caller."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One way into a deadlock, or something that could not be followed."""
+    """A possible deadlock, or a call that could not be followed."""
 
     grade: Grade
     place: Place
@@ -71,7 +77,7 @@ class _Call:
     is_released: bool
     """Whether the handler has released its slot."""
     reply: _Slot | None = None
-    """What the response needs to arrive."""
+    """Slot that the delivery of the response needs, if its client is in a group."""
 
 
 @dataclass(frozen=True)
@@ -88,41 +94,44 @@ class _Actor:
 
 
 def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
-    """What the source of a plan's classes shows; each way into a deadlock once."""
-    world = _World(plan.file)
+    """Return the findings in the classes of a plan, each deadlock once."""
+    calls = _CallGraph(plan.file)
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
         if isinstance(interface, Interface):
-            world.add(node, interface)
-    chains = list(world.chains())
-    told = {slot for _, slots in chains for slot in slots}
-    rings = [finding for finding, slots in world.rings() if not slots & told]
-    found = [finding for finding, _ in chains] + rings + world.unresolved()
+            calls.add(node, interface)
+    chains = list(calls.chains())
+    # A chain that deadlocks by itself also makes a ring of its groups, which would be reported twice.
+    known = {slot for _, slots in chains for slot in slots}
+    rings = [finding for finding, slots in calls.rings() if not slots & known]
+    found = [finding for finding, _ in chains] + rings + calls.unresolved()
     return sorted(dict.fromkeys(found), key=lambda f: (f.grade == "unresolved", f.place))
 
 
-def warnings(ways: list[Finding], file: str) -> list[str]:
-    """What is reported when the graph is started: what is certain, and that there is more."""
-    certain = [str(way) for way in ways if way.grade == "CERTAIN"]
-    more = sum(way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS") for way in ways)
+def warnings(found: list[Finding], file: str) -> list[str]:
+    """Return the warnings for the start of a graph: the certain findings, and the number of others."""
+    certain = [str(finding) for finding in found if finding.grade == "CERTAIN"]
+    more = sum(finding.grade in ("POSSIBLE", "IF THIS BRANCH RUNS") for finding in found)
     if not more:
         return certain
     what = "1 possible deadlock is" if more == 1 else f"{more} possible deadlocks are"
     return [*certain, f"{what} explained by: graphflow check {file}"]
 
 
-class _World:
+class _CallGraph:
     """The handlers of a graph and the calls between them."""
 
     def __init__(self, file: str) -> None:
         self._file = file
         self._regroupings: dict[str, Regrouping] = {}
-        """What the file says of groups, by node."""
+        """By node: the changes of its groups that the file makes."""
         self._calls: dict[_Actor, list[_Call]] = {}
         self._servers: dict[str, _Actor | None] = {}
+        """By service or action: its server; None if there are several, any of which may answer."""
         self._unresolved: list[Finding] = []
 
     def add(self, node: PlannedNode, interface: Interface) -> None:
+        """Add the handlers of a node, with their calls."""
         self._regroupings[node.name] = node.regrouping(self._file)
         names, source = resolver(node), _Source(interface)
         clients = {e.attribute: names.resolve(e.name, "service") for e in interface.endpoints if "client" in e.kind}
@@ -146,10 +155,11 @@ class _World:
                     self._offer(names.resolve(endpoint.name, "service"), actor)
 
     def _offer(self, name: str, actor: _Actor) -> None:
-        """Note a server; of several, which will answer is not known."""
+        """Add the server of a name."""
         self._servers[name] = actor if self._servers.get(name, actor) == actor else None
 
     def unresolved(self) -> list[Finding]:
+        """Return the calls that could not be followed."""
         missing = [
             Finding("unresolved", call.place, f"{actor} calls {call.name}, which no node of this graph declares")
             for actor, calls in self._calls.items()
@@ -159,61 +169,54 @@ class _World:
         return [*self._unresolved, *missing]
 
     def chains(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
-        """Chains of calls that return to a group that they fill themselves."""
+        """Yield the chains of calls that return to a group which they fill themselves, with the group."""
         seen: set[tuple[_Slot, Place]] = set()
         for actor, calls in self._calls.items():
             for call in calls:
-                if (
-                    call.reply is not None
-                    and call.reply == actor.slot
-                    and call.reply.limit == 1
-                    and not call.is_released
-                ):
-                    grade: Grade = "CERTAIN" if call.is_certain else "IF THIS BRANCH RUNS"
+                is_same = call.reply is not None and call.reply == actor.slot and call.reply.limit == 1
+                if is_same and not call.is_released:
                     text = (
                         f"{actor} awaits {call.name}, whose response needs {actor.slot}, which it holds itself. Let "
                         "replies through: declare the client without group="
                     )
-                    yield Finding(grade, call.place, text), frozenset([actor.slot])
+                    yield Finding(_grade([call]), call.place, text), frozenset([actor.slot])
             for finding, slot, last in self._follow(actor, [], Counter([actor.slot])):
                 if (slot, last) not in seen:
                     seen.add((slot, last))
                     yield finding, frozenset([slot])
 
     def _follow(self, actor: _Actor, path: list[_Call], held: Counter[_Slot]) -> Iterator[tuple[Finding, _Slot, Place]]:
+        """Follow the calls of a handler, depth first; recursion ends at the first group that is full.
+
+        Args:
+            path: The calls that led to the handler.
+            held: Number of slots that the chain holds, by group; as before when the generator is exhausted.
+        """
         if len(path) >= LONGEST:
             return
         for call in self._calls[actor]:
             server = self._servers.get(call.name)
             if server is None:
                 continue
-            slot, way = server.slot, [*path, call]
+            slot, chain = server.slot, [*path, call]
             held[actor.slot] -= call.is_released
             if slot.limit is not None and held[slot] >= slot.limit:
-                grade: Grade = "CERTAIN" if all(c.is_certain for c in way) else "IF THIS BRANCH RUNS"
                 text = (
                     f"{actor} awaits {call.name}, whose handler {server.handler} needs {slot}, "
-                    f"which the chain of calls itself holds: {self._told(way)}"
+                    f"which the chain of calls itself holds: {_listing(chain)}. {self._remedy(server, actor)}"
                 )
-                yield (
-                    Finding(grade, call.place, f"{text}. {self._remedy(server, actor)}"),
-                    slot,
-                    call.place,
-                )
+                yield Finding(_grade(chain), call.place, text), slot, call.place
             else:
                 held[slot] += 1
-                yield from self._follow(server, way, held)
+                yield from self._follow(server, chain, held)
                 held[slot] -= 1
             held[actor.slot] += call.is_released
 
     def _remedy(self, server: _Actor, actor: _Actor) -> str:
         return _remedy(server, actor, self._regroupings[server.node])
 
-    def _told(self, way: list[_Call]) -> str:
-        return ", then ".join(f"{call.name} ({Path(call.place.file).name}:{call.place.line})" for call in way)
-
     def rings(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
-        """Groups that are each held while the next is waited for."""
+        """Yield the cycles in the lock order of groups, each once, with its groups."""
         edges: dict[_Slot, dict[_Slot, tuple[_Actor, _Call, _Actor]]] = {}
         for actor, calls in self._calls.items():
             for call in calls:
@@ -229,17 +232,22 @@ class _World:
                 continue
             done.add(frozenset(ring))
             steps = [edges[a][b] for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
-            told = "; ".join(
-                f"{actor} holds {actor.slot} and awaits {call.name} ({Path(call.place.file).name}:{call.place.line})"
-                for actor, call, _ in steps
-            )
+            text = "; ".join(f"{actor} holds {actor.slot} and awaits {_listing([call])}" for actor, call, _ in steps)
             actor, call, server = steps[0]
             remedy = self._remedy(server, actor)
-            yield Finding("POSSIBLE", call.place, f"{told}. {remedy}"), frozenset(ring)
+            yield Finding("POSSIBLE", call.place, f"{text}. {remedy}"), frozenset(ring)
+
+
+def _grade(chain: Sequence[_Call]) -> Grade:
+    return "CERTAIN" if all(call.is_certain for call in chain) else "IF THIS BRANCH RUNS"
+
+
+def _listing(chain: Sequence[_Call]) -> str:
+    return ", then ".join(f"{call.name} ({Path(call.place.file).name}:{call.place.line})" for call in chain)
 
 
 def _ring(start: _Slot, edges: Mapping[_Slot, Mapping[_Slot, object]]) -> list[_Slot] | None:
-    """A shortest ring of groups through `start`."""
+    """Return a shortest ring of groups through `start`, by breadth-first search; None if there is none."""
     before: dict[_Slot, _Slot] = {}
     todo = [start]
     while todo:
@@ -257,25 +265,23 @@ def _ring(start: _Slot, edges: Mapping[_Slot, Mapping[_Slot, object]]) -> list[_
 
 
 def _remedy(server: _Actor, actor: _Actor, regrouping: Regrouping) -> str:
-    """What ends it, with the line for the graph file, which keeps what the file says already."""
+    """Return the remedy, with the line for the graph file, which repeats the file's other changes."""
     handler = server.handler
     if server.slot.is_own and server.kind == "action":
         return f"Let several goals run at a time: policy='parallel' where {handler} is declared"
     if server == actor and not server.slot.is_own:
-        told, changed = (
-            "Allow as many runs as the recursion is deep, in place of 2",
-            regrouping.limited(server.slot.name, 2),
-        )
+        text = "Allow as many runs as the recursion is deep, in place of 2"
+        changed = regrouping.limited(server.slot.name, 2)
     elif server.slot.is_own:
-        told = f"Let several runs of {handler} overlap: give it a group without a limit"
+        text = f"Let several runs of {handler} overlap: give it a group without a limit"
         changed = regrouping.moved([handler], f"{handler}_group").limited(f"{handler}_group", None)
     else:
-        told, changed = f"Give {handler} a group of its own", regrouping.moved([handler], f"{handler}_group")
-    return f"{told}, {changed.where} {' '.join(line.strip() for line in changed.lines(server.node, ''))}"
+        text, changed = f"Give {handler} a group of its own", regrouping.moved([handler], f"{handler}_group")
+    return f"{text}, {changed.where} {' '.join(line.strip() for line in changed.lines(server.node, ''))}"
 
 
 def _slot(node: PlannedNode, interface: Interface, handler: HandlerInfo) -> _Slot:
-    """The group whose slot a handler's runs take: as the graph file says, else as the class does."""
+    """Return the group whose slot a handler's runs take: that of the graph file, or else of the class."""
     name = handler.group
     for group, planned in node.concurrency.items():
         if handler.name in planned.change.handlers:
@@ -289,7 +295,7 @@ def _group(node: PlannedNode, interface: Interface, name: str) -> _Slot:
     declared = interface.groups.get(name, GroupInfo())
     change = node.concurrency[name].change if name in node.concurrency else GroupChange()
     if (change.when_full or declared.when_full) == "cancel_running":
-        return _Slot(node.name, name, None)  # it is never full for good
+        return _Slot(node.name, name, None)  # a new run cancels the one that holds the slot, so it is never full
     return _Slot(node.name, name, change.limit if change.sets_limit else declared.limit)
 
 
@@ -303,7 +309,7 @@ class _Source:
             for node in ast.walk(_module(file)):
                 if isinstance(node, ast.ClassDef):
                     classes.setdefault(node.name, (file, node))
-        self._methods: dict[str, tuple[str, ast.FunctionDef | ast.AsyncFunctionDef]] = {}
+        self._methods: dict[str, tuple[str, FunctionNode]] = {}
         todo = [interface.class_path.rpartition(":")[2].rpartition(".")[2]]
         seen: set[str] = set()
         while todo:
@@ -313,96 +319,97 @@ class _Source:
             seen.add(name)
             file, definition = classes[name]
             for item in definition.body:
-                if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                if isinstance(item, FunctionNode):
                     self._methods.setdefault(item.name, (file, item))
             todo += [base.id for base in definition.bases if isinstance(base, ast.Name)]
 
     def calls(
         self, method: str, *, certain: bool = True, released: bool = False, seen: frozenset[str] = frozenset()
     ) -> Iterator[_Call]:
-        """What a method awaits by `self.<attribute>.call(...)`, itself or in methods that it calls."""
+        """Yield the calls `self.<attribute>.call(...)` in a method and in the methods that it calls.
+
+        Args:
+            certain: Whether every run of the handler calls the method.
+            released: Whether the handler has released its slot by then.
+            seen: The methods that led to it.
+        """
         if method not in self._methods or method in seen:
             return
         file, function = self._methods[method]
-        leaves, free = _first_way_out(function), _released(function)
-        for node, reached in _walk(function, True):
-            always = reached and (leaves is None or getattr(node, "lineno", 0) < leaves)
+        exit_line, free = _first_exit(function), _released(function)
+        for node, reached in _own_code(function):
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
                 continue
-            held = node.func.value
-            if node.func.attr in ("call", "call_sync", "send", "send_goal") and _is_own(held):
-                assert isinstance(held, ast.Attribute)
-                yield _Call(held.attr, Place(file, node.lineno), certain and always, released or node in free)
-            elif _is_own(node.func):
-                yield from self.calls(
-                    node.func.attr,
-                    certain=certain and always,
-                    released=released or node in free,
-                    seen=seen | {method},
-                )
+            is_certain = certain and reached and (exit_line is None or node.lineno < exit_line)
+            is_released, owner = released or node in free, node.func.value
+            if node.func.attr in ("call", "call_sync", "send", "send_goal") and is_own(owner):
+                yield _Call(owner.attr, Place(file, node.lineno), is_certain, is_released)
+            elif is_own(node.func):
+                inner = node.func.attr
+                yield from self.calls(inner, certain=is_certain, released=is_released, seen=seen | {method})
 
     def lost_sight_of(
         self, method: str, clients: Collection[str], seen: frozenset[str] = frozenset()
     ) -> Iterator[tuple[Place, str]]:
-        """Where clients get out of sight: handed to other code, or called in a task of their own."""
+        """Yield the uses of clients whose calls cannot be followed: passed to other code, or in a task.
+
+        Each is a place with the verb phrase for the report.
+        """
         if method not in self._methods or method in seen:
             return
         file, function = self._methods[method]
         for node in ast.walk(function):
-            if isinstance(node, ast.Call) and _is_own(node.func):
-                assert isinstance(node.func, ast.Attribute)
+            if isinstance(node, ast.Call) and is_own(node.func):
                 yield from self.lost_sight_of(node.func.attr, clients, seen | {method})
-            is_task = isinstance(node, ast.Call) and _word(node.func) in _TASK_MAKERS
+            is_task = isinstance(node, ast.Call) and last_name(node.func) in _TASK_MAKERS
             for child in ast.walk(node) if is_task else ():
-                if _is_own(child) and isinstance(child, ast.Attribute) and child.attr in clients:
+                if is_own(child) and child.attr in clients:
                     yield Place(file, child.lineno), f"uses self.{child.attr} in a task, whose end is not followed"
-            handed = [*node.args, *(k.value for k in node.keywords)] if isinstance(node, ast.Call) else []
-            handed += [node.value] if isinstance(node, (ast.Assign, ast.Return)) and node.value is not None else []
-            for value in handed:
-                if _is_own(value) and isinstance(value, ast.Attribute) and value.attr in clients:
+            for value in _passed_on(node):
+                if is_own(value) and value.attr in clients:
                     yield Place(file, value.lineno), f"hands self.{value.attr} on, and its calls there are not followed"
 
 
-_TASK_MAKERS = ("create_task", "ensure_future", "spawn")
+def _passed_on(node: ast.AST) -> list[ast.expr]:
+    """Return the expressions that a node passes to other code or gives another name."""
+    match node:
+        case ast.Call(args=arguments, keywords=keywords):
+            return [*arguments, *(keyword.value for keyword in keywords)]
+        case ast.Assign(value=value) | ast.Return(value=ast.expr() as value):
+            return [value]
+    return []
 
 
-def _walk(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
-    """A function's nodes, and whether they are reached whenever it runs; without the functions inside it."""
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
-            continue
-        # The handler does not wait for a task that it makes and does not await.
-        if isinstance(child, ast.Call) and _word(child.func) in _TASK_MAKERS:
-            continue
-        reached = always and not isinstance(child, _BRANCHES)
-        yield child, reached
-        yield from _walk(child, reached)
+def _own_code(function: ast.AST) -> Iterator[tuple[ast.AST, bool]]:
+    """Yield the nodes of a function's own code, each with whether every run reaches it.
+
+    Tasks that it starts without awaiting them are left out, too: their waits do not delay it.
+    """
+    tasks: set[ast.AST] = set()
+    for node, parents in walk(function, into_functions=False):
+        is_task = isinstance(node, ast.Call) and last_name(node.func) in _TASK_MAKERS
+        if is_task or (parents and parents[-1] in tasks):
+            tasks.add(node)
+        elif parents:
+            yield node, not any(isinstance(n, _BRANCHES) for n in (node, *parents))
 
 
-def _first_way_out(function: ast.AST) -> int | None:
-    """The line of the first `return` or `raise` that only some runs take: what follows is not reached by all."""
-    lines = [n.lineno for n, reached in _walk(function, True) if isinstance(n, (ast.Return, ast.Raise)) and not reached]
+def _first_exit(function: ast.AST) -> int | None:
+    """Return the line of the first `return` or `raise` that only some runs take: others may not get beyond it."""
+    lines = [n.lineno for n, reached in _own_code(function) if isinstance(n, (ast.Return, ast.Raise)) and not reached]
     return min(lines, default=None)
 
 
 def _released(function: ast.AST) -> set[ast.AST]:
-    """What is inside `async with self.group.released()`."""
+    """Return the nodes inside `async with self.group.released()`."""
     blocks = [
         node
         for node in ast.walk(function)
         if isinstance(node, ast.AsyncWith)
         for item in node.items
-        if isinstance(item.context_expr, ast.Call) and _word(item.context_expr.func) == "released"
+        if isinstance(item.context_expr, ast.Call) and last_name(item.context_expr.func) == "released"
     ]
     return {node for block in blocks for statement in block.body for node in ast.walk(statement)}
-
-
-def _word(function: ast.AST) -> str:
-    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
-
-
-def _is_own(node: ast.AST) -> bool:
-    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
 
 
 @cache
@@ -411,7 +418,7 @@ def _module(file: str) -> ast.Module:
         text = found_text(Path(file))
         try:
             return ast.parse(text)
-        except SystemError:  # CPython until 3.11.7: another thread has parsed something meanwhile (gh-106905)
+        except SystemError:  # CPython until 3.11.7, if another thread parses at the same time (gh-106905)
             return ast.parse(text)
     except (OSError, SyntaxError, UnicodeDecodeError):
         return ast.Module([], [])

@@ -1,4 +1,4 @@
-"""Files that hide packages: where a `numpy.py` lies beside a program, `import numpy` is that file."""
+"""Files that hide packages: with a `numpy.py` next to a program, `import numpy` imports that file."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from graphflow.reading import found_text
 from graphflow.system import SITE
 
 _LACKING = re.compile(r"cannot import name|is not a package")
-_told: set[str] = set()
-"""The packages of which it has been told."""
+_warned: set[str] = set()
+"""Packages for which the note was written."""
 
 
 def hidden(error: BaseException) -> str:
-    """The file that hides the package which an error is about, and what to do; empty where there is none."""
+    """Return a message if an import error comes from a file that hides a package; empty otherwise."""
     name = ""
     if isinstance(error, ImportError) and error.name and _LACKING.search(str(error)):
         name = error.name.partition(".")[0]
@@ -31,10 +31,10 @@ def hidden(error: BaseException) -> str:
     return _text(file) if file is not None and _is_package(name, file) else ""
 
 
-def tell(file: Path) -> None:
-    """Say once that a file hides a package."""
-    if file.stem not in _told:
-        _told.add(file.stem)
+def warn(file: Path) -> None:
+    """Write a note, once, that a file hides a package."""
+    if file.stem not in _warned:
+        _warned.add(file.stem)
         sys.stderr.write(f"note: {_text(file)}\n")
 
 
@@ -46,7 +46,7 @@ def hides_what_it_imports(file: Path) -> bool:
     try:
         module = ast.parse(found_text(file, "replace"))
     except (OSError, SyntaxError, ValueError):
-        return False  # it is told when the file is run
+        return False  # running the file reports the error
     imported = {alias.name for node in ast.walk(module) if isinstance(node, ast.Import) for alias in node.names}
     imported |= {n.module for n in ast.walk(module) if isinstance(n, ast.ImportFrom) and n.module and not n.level}
     return name in {other.partition(".")[0] for other in imported}
@@ -58,7 +58,7 @@ def _text(file: Path) -> str:
 
 
 def _file_of(name: str) -> Path | None:
-    """The user's own file that is imported under a name; None if that is another's."""
+    """Return the user's own file that is imported under a name; None if it belongs to an installed package."""
     file = getattr(sys.modules.get(name), "__file__", None)
     if file is None and (spec := PathFinder.find_spec(name)) is not None:  # an import that failed leaves no module
         file = spec.origin
@@ -66,7 +66,7 @@ def _file_of(name: str) -> Path | None:
 
 
 def _is_package(name: str, file: Path) -> bool:
-    """Whether a name is that of a package, of ROS's or installed, besides that of a file."""
+    """Whether there is a package of that name, ROS's or an installed one, besides the file."""
     if name in sys.stdlib_module_names or name in registry.packages() or name == "graphflow":
         return True
     own = file.parents[1] if file.name == "__init__.py" else file.parent

@@ -1,6 +1,6 @@
-"""Programs that run nodes one after the other and mean beside each other, read from their source.
+"""Programs that run nodes one after the other instead of together, detected in their source.
 
-`graphflow.run(A)` returns when the program is to end, so that a `graphflow.run(B)` behind it comes too late.
+`graphflow.run(A)` returns when the program is to end, so that a `graphflow.run(B)` after it comes too late.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from graphflow.errors import Place
 
 _CALL = re.compile(r"\brun\(")
 _ENDS = re.compile(r"\b(shutdown|exit|SystemExit|kill|raise_signal)\b")
-"""Words of a program that may end a node by itself; the next one then has its turn."""
+"""Names of functions by which a program may end a node itself, so that running another one afterwards makes sense."""
 
 
 def one_by_one(frame: FrameType | None) -> str:
-    """Warn of a program that is about to run nodes while others of it wait to be run; empty for any other.
+    """Return a warning for a program whose call of `run` delays another one; empty for any other program.
 
     Args:
-        frame: That of the program, in the call of `run`.
+        frame: The program's frame, in the call of `run`.
     """
     if frame is None:
         return ""
@@ -46,15 +46,15 @@ def one_by_one(frame: FrameType | None) -> str:
 
 
 def _blocks(module: ast.Module) -> Iterator[tuple[ast.AST, list[ast.stmt]]]:
-    """The lists of statements of a module, each with the statement that it belongs to."""
+    """Yield the lists of statements of a module, each with the node that it belongs to."""
     for node in ast.walk(module):
-        for block in (getattr(node, field, None) for field in ("body", "orelse", "finalbody")):
-            if isinstance(block, list):
+        for _, block in ast.iter_fields(node):
+            if isinstance(block, list) and any(isinstance(item, ast.stmt) for item in block):
                 yield node, block
 
 
 def _run(statement: ast.stmt) -> ast.Call | None:
-    """The call of `run` that a statement consists of."""
+    """Return the call of `run` if a statement consists of one."""
     match statement:
         case ast.Expr(
             value=ast.Call(func=ast.Name("run") | ast.Attribute(value=ast.Name("graphflow"), attr="run")) as call

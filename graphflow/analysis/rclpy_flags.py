@@ -1,4 +1,7 @@
-"""Attributes that loops of rclpy nodes poll, and the methods that change them, read from source."""
+"""Flags: attributes that loops of rclpy nodes poll, and the methods that change them, read from source.
+
+A coarser relative of `deadlock.closed_world`, for source without a running node: it knows no types of attributes.
+"""
 
 from __future__ import annotations
 
@@ -6,41 +9,49 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-Methods = Mapping[str, ast.FunctionDef | ast.AsyncFunctionDef]
+from graphflow.analysis.syntax import FunctionNode, last_name
+
+Methods = Mapping[str, FunctionNode]
+"""The methods of a class, by name."""
 
 _LOOKING = {"is_set", "wait", "get", "keys", "values", "items", "index", "count", "copy", "empty", "qsize", "full"}
-"""Methods by which an attribute is only looked at."""
+"""Methods that do not change their object."""
 _TIME = ("time", "monotonic", "perf_counter", "now", "get_clock")
+"""Functions that return the time, by which a loop can give up."""
 _BEGINNINGS = {"__init__"}
+_RCLPYS = ("create_", "add_done_", "Action", "get_logger")
+"""Beginnings of the names of rclpy's functions that take a node's methods, and call them back and nothing else."""
+_PLAIN = {"str", "len", "print", "float", "int", "abs", "info", "debug", "warn", "warning"}
+"""Functions that only read their arguments."""
 
 
 class Polled(NamedTuple):
-    """A loop that only waits and looks again."""
+    """A polling loop, which only pauses and tests its condition again."""
 
     text: str
-    """The condition as it is written: `while not self.there`."""
+    """The loop as the code writes it: `while not self.there`."""
     flags: frozenset[str]
-    """The attributes that it looks at; empty where something else may end it."""
+    """Attributes that decide its condition; empty if something else may end it."""
     gives_up: bool
     """Whether it ends by itself after some time."""
 
 
 class Changers(NamedTuple):
-    """Statements that change attributes."""
+    """The callbacks that change some attributes."""
 
     methods: frozenset[str]
-    """Callbacks, and what is called when an answer has come."""
+    """Callbacks, and methods that a future calls when a response has arrived."""
     is_known: bool
-    """Whether nothing else does."""
+    """Whether no other code changes them."""
 
 
 def polled(loop: ast.While, methods: Methods) -> Polled | None:
-    """The condition of a loop that pauses in its body, or does nothing there; None for a loop that works."""
-    calls = [_last(node.func) for node in _inside(loop.body) if isinstance(node, ast.Call)]
+    """Return a loop that pauses in its body, or does nothing there; None for a loop that works."""
+    calls = [last_name(node.func) for node in _inside(loop.body) if isinstance(node, ast.Call)]
     if {"sleep", "spin_once"}.isdisjoint(calls) and not all(isinstance(statement, ast.Pass) for statement in loop.body):
         return None
-    asked = [node for node in _inside([loop.test]) if isinstance(node, ast.Call)]
-    gives_up = any(_last(call.func) in _TIME for call in asked)
+    queries = [node for node in _inside([loop.test]) if isinstance(node, ast.Call)]
+    gives_up = any(last_name(call.func) in _TIME for call in queries)
     leaves = any(
         isinstance(node, (ast.Break, ast.Return, ast.Raise))
         for statement in loop.body
@@ -55,7 +66,7 @@ def polled(loop: ast.While, methods: Methods) -> Polled | None:
 
 
 def written_from_outside(tree: ast.Module) -> frozenset[str]:
-    """The attributes that code assigns on something other than `self`."""
+    """Return the attributes that code assigns on something other than `self`."""
     return frozenset(
         node.attr
         for node in ast.walk(tree)
@@ -64,7 +75,7 @@ def written_from_outside(tree: ast.Module) -> frozenset[str]:
 
 
 def changers(flags: frozenset[str], methods: Methods, callbacks: frozenset[str]) -> Changers:
-    """The callbacks by which attributes change, directly or through methods that they call."""
+    """Return the callbacks that change some attributes, directly or through methods that they call."""
     changing = {
         name
         for name, function in methods.items()
@@ -79,14 +90,14 @@ def changers(flags: frozenset[str], methods: Methods, callbacks: frozenset[str])
         if is_entry:
             found.add(name)
         if _is_given(name, methods) or not (is_entry or callers):
-            is_known = False  # some other code calls it
+            is_known = False  # other code calls it
         todo += callers - seen
         seen |= callers
     return Changers(frozenset(found), is_known)
 
 
 def _read(test: ast.AST, methods: Methods, seen: set[str]) -> set[str] | None:
-    """The attributes of the node that a condition is made of; None where something else decides it."""
+    """Return the attributes of the node that decide a condition; None if something else decides it, too."""
     found: set[str] = set()
     for node in _inside([test]):
         match node:
@@ -121,7 +132,7 @@ def _changes(top: ast.AST, flag: str) -> bool:
 
 
 def _root(expression: ast.expr) -> str:
-    """`pose` of `self.pose.x`; empty for anything that is not the node's."""
+    """Return `pose` of `self.pose.x`; empty for anything that is not the node's."""
     while isinstance(expression, (ast.Attribute, ast.Subscript)):
         match expression:
             case ast.Attribute(value=ast.Name("self"), attr=name):
@@ -131,26 +142,16 @@ def _root(expression: ast.expr) -> str:
 
 
 def _is_given(name: str, methods: Methods) -> bool:
-    """Whether an attribute or method of the node is given to other code than what rclpy calls back."""
+    """Whether an attribute or method of the node is passed to code that may do more with it than call it back."""
     for node in (node for function in methods.values() for node in ast.walk(function)):
-        if isinstance(node, ast.Call) and not _last(node.func).startswith(
-            ("create_", "add_done_", "Action", "get_logger")
-        ):
-            given = [*node.args, *(keyword.value for keyword in node.keywords)]
-            plain = _last(node.func) in {
-                "str",
-                "len",
-                "print",
-                "float",
-                "int",
-                "abs",
-                "info",
-                "debug",
-                "warn",
-                "warning",
-            }
-            if not plain and any(ast.unparse(one) == f"self.{name}" for one in given):
-                return True
+        if not isinstance(node, ast.Call):
+            continue
+        called = last_name(node.func)
+        if called.startswith(_RCLPYS) or called in _PLAIN:
+            continue
+        arguments = [*node.args, *(keyword.value for keyword in node.keywords)]
+        if any(ast.unparse(argument) == f"self.{name}" for argument in arguments):
+            return True
     return False
 
 
@@ -160,16 +161,13 @@ def _calls(function: ast.AST, name: str) -> bool:
 
 def _follows_an_answer(name: str, methods: Methods) -> bool:
     return any(
-        isinstance(n, ast.Call) and _last(n.func) == "add_done_callback" and f"self.{name}" in map(ast.unparse, n.args)
+        last_name(n.func) == "add_done_callback" and f"self.{name}" in map(ast.unparse, n.args)
         for function in methods.values()
         for n in ast.walk(function)
+        if isinstance(n, ast.Call)
     )
 
 
 def _inside(tops: Sequence[ast.AST]) -> Iterator[ast.AST]:
     for top in tops:
         yield from ast.walk(top)
-
-
-def _last(expression: ast.expr) -> str:
-    return ast.unparse(expression).rpartition(".")[2]

@@ -1,13 +1,12 @@
-"""Lines of a source that catch CancelledError and do not let it pass, or KeyboardInterrupt, which does not come."""
+"""Exceptions that handlers must not catch: CancelledError without raising it again, and KeyboardInterrupt."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator
 from types import CodeType
-from typing import Any
 
-from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
+from graphflow.analysis.syntax import FunctionNode, first_line, last_name, syntax_of
 from graphflow.analysis.user_code import short_place
 from graphflow.errors import Place
 
@@ -16,8 +15,8 @@ _INSTEAD = "write finally: in place of except, or do this in async def on_shutdo
 _CAUGHT = {"CancelledError", "BaseException"}
 
 
-def where_caught(handler: Callable[..., Any]) -> str:
-    """The lines by which a handler may have outlived its cancellation, for the end of a sentence; empty without any."""
+def where_caught(handler: Callable[..., object]) -> str:
+    """Return the end of a message, with the lines at which a handler swallows its cancellation; empty for none."""
     lines = " and ".join(map(str, _swallowing(getattr(handler, "__code__", None))))
     return f"; CancelledError is caught in {lines}" if lines else ""
 
@@ -40,35 +39,30 @@ def _lines(function: ast.AST) -> Iterator[int]:
         if isinstance(node, ast.ExceptHandler):
             if _catches(node.type) and not any(isinstance(inner, ast.Raise) for inner in ast.walk(node)):
                 yield node.lineno
-        elif isinstance(node, ast.Call) and _word(node.func) == "suppress" and any(map(_catches, node.args)):
+        elif isinstance(node, ast.Call) and last_name(node.func) == "suppress" and any(map(_catches, node.args)):
             yield node.lineno
 
 
 def caught_in_vain(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
-    """Lines of a node's handlers and coroutines that catch KeyboardInterrupt, as to stop a robot, and what to write.
+    """Yield the lines of a node's handlers and coroutines that catch KeyboardInterrupt, each with the remedy.
 
-    Ctrl-C is a signal that graphflow takes: it cancels what runs.
+    Programs do so to stop a robot; but graphflow handles Ctrl-C itself, and cancels the handlers.
     """
     for method in definition.body:
         if not isinstance(method, FunctionNode):
             continue
-        marks = {_word(d.func if isinstance(d, ast.Call) else d) for d in method.decorator_list}
-        if marks & {"staticmethod", "classmethod"} or not (marks or isinstance(method, ast.AsyncFunctionDef)):
-            continue  # it may be called where nothing runs yet
+        decorators = {last_name(d.func if isinstance(d, ast.Call) else d) for d in method.decorator_list}
+        if decorators & {"staticmethod", "classmethod"} or not (decorators or isinstance(method, ast.AsyncFunctionDef)):
+            continue  # it may be called before the event loop runs, where Ctrl-C does raise
         for node in ast.walk(method):
-            if isinstance(node, ast.ExceptHandler) and node.type is not None and _word(node.type) == _INTERRUPT:
-                does = [s for s in node.body if not isinstance(s, (ast.Raise, ast.Pass))]
-                told = f"{_INTERRUPT} does not come to a node, which Ctrl-C cancels: {_INSTEAD}"
-                yield from [(node.lineno, told)] if does else []
+            if isinstance(node, ast.ExceptHandler) and node.type is not None and last_name(node.type) == _INTERRUPT:
+                works = [s for s in node.body if not isinstance(s, (ast.Raise, ast.Pass))]
+                text = f"{_INTERRUPT} does not come to a node, which Ctrl-C cancels: {_INSTEAD}"
+                yield from [(node.lineno, text)] if works else []
 
 
 def _catches(caught: ast.expr | None) -> bool:
-    """Whether CancelledError is among the classes of an `except`; all are where it names none."""
+    """Whether an `except` catches CancelledError; without a class it catches everything."""
     if isinstance(caught, ast.Tuple):
         return any(map(_catches, caught.elts))
-    return caught is None or _word(caught) in _CAUGHT
-
-
-def _word(node: ast.expr) -> str:
-    """The last part of a name with dots."""
-    return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+    return caught is None or last_name(caught) in _CAUGHT

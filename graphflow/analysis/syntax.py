@@ -12,7 +12,7 @@ NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
 def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
-    """Yield a node and all nodes below it, each with the nodes that enclose it, the outermost first.
+    """Yield a node and all nodes below it in source order, each with the nodes that enclose it, the outermost first.
 
     Args:
         into_functions: Whether to walk the bodies of functions inside `top`, too, which run at other times.
@@ -22,7 +22,8 @@ def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST
         node, parents = todo.pop()
         yield node, parents
         if into_functions or not parents or not isinstance(node, NESTED):
-            todo += [(child, [*parents, node]) for child in ast.iter_child_nodes(node)]
+            around = [*parents, node]
+            todo += [(child, around) for child in reversed([*ast.iter_child_nodes(node)])]
 
 
 def is_nested(parents: Sequence[ast.AST]) -> bool:

@@ -1,11 +1,12 @@
-"""Functions and methods that a program names and does not call, read from its source."""
+"""Functions and methods that a program names without calling them, detected in its source."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 
-_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+from graphflow.analysis.syntax import FunctionNode, last_name
+
 _RUNNERS = ("run", "running", "init", "spin")
 """Names of functions by which a program runs nodes."""
 _METHODS = (
@@ -14,20 +15,20 @@ _METHODS = (
 )
 """Methods of nodes and their parts that are called without arguments."""
 _QUESTIONS = ("service_is_ready", "server_is_ready", "wait_for_service", "wait_for_server", "is_canceled")
-"""Methods that answer yes or no."""
+"""Methods that return a truth value."""
 _LAUNCH = "generate_launch_description"
-"""The function by which a launch file is known."""
+"""Function that makes a file a launch file."""
 
 
 def uncalled(source: str, file: str) -> str:
-    """Why a program has run nothing, as a sentence: nothing calls its `main()`, or what else of it runs nodes.
+    """Return a message why a program has run no node: nothing calls its `main()`, or another function that would.
 
     Args:
-        source: Its text.
-        file: Its name for the sentence.
+        source: The program's text.
+        file: The program's name for the message.
 
     Returns:
-        The empty text where something does, or where that cannot be told.
+        Empty if something calls it, or if that is not known.
     """
     try:
         module = ast.parse(source)
@@ -39,7 +40,7 @@ def uncalled(source: str, file: str) -> str:
     names = [node for node in ast.walk(module) if isinstance(node, ast.Name)]
     used = {name.id for name in names if id(name) not in statements}
     used |= {node.value for node in ast.walk(module) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
-    functions = [node for node in module.body if isinstance(node, _FUNCTIONS) and not node.decorator_list]
+    functions = [node for node in module.body if isinstance(node, FunctionNode) and not node.decorator_list]
     idle = [function for function in functions if function.name not in used]  # a decorator may keep and call it
     for function in idle:
         if function.name == _LAUNCH:
@@ -58,7 +59,7 @@ def uncalled(source: str, file: str) -> str:
 
 
 def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
-    """The lines that name a method and do nothing else, such as `self.timer.cancel`, each with what to write."""
+    """Yield the lines that name a method without calling it, such as `self.timer.cancel`, each with a message."""
     own = _own_attributes(code)
     for node in ast.walk(code):
         match node:
@@ -73,7 +74,7 @@ def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
 
 
 def _conditions(test: ast.expr) -> Iterator[ast.Attribute]:
-    """The attributes whose truth decides a condition."""
+    """Yield the attributes whose truth decides a condition."""
     match test:
         case ast.Attribute():
             yield test
@@ -85,7 +86,7 @@ def _conditions(test: ast.expr) -> Iterator[ast.Attribute]:
 
 
 def _asks(method: ast.Attribute) -> bool:
-    """Whether an attribute is a method that answers yes or no: of rclpy, of a client, or of a future."""
+    """Whether an attribute is a method that returns a truth value: of rclpy, of a client, or of a future."""
     owner = ast.unparse(method.value).rpartition(".")[2]
     if method.attr == "ok":
         return owner == "rclpy"
@@ -95,18 +96,18 @@ def _asks(method: ast.Attribute) -> bool:
 
 
 def _own_attributes(code: ast.AST) -> set[str]:
-    """Attributes that a program sets, or defines as properties."""
+    """Return the attributes that a program sets, or defines as properties."""
     found = {
         node.attr for node in ast.walk(code) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
     }
     for node in ast.walk(code):
-        if isinstance(node, _FUNCTIONS) and node.decorator_list:
+        if isinstance(node, FunctionNode) and node.decorator_list:
             found.add(node.name)
     return found
 
 
 def _other_names(module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Texts other than `__main__` that the name of the module is compared with, and the line of each."""
+    """Yield the strings other than `__main__` that `__name__` is compared with, each with its line."""
     for node in module.body:
         match node:
             case ast.If(
@@ -117,4 +118,4 @@ def _other_names(module: ast.Module) -> Iterator[tuple[int, str]]:
 
 def _runs_nodes(function: ast.AST) -> bool:
     called = [node.func for node in ast.walk(function) if isinstance(node, ast.Call)]
-    return any((getattr(f, "attr", None) or getattr(f, "id", None)) in _RUNNERS for f in called)
+    return any(last_name(f) in _RUNNERS for f in called)

@@ -1,4 +1,4 @@
-"""Which code is the user's own, for errors and reports to point at."""
+"""The border between users' code and libraries, so that errors and reports point to a line of the user's."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from graphflow.errors import Place
 
 _OURS = str(Path(__file__).parents[1])
 _DEMOS = str(Path(_OURS, "demos"))
-"""Where an installed graphflow has its nodes, which are as users would write them."""
+"""Folder of the demo nodes, which are written like users' and count as theirs."""
 _NOT_THEIRS = ("graphflow", "rclpy", "builtins", "typing", "abc")
 _COMPILED = (".pyx", ".pxi")
-"""Ends of the files that Cython names in tracebacks; they are relative, and seldom there."""
+"""Suffixes of the files that Cython names in tracebacks; they are relative, and seldom exist."""
 _PYTHONS = sysconfig.get_path("stdlib")
 
 
 def is_users_module(name: str) -> bool:
-    """Whether a module holds classes of users; the nodes that come with graphflow count as theirs."""
+    """Whether a module is a user's; the nodes that come with graphflow count as users'."""
     return name.partition(".")[0] not in _NOT_THEIRS or name.startswith("graphflow.nodes.")
 
 
 def is_users_object(thing: object) -> bool:
-    """Whether something is of a class of the user's, with attributes of its own; a node's message is none."""
+    """Whether an object has a class of the user's, and attributes of its own; a message has not."""
     file = getattr(sys.modules.get(type(thing).__module__), "__file__", None)
     return file is not None and is_users(file) and hasattr(thing, "__dict__")
 
 
 def is_users(file: str) -> bool:
-    """Whether a source file is neither graphflow's nor Python's own, nor that of compiled code, such as uvloop's."""
+    """Whether a source file is neither graphflow's, nor Python's own, nor one of compiled code, such as uvloop's."""
     is_made = file.startswith("<") and "/" in file  # <std_msgs/msg/String>: a codec
     if is_ours(file) or is_made or file.startswith("<frozen") or file.endswith(_COMPILED):
         return False
@@ -44,7 +44,7 @@ def is_users(file: str) -> bool:
 
 
 def _is_users_frame(frame: FrameType) -> bool:
-    """Whether a frame is of the user's code; a method that `dataclass` writes belongs to the module of its class."""
+    """Whether a frame is of the user's code; a method that `dataclass` generates belongs to its class's module."""
     file = frame.f_code.co_filename
     return is_users(file) and (file != "<string>" or is_users_module(frame.f_globals.get("__name__", "")))
 
@@ -60,12 +60,12 @@ def is_ours(file: str) -> bool:
 
 
 def short_place(file: str, line: int) -> Place:
-    """A line of a file, which goes by its name alone: `lamp.py:12`."""
+    """Return the place of a line without the file's folder: `lamp.py:12`."""
     return Place(PurePath(file).name, line)
 
 
 def innermost(frames: Iterable[Frame]) -> Frame | None:
-    """The last of the frames that is the user's own code; the outermost comes first."""
+    """Return the last of the frames that is the user's own code; the outermost frame comes first."""
     found = None
     for frame in frames:
         if is_users(frame.f_code.co_filename):
@@ -74,43 +74,43 @@ def innermost(frames: Iterable[Frame]) -> Frame | None:
 
 
 def users_frame(frame: FrameType | None) -> FrameType | None:
-    """A frame, or the nearest of those that have led to it, that is the user's own code; None where there is none."""
+    """Return the nearest frame of the user's own code, among a frame and its callers; None if there is none."""
     while frame is not None and not is_users(frame.f_code.co_filename):
         frame = frame.f_back
     return frame
 
 
 def called_by_loop(frames: Sequence[Frame]) -> Sequence[Frame]:
-    """The part of a stack that an event loop has called; all of it where there is none."""
+    """Return the part of a stack that an event loop has called; the whole stack if no loop is in it."""
     begun = [i for i, frame in enumerate(frames) if frame.f_code is asyncio.Runner.run.__code__]
     return frames[begun[-1] + 1 :] if begun else frames
 
 
 class Pause(NamedTuple):
-    """Where a loop that polls pauses. A thread that runs it may be seen anywhere in it, but is there nearly always."""
+    """The line at which a polling loop pauses: a snapshot may find its thread at any line, but nearly always there."""
 
     frame: Frame
     line: int
 
 
 class Where(NamedTuple):
-    """Where something waits, for reports."""
+    """The position of a wait in the user's code, for reports."""
 
     place: Place
-    """The user's own code."""
     function: str
     is_async: bool
     """Whether `await` is allowed there."""
     called: str
-    """The line by which the node's method came to wait elsewhere: `drive.py:12 in tick`; empty if it waits itself."""
+    """Line at which the node's method called the function that waits: `drive.py:12 in tick`; empty if it is its own."""
 
 
 def where(frames: Sequence[Frame], instance: object, pause: Pause | None = None) -> Where:
-    """Where code waits whose frames, the outermost first, these are.
+    """Return the position of a wait.
 
     Args:
+        frames: The frames of the code that waits, the outermost first.
         instance: The node.
-        pause: That of the loop in which it waits, if one of the frames is the loop's.
+        pause: The pause of the polling loop in which it waits, if it is in one.
     """
     line = None
     if pause is not None and pause.frame in frames:
@@ -133,10 +133,10 @@ def _called_in(frames: Iterable[Frame], instance: object) -> str:
 
 
 def users_part(error: BaseException) -> TracebackType | None:
-    """An error's traceback without graphflow's frames, as far as it goes through the user's; whole if it does not.
+    """Return an error's traceback without graphflow's frames; the whole one if it contains no frame of the user's.
 
-    It ends with the frames in which the error was raised, unless graphflow's code has raised it in words of its own:
-    then it is about what the user's last line has asked for.
+    It ends with the frames in which the error was raised. If graphflow's code raised the error itself, to refuse an
+    argument, it ends with the user's last line, which the error is about.
     """
     parts = list(parts_of(error.__traceback__))
     own = [place for place, part in enumerate(parts) if _is_users_frame(part.tb_frame)]
@@ -151,28 +151,28 @@ def users_part(error: BaseException) -> TracebackType | None:
 
 
 def parts_of(trace: TracebackType | None) -> Iterator[TracebackType]:
-    """The frames of a traceback, the outermost first."""
+    """Yield the parts of a traceback, the outermost first."""
     while trace is not None:
         yield trace
         trace = trace.tb_next
 
 
-def is_refusal(part: TracebackType, *words: str) -> bool:
-    """Whether graphflow's code has raised an error in words of its own here: about arguments of the caller's.
+def is_refusal(part: TracebackType, *statements: str) -> bool:
+    """Whether library code raised an error here by a statement of its own, about arguments of the caller.
 
     Args:
-        words: Statements besides `raise` that do so, such as `assert`.
+        statements: Keywords besides `raise` that do so, such as `assert`.
     """
     code = part.tb_frame.f_code
     is_own = is_ours(code.co_filename) or not (is_users(code.co_filename) or code.co_filename.startswith(_PYTHONS))
     line = linecache.getline(code.co_filename, part.tb_lineno).lstrip()
-    return is_own and line.startswith(tuple(f"{word} " for word in ("raise", *words)))
+    return is_own and line.startswith(tuple(f"{keyword} " for keyword in ("raise", *statements)))
 
 
 def place_in(error: BaseException) -> str:
-    """The last line of the user's own code that an error passed through, as `file:line`; empty if there is none.
+    """Return the last line of the user's own code that an error passed through, as `file:line`; empty if none.
 
-    Lines of installed packages count only where there is no other: the user's nodes may be installed.
+    Lines of installed packages count only if there is no other: the user's nodes may be installed.
     """
     place, is_theirs, trace = "", False, error.__traceback__
     while trace is not None:

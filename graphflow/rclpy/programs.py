@@ -157,7 +157,7 @@ def _begin(program: Program) -> None:
             os.execv(program.file, sys.argv)
         sys.path.insert(0, str(program.file.parent))
         if hiding.hides_what_it_imports(program.file):
-            hiding.tell(program.file)
+            hiding.warn(program.file)
         runpy.run_path(str(program.file), run_name="__main__")
         unrun.tell(program.file)
         return

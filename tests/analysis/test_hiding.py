@@ -68,9 +68,9 @@ def test_a_program_with_the_name_of_a_package(name: str, source: str, hides: boo
 
 def test_it_is_told_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """By a note."""
-    monkeypatch.setattr(hiding, "_told", set())
+    monkeypatch.setattr(hiding, "_warned", set())
     file = beside(tmp_path, "lampshade", "", monkeypatch)
     assert import_module("lampshade")
-    hiding.tell(file)
-    hiding.tell(file)
+    hiding.warn(file)
+    hiding.warn(file)
     assert capsys.readouterr().err.count("note: ") == 1

@@ -177,7 +177,7 @@ def _tell_hidden(package: str) -> None:
 
         from graphflow.analysis import hiding
 
-        hiding.tell(Path(found.origin))
+        hiding.warn(Path(found.origin))
 
 
 def _is_ours(package: str) -> bool:

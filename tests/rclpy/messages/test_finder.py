@@ -74,7 +74,7 @@ def test_a_file_that_hides_a_package(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is told once: what imports it may fail with an error about something else, or do nothing."""
-    monkeypatch.setattr(hiding, "_told", set())
+    monkeypatch.setattr(hiding, "_warned", set())
     (tmp_path / f"{name}.py").touch()
     monkeypatch.syspath_prepend(str(tmp_path))
     assert [finder.MessagePackages().find_spec(name, None) for _ in range(2)] == [None, None]
