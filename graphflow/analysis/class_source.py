@@ -180,10 +180,11 @@ class ClassSource:
         """
         try:
             file = inspect.getsourcefile(cls) or ""
-            syntax = syntax_of(file)
+            self._add_source(cls, file, syntax_of(file), continued)
         except (OSError, SyntaxError, TypeError, ValueError):  # no source, so its methods may do anything
             self._is_known = False
-            return
+
+    def _add_source(self, cls: type, file: str, syntax: Syntax, continued: set[str]) -> None:
         if syntax not in self._files:
             self._files.append(syntax)
             self._globals[syntax] = vars(sys.modules.get(cls.__module__, object))
@@ -194,19 +195,17 @@ class ClassSource:
         self._is_known &= not _INTERCEPTING & vars(cls).keys()
         self._is_known &= all(code.co_filename == file for code in written)  # no method was put there by other code
         self._is_known &= all(code.co_firstlineno in syntax.method_lines for code in written)
-        for definition in syntax.classes:
-            if definition.name != cls.__name__:
+        items = (item for d in syntax.classes if d.name == cls.__name__ for item in d.body)
+        for item in items:
+            if not (isinstance(item, FunctionNode) and _is_of(cls, item)):
                 continue
-            for item in definition.body:
-                if not (isinstance(item, FunctionNode) and _is_of(cls, item)):
-                    continue
-                for inner in ast.walk(item):
-                    if isinstance(inner, FunctionNode):
-                        self._functions[file, first_line(inner)] = Function(inner, item.name)
-                if item.name not in self.methods or item.name in continued:
-                    self.methods.setdefault(item.name, []).append(item)
-                    supers = (n for n in ast.walk(item) if isinstance(n, ast.Attribute) and is_super(n.value))
-                    continued |= {node.attr for node in supers}
+            for inner in ast.walk(item):
+                if isinstance(inner, FunctionNode):
+                    self._functions[file, first_line(inner)] = Function(inner, item.name)
+            if item.name not in self.methods or item.name in continued:
+                self.methods.setdefault(item.name, []).append(item)
+                supers = (n for n in ast.walk(item) if isinstance(n, ast.Attribute) and is_super(n.value))
+                continued |= {node.attr for node in supers}
 
     def link(self) -> None:
         """Find the uses of all attributes, and the callers of all methods, after the last `add`."""

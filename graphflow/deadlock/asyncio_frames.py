@@ -58,7 +58,7 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {
     asyncio.Barrier.wait.__code__: BARRIER,
 }
 """The waits of asyncio's and threading's primitives, by code, and the methods of the same object that end them."""
-DEEDS = {
+VERBS = {
     FUTURE: "ends",
     ("set",): "sets",
     ("put", "put_nowait"): "fills",

@@ -402,7 +402,7 @@ class _Builder:
             others += inside
         queues = sorted([*(self._vertices.queue_id(r) for r in runners), *(queue.id for queue in waiting)])
         activities = sorted({self._vertices.task_id(other) for other in others})
-        return SetBy(found.what, tuple(queues), tuple(activities), is_held, found.deed, found.gives_up)
+        return SetBy(found.what, tuple(queues), tuple(activities), is_held, found.verb, found.gives_up)
 
     def _inside(self, lock: object) -> list[TaskLike]:
         """Return the activities, and tasks below them, that hold a lock by `with`, each once per block."""

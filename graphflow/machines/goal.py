@@ -269,7 +269,7 @@ class Outcome:
     record: GoalRecord
     do: tuple[Do, ...]
     """Effects for the server to carry out, in order."""
-    told: tuple[GoalStatus, ...]
+    statuses: tuple[GoalStatus, ...]
     """States to publish, in order: none if clients see no change."""
 
 

@@ -283,7 +283,7 @@ async def test_who_holds_a_lock(graphflow_runner: asyncio.Runner) -> None:
 
     first, second = scene.snapshot.take().activities.values()
     assert first.wait == FREE
-    assert second.wait == SetBy("self.lock", (), (first.id,), is_held=True, deed="releases")
+    assert second.wait == SetBy("self.lock", (), (first.id,), is_held=True, verb="releases")
     await runner.cancel()
 
 
@@ -294,7 +294,7 @@ async def test_who_holds_a_lock_below_a_handler(graphflow_runner: asyncio.Runner
     await begin(runner, "message")
 
     handler, task = scene.snapshot.take().activities.values()
-    held = SetBy("self.lock", (), (task.id,), is_held=True, deed="releases")
+    held = SetBy("self.lock", (), (task.id,), is_held=True, verb="releases")
     assert handler.wait == All((held, held))
     assert (task.label, task.wait, task.holds, task.left) == ("task enter_twice", held, (), None)
     await runner.cancel()

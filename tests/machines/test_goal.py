@@ -116,7 +116,7 @@ def test_any_life_ends_once_and_as_it_should(events: list[GoalEvent]) -> None:
         if outcome is None:  # it was rejected, and is forgotten
             assert record.phase is Phase.REJECTED
             return
-        path += outcome.told
+        path += outcome.statuses
         queued = (queued or Do.ENQUEUE in outcome.do) and Do.DEQUEUE not in outcome.do
         if event is GoalEvent.BEGUN and not before.is_over:
             assert queued

@@ -295,14 +295,14 @@ class Book(GoalBook):
         if event is GoalEvent.ACCEPTED:
             self.accept(goal_id, outcome.record)
             return outcome
-        for status in outcome.told:
+        for status in outcome.statuses:
             if life.over is not None:
                 self.model.wrong(f"{life.n} ends twice")
             life.path.append(status)
             life.changed = now()
             if status.is_terminal:
                 life.over = now()
-        if CANCELING in outcome.told:
+        if CANCELING in outcome.statuses:
             life.tell_to_end()
             if not life.is_granted and not self._client_is_lost(life):
                 self.model.wrong(f"{life.n} is cancelled, and nobody has asked for it")

@@ -71,8 +71,7 @@ class Conditions:
             case ast.Name(id=name):
                 self._read_name(name, scope, seen)
             case ast.Call(func=function, args=arguments, keywords=[]):
-                for argument in arguments:
-                    self.read(argument, scope, seen)
+                self._read_parts(ast.Tuple(arguments), scope, seen)
                 self.call(function, scope, seen)
             case ast.GeneratorExp(elt=element, generators=loops) | ast.ListComp(elt=element, generators=loops):
                 self._comprehension(element, loops, scope, seen)
@@ -81,14 +80,17 @@ class Conditions:
             case ast.Compare(left=left, comparators=[ast.Constant(value=None)]) if self.is_goal(left):
                 return
             case _ if isinstance(node, _COMPOUND):
-                for child in ast.iter_child_nodes(node):
-                    if isinstance(child, ast.expr):
-                        self.read(child, scope, seen)
+                self._read_parts(node, scope, seen)
             case _:
                 raise Unknown
 
+    def _read_parts(self, node: ast.AST, scope: Scope, seen: frozenset[str]) -> None:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.expr):  # others are operators and contexts
+                self.read(child, scope, seen)
+
     def _read_attribute(self, node: ast.Attribute, scope: Scope, seen: frozenset[str]) -> None:
-        if (owned := self._of_held(node)) is not None:
+        if (owned := self._of_owned(node)) is not None:
             conditions, part = owned
             conditions.read(part, NO_NAMES)
             return
@@ -120,7 +122,7 @@ class Conditions:
 
     def is_goal(self, node: ast.expr) -> bool:
         """Whether an expression is an attribute with a goal; if so, note it, but not the goal's end as an event."""
-        if isinstance(node, ast.Attribute) and (owned := self._of_held(node)) is not None:
+        if isinstance(node, ast.Attribute) and (owned := self._of_owned(node)) is not None:
             return owned[0].is_goal(owned[1])
         name = node.attr if isinstance(node, ast.Attribute) and _path(node) == [node.attr] else ""
         is_goal = isinstance(getattr(self._instance, name, None), PendingGoal)
@@ -144,7 +146,7 @@ class Conditions:
 
     def call(self, function: ast.expr, scope: Scope, seen: frozenset[str]) -> None:
         """Note the attributes that decide the result of a call, besides its arguments."""
-        if isinstance(function, ast.Attribute) and (owned := self._of_held(function)) is not None:
+        if isinstance(function, ast.Attribute) and (owned := self._of_owned(function)) is not None:
             conditions, part = owned
             conditions.call(part, NO_NAMES, frozenset())
             return
@@ -178,7 +180,7 @@ class Conditions:
             raise Unknown
         self.found.add(name)
 
-    def _of_held(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
+    def _of_owned(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
         """Return the conditions of an object that this one owns, and the expression as seen from its methods."""
         return None
 
@@ -218,7 +220,7 @@ class LoopConditions(Conditions):
     def __init__(self, loop: Loop, function: FunctionNode, frame: Frame, source: ClassSource, node: object) -> None:
         super().__init__(source, node)
         self._loop = loop
-        self._held: dict[str, Conditions] = {}
+        self._owned: dict[str, Conditions] = {}
         """By attribute: the conditions of the object in it."""
         inside = set(ast.walk(loop))
         code, values = frame.f_code, frame.f_locals
@@ -284,18 +286,18 @@ class LoopConditions(Conditions):
         return self.found
 
     @property
-    def held(self) -> dict[str, set[str]]:
+    def owned(self) -> dict[str, set[str]]:
         """Deciding attributes of other objects, by the attribute with the object."""
-        return {owner: conditions.found for owner, conditions in self._held.items()}
+        return {owner: conditions.found for owner, conditions in self._owned.items()}
 
-    def _of_held(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
+    def _of_owned(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
         owner, *path = _path(node) or [""]
         held = getattr(self._instance, "__dict__", {}).get(owner)
         if not path or is_plain(held) or holds_plain(held) or isinstance(held, (PendingGoal, *TOOLS)):
             return None
         if not is_users_object(held):
             return None
-        conditions = self._held.setdefault(owner, Conditions(source_of(held), held))
+        conditions = self._owned.setdefault(owner, Conditions(source_of(held), held))
         conditions.tasks = self.tasks
         return conditions, ast.parse(".".join(["self", *path]), mode="eval").body
 

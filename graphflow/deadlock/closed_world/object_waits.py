@@ -62,24 +62,24 @@ def _question(frames: list[Frame], node: Subject) -> Question:
             break
         held = [name for name, value in vars(node.instance).items() if value is innermost]
         if held and is_users_object(innermost):
-            return HeldQuestion(frames, node, held[0], innermost)
+            return OwnedQuestion(frames, node, held[0], innermost)
     things = [wait.thing for wait in map(object_wait, frames) if wait is not None]
     # The node's own method may wait for an event that lies in an object, such as a dataclass.
     for name, value in vars(node.instance).items() if things else ():
         if is_users_object(value) and any(is_inside(part, t) for part in vars(value).values() for t in things):
-            return HeldQuestion(frames, node, name, value)
+            return OwnedQuestion(frames, node, name, value)
     return NodeQuestion(frames, node)
 
 
 class NodeQuestion(Question):
     """The question about a wait in a method of the node, which may poll objects that it owns."""
 
-    def _changing_held(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
-        question = HeldQuestion([], self._node, owner, getattr(self._instance, owner))
+    def _changing_owned(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
+        question = OwnedQuestion([], self._node, owner, getattr(self._instance, owner))
         return question.changing(names, loop, below)
 
 
-class HeldQuestion(Question):
+class OwnedQuestion(Question):
     """The question about a wait in an object that the node owns."""
 
     def __init__(self, frames: list[Frame], node: Subject, owner: str, held: object) -> None:

@@ -26,8 +26,8 @@ from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new, messages
 from graphflow.analysis.syntax import FunctionNode, is_nested, walk
 from graphflow.analysis.user_code import Pause
 from graphflow.deadlock.asyncio_frames import (
-    DEEDS,
     ENDINGS,
+    VERBS,
     AnyFuture,
     TaskLike,
     awaited_future,
@@ -70,7 +70,7 @@ class Setters(NamedTuple):
     """Number of activities that can be inside at a time."""
     tasks: tuple[AnyFuture, ...] = ()
     """Tasks and goals whose end may end the wait, too."""
-    deed: str = "sets"
+    verb: str = "sets"
     """Verb for what the handlers do to the object."""
     gives_up: bool = False
     """Whether a deadline ends the wait for good, and not only this attempt."""
@@ -97,7 +97,7 @@ def cancellers(thing: object, node: Subject) -> Setters | None:
         Unknown: Other code may cancel it.
     """
     instance = node.instance
-    held = {name for name, value in vars(instance).items() if value is thing or _holds(value, thing)}
+    held = {name for name, value in vars(instance).items() if value is thing or _contains(value, thing)}
     if not held:
         return None
     source, methods, over = source_of(instance), set[str](), beginnings_of(node)
@@ -202,7 +202,7 @@ class Question:
         everything = [*(pair for cls in type(self._instance).__mro__ for pair in vars(cls).items())]
         everything += vars(self._instance).items()
         is_it = {name for name, value in everything if is_inside(value, thing)}
-        return is_it, {name for name, value in vars(self._instance).items() if _holds(value, thing)}
+        return is_it, {name for name, value in vars(self._instance).items() if _contains(value, thing)}
 
     def _class_with(self, name: str) -> str:
         """Return the module of the class that has an attribute; empty if the instance itself has it."""
@@ -219,7 +219,7 @@ class Question:
         uses = list(self._uses(name))
         found = {use.method for use in uses if use.kind == "called" and use.name in methods}
         setters = self._reached(f"self.{name}", found)
-        setters = setters and setters._replace(deed=DEEDS[methods])
+        setters = setters and setters._replace(verb=VERBS[methods])
         if methods != ("release",) or not any(use.kind == "entered" for use in uses):
             return setters
         handlers, parts = (setters.handlers, setters.parts) if setters else (frozenset[str](), frozenset[str]())
@@ -227,8 +227,8 @@ class Question:
             places = {_places(use.value) for use in uses if use.kind == "assigned"}
             if len(places) != 1:
                 raise Unknown
-            return Setters(f"self.{name}", handlers, thing, places.pop(), deed=DEEDS[methods], parts=parts)
-        return Setters(f"self.{name}", handlers, thing, deed=DEEDS[methods], parts=parts)
+            return Setters(f"self.{name}", handlers, thing, places.pop(), verb=VERBS[methods], parts=parts)
+        return Setters(f"self.{name}", handlers, thing, verb=VERBS[methods], parts=parts)
 
     def _ended_in_container(self, name: str, methods: tuple[str, ...]) -> Setters | None:
         """Return the setters of a primitive in a list or dictionary: any call of a method that ends such a wait."""
@@ -244,7 +244,7 @@ class Question:
                         raise Unknown
                     found.add(method)
         setters = self._reached(f"a part of self.{name}", found)
-        return setters and setters._replace(deed=DEEDS[methods])
+        return setters and setters._replace(verb=VERBS[methods])
 
     def _uses(self, name: str) -> Iterator[Use]:
         """Yield the uses of an attribute with a primitive.
@@ -282,8 +282,8 @@ class Question:
         if any(use.syntax in inside or use.method in below for use in uses):  # the loop changes its own condition
             raise Unknown
         changing = {use.method for use in uses}
-        for owner, names in conditions.held.items():
-            changing |= self._changing_held(owner, names, loop, below)
+        for owner, names in conditions.owned.items():
+            changing |= self._changing_owned(owner, names, loop, below)
             attributes |= {f"{owner}.{name}" for name in names}
         what = " and ".join([*(f"self.{name}" for name in sorted(attributes)), *sorted(conditions.names)])
         tasks, pause = tuple(conditions.tasks), pause_of(loop, place.frame)
@@ -292,7 +292,7 @@ class Question:
         found = self._reached(what, changing)
         return found and found._replace(tasks=tasks, module=module if conditions.names else "", pause=pause)
 
-    def _changing_held(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
+    def _changing_owned(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
         """Return the methods that change attributes of an owned object which a loop polls.
 
         Args:
@@ -404,7 +404,7 @@ def method_of(task: TaskLike) -> str:
     return str(getattr(task.get_coro(), "__name__", ""))
 
 
-def _holds(container: object, thing: object) -> bool:
+def _contains(container: object, thing: object) -> bool:
     if isinstance(container, dict):
         return any(part is thing for part in list(container.values()))
     return isinstance(container, (list, set, deque, tuple)) and any(part is thing for part in list(container))

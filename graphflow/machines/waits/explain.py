@@ -203,15 +203,15 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     if edge.loop:
         return [f"{who} waits for {what},", "and what could end that needs the event loop, which it blocks"]
     if not edge.group and not edge.queue and edge.to == name:
-        return [f"{who} waits for {what},", f"which its own code {edge.via.deed} only after that"]
+        return [f"{who} waits for {what},", f"which its own code {edge.via.verb} only after that"]
     others = [queue for queue in queues_of(edge, graph) if queue.handler != graph.activities[name].handler]
     if not others:
-        return [f"{who} waits for {what},", f"which only another run of it {edge.via.deed}"]
+        return [f"{who} waits for {what},", f"which only another run of it {edge.via.verb}"]
     kept = " and ".join(queue.work for queue in others)
     is_one = len(others) == 1
     if edge.group and graph.groups[edge.group].is_start:
-        return [f"{who} waits for {what},", f"and {kept}, which {edge.via.deed} it, runs when on_start has returned"]
-    verb = edge.via.deed if is_one else edge.via.deed.removesuffix("s")
+        return [f"{who} waits for {what},", f"and {kept}, which {edge.via.verb} it, runs when on_start has returned"]
+    verb = edge.via.verb if is_one else edge.via.verb.removesuffix("s")
     return [f"{who} waits for {what},", f"and {kept}, which {verb} it, {'is' if is_one else 'are'} kept out"]
 
 
@@ -266,7 +266,7 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph, *, is_alone: b
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
         return [f"which {title(other)} holds"]
     if isinstance(edge.via, SetBy) and not edge.group and edge.to == activity.id:
-        return [f"which {title(other)} itself {edge.via.deed} further on"]
+        return [f"which {title(other)} itself {edge.via.verb} further on"]
     if not edge.group:
         return [f"{'which' if is_alone else wanted(edge, graph)} {title(other)} must give"]
     group = graph.groups[edge.group]
@@ -278,7 +278,7 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph, *, is_alone: b
         return [who, f"{'opens' if isinstance(edge.via, Opening) else 'runs'} when {title(other)} has returned"]
     if not isinstance(edge.via, SetBy):
         return [who, *_needs(group, [other], "waits for")]
-    verb, needs = edge.via.deed, "needs"
+    verb, needs = edge.via.verb, "needs"
     if len(queues) > 1:
         verb, needs = verb.removesuffix("s"), "need"
     waiting, dropped = sum(q.waiting for q in queues), sum(q.dropped for q in queues)

@@ -83,7 +83,7 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         return
     if isinstance(edge.via, SetBy) and edge.via.is_held:
         yield from _apart_from_the_lock(edge.via.what, graph.activities[edge.to])
-    if isinstance(edge.via, SetBy) and edge.via.deed == "offers" and group is None:
+    if isinstance(edge.via, SetBy) and edge.via.verb == "offers" and group is None:
         yield _text(f"make {edge.via.what} before {graph.activities[edge.to].line} waits for it")
     if queue is not None and group is not None:
         yield from _more_runs(edge, queue, group, graph)

@@ -86,7 +86,7 @@ class SetBy:
     """Activities under way that may still make it."""
     is_held: bool = False
     """Whether the object is a lock, semaphore or condition that those activities are inside of."""
-    deed: str = "sets"
+    verb: str = "sets"
     """Verb for the change: `fills` a queue, `releases` a lock."""
     gives_up: bool = False
     """Whether a deadline ends the wait for good, and not only this attempt."""

@@ -77,8 +77,8 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
             return ["open", service]
         case Join(activity=activity):
             return ["join", activity]
-        case SetBy(what=what, queues=queues, activities=activities, is_held=is_held, deed=deed, gives_up=ends):
-            return ["set", what, list(queues), list(activities), is_held, deed, ends]
+        case SetBy(what=what, queues=queues, activities=activities, is_held=is_held, verb=verb, gives_up=ends):
+            return ["set", what, list(queues), list(activities), is_held, verb, ends]
         case All(of=conditions):
             return ["all", [_condition(c, depth + 1) for c in conditions]]
         case AnyOf(of=conditions):
@@ -184,8 +184,8 @@ def _read_condition(data: object, depth: int) -> Condition:
             return Opening(_text(service))
         case ["join", activity]:
             return Join(_text(activity))
-        case ["set", what, queues, activities, is_held, deed, ends]:
-            return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held), _text(deed), _bool(ends))
+        case ["set", what, queues, activities, is_held, verb, ends]:
+            return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held), _text(verb), _bool(ends))
         case ["all", parts]:
             return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
         case ["any", parts]:

@@ -347,7 +347,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             self.goals[goal.goal_id] = goal
         if goal.is_over and goal.goal_id in self.goals:
             goal.result = self._fit_result(goal, event, goal.partial if result is None else result)
-        for status in outcome.told:
+        for status in outcome.statuses:
             self._states.put(goal.goal_id, int(status))
             self._tell_states()
         for do in outcome.do:

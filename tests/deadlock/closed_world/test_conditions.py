@@ -140,7 +140,7 @@ async def read(written: Written, body: str) -> tuple[set[str], int]:
     conditions = LoopConditions(loop, function.syntax, frame, source, node)
     try:
         found = conditions.attributes()
-        parts = {f"{owner}.{name}" for owner, names in conditions.held.items() for name in names}
+        parts = {f"{owner}.{name}" for owner, names in conditions.owned.items() for name in names}
         return found | parts, len(conditions.tasks)
     finally:
         coroutine.close()

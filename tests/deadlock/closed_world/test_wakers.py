@@ -240,7 +240,7 @@ async def test_a_lock_that_is_entered(
         await thing.acquire()
     found = await scene.found()
 
-    assert found == Setters(f"self.{lock}", frozenset(), thing, places, deed="releases")
+    assert found == Setters(f"self.{lock}", frozenset(), thing, places, verb="releases")
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def test_a_ring_and_who_is_behind_it() -> None:
 
 def test_what_one_offers_only_further_on() -> None:
     """Its own code would bring it about, after the wait."""
-    tick = replace(TICK, wait=SetBy("service /later", (), ("tick",), deed="offers"), holds=(), left=None)
+    tick = replace(TICK, wait=SetBy("service /later", (), ("tick",), verb="offers"), holds=(), left=None)
 
     assert report(tick) == [
         "LIKELY DEADLOCK: timer tick of /arm waits for service /later, which its own code offers only after that",
@@ -238,7 +238,7 @@ def test_something_that_a_handler_sets() -> None:
 
 def test_several_that_set_it() -> None:
     """All are named, by what they do to it, and one line moves them all; the waiter itself is left where it is."""
-    wait = SetBy("self.items", ("q", "r", "s"), deed="fills")
+    wait = SetBy("self.items", ("q", "r", "s"), verb="fills")
     names = {"q": "subscription on_scan", "r": "service put", "s": "timer tick"}
     queues = [replace(ADD, id=id_, label=label, calls=(), waiting=1) for id_, label in names.items()]
 

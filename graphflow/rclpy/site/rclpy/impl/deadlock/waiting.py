@@ -446,7 +446,7 @@ class _Look:
         if not fillers or wait.may_be_filled_by(programs_files()):
             return FREE
         queues, active = (self._id(e, "q") for e in fillers), (self._id(r) for r in self._runs if r.entity in fillers)
-        return SetBy(wait.what, tuple(sorted(queues)), tuple(sorted(active)), deed="hears", gives_up=True)
+        return SetBy(wait.what, tuple(sorted(queues)), tuple(sorted(active)), verb="hears", gives_up=True)
 
     def _of_opening(self, service: str, level: Level, node: Any, run: Run | None, *, gives_up: bool) -> Condition:
         """A wait for a server that, as far as the source code shows, only code makes that cannot run meanwhile."""
@@ -454,7 +454,7 @@ class _Look:
         found = None if self._servers[service] else opening_of(service, level.frames, subject, others, programs_files())
         if found is None or (found.handlers and any(type(other) is type(node) for other in others)):
             return FREE
-        setters_ = Setters(offer(service), found.handlers, deed="offers", gives_up=gives_up)
+        setters_ = Setters(offer(service), found.handlers, verb="offers", gives_up=gives_up)
         condition = self._set_by(setters_, own, tasks, node, run)
         if not found.is_own:
             return condition
@@ -486,7 +486,7 @@ class _Look:
         queues = {self._id(entity, "q") for entity, handler in own if handler in found.handlers}
         others_runs = [r for r in self._runs if r is not run and (r.node is node or r in tasks)]
         active = sorted(self._id(r) for r in others_runs if self._role(r).handler in found.handlers)
-        return SetBy(found.what, tuple(sorted(queues)), tuple(active), deed=found.deed, gives_up=found.gives_up)
+        return SetBy(found.what, tuple(sorted(queues)), tuple(active), verb=found.verb, gives_up=found.gives_up)
 
 
 def attend(life: ContextState) -> None:
