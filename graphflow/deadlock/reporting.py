@@ -144,10 +144,9 @@ class Reporter:
         if known not in self._behind and not is_first:
             self._behind[known] = victims
         report = self.reports.get(known)
+        who = _titles(core) if report is None else report.who
         for victim in sorted(victims - self._behind.setdefault(known, set())):
-            logger.warning(
-                "%s waits behind the deadlock of %s", victim, _titles(core) if report is None else report.who
-            )
+            logger.warning("%s waits behind the deadlock of %s", victim, who)
         self._behind[known] |= victims
 
     def _note_foreign(self, ring: Ring, core: list[ActivityView], reporter: str) -> None:

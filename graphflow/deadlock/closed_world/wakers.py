@@ -97,11 +97,11 @@ def cancellers(thing: object, node: Subject) -> Setters | None:
         Unknown: Other code may cancel it.
     """
     instance = node.instance
-    held = {name for name, value in vars(instance).items() if value is thing or _contains(value, thing)}
-    if not held:
+    names = {name for name, value in vars(instance).items() if value is thing or _contains(value, thing)}
+    if not names:
         return None
     source, methods, over = source_of(instance), set[str](), beginnings_of(node)
-    for name in held:
+    for name in names:
         uses = source.uses(name)
         if getattr(instance, name) is not thing or source.foreign(name) or any(use.kind == "given" for use in uses):
             if any(use.method not in over for use in (*source.foreign("cancel"), *source.uses("cancel"))):
@@ -111,7 +111,7 @@ def cancellers(thing: object, node: Subject) -> Setters | None:
     entries = entries_of(node)
     alone = {runner.spec.handler for runner in node.runners if runner.spec.kind == "timer"}
     alone |= {method_of(task) for task in node.tasks}
-    what = " and ".join(f"self.{name}" for name in sorted(held))
+    what = " and ".join(f"self.{name}" for name in sorted(names))
     above = source.above(methods - over, entries)
     if above & source.gathered:
         raise Unknown

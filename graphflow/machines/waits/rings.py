@@ -192,7 +192,7 @@ class _Waits:
         yield from self._of_condition(activity.wait)
 
     def _of_condition(self, condition: Condition) -> Iterator[Edge]:
-        """Yield an edge for each leaf that is not met; one to a group stands for an edge to each of its holders."""
+        """Yield an edge for each leaf that is not met; one to a group represents an edge to each of its holders."""
         index, dead = self._index, self.dead
         if not index.lacking_for(condition, dead):
             return
