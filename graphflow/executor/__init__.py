@@ -1,1 +1,1 @@
-"""How handlers run: clocks, groups, the runs themselves, and the ledger of what calls, waits and holds."""
+"""Execution of handlers: clocks, concurrency groups, runners, activities, and the ledger of waits."""

@@ -1,8 +1,8 @@
-"""An activity: one run of a handler, stepped straight from the arrival that caused it.
+"""Activities: each is one run of a handler, stepped directly from the arrival that caused it.
 
-It is a minimal asyncio task: the loop never hears of it unless the handler suspends, which saves a loop iteration
-per message, and yet `asyncio.timeout`, `TaskGroup`, `current_task` and the rest work inside it from its first line
-(asyncio documents `_enter_task` and `_leave_task` for such tasks).
+It is a minimal asyncio task. The loop is not involved unless the handler suspends, which saves a loop iteration per
+message; still, `asyncio.timeout`, `TaskGroup`, `current_task` and others work inside it from its first line (asyncio
+documents `_enter_task` and `_leave_task` for such tasks).
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ class Activity:
     """One run of a coroutine, with the part of `asyncio.Task`'s interface that asyncio's own tools use.
 
     Args:
-        finished: Called once with (result, error) when the coroutine has ended, its `finally` blocks included.
-        context: Its context variables, for itself alone; without one, a copy of the caller's.
+        finished: Called once with (result, error) when the coroutine has ended, including its `finally` blocks.
+        context: Its own context variables; by default a copy of the caller's.
 
     Attributes:
-        suspended_at: When it began to wait for a future, by the loop's time; only while it does.
+        suspended_at: Start of its wait for a future, in the loop's time; only set during the wait.
     """
 
     __slots__ = (
@@ -62,9 +62,9 @@ class Activity:
         self._cancel_message: Any = None
         self._cancel_requests = 0
         self.group: HandlerGroup | None = None
-        """The group whose slot the activity holds."""
+        """The group in which the activity has a slot."""
         self.returning_to: HandlerGroup | None = None
-        """The group that the activity waits to return to."""
+        """The group to which the activity waits to return."""
 
     def __repr__(self) -> str:
         return f"<Activity {self.name}{' done' if self.done() else ''}>"
@@ -74,7 +74,7 @@ class Activity:
         self._context.run(self.step)
 
     def step(self, error: BaseException | None = None) -> None:
-        """Go on to the next suspension. For the loop; within the activity's context."""
+        """Run to the next suspension. Called by the loop, within the activity's context."""
         coroutine = self._coroutine
         if coroutine is None:
             return
@@ -93,7 +93,7 @@ class Activity:
             _leave_task(loop, self)  # type: ignore[arg-type]
             self._end(None, exit_)
             raise
-        except BaseException as raised:
+        except BaseException as raised:  # any end of the coroutine, cancellation included, is passed to `finished`
             result, failure = None, raised
         else:
             _leave_task(loop, self)  # type: ignore[arg-type]
@@ -101,7 +101,7 @@ class Activity:
             return
         _leave_task(loop, self)  # type: ignore[arg-type]
         self._end(result, failure)
-        error = failure = None  # their tracebacks refer to this frame: leave no cycle for the garbage collector
+        error = failure = None  # their tracebacks refer to this frame: avoid a reference cycle
 
     def _wait_for(self, awaited: Any) -> None:
         blocking = getattr(awaited, "_asyncio_future_blocking", None)
@@ -124,7 +124,7 @@ class Activity:
     def _wakeup(self, future: asyncio.Future[Any]) -> None:
         try:
             future.result()
-        except BaseException as error:
+        except BaseException as error:  # whatever the future failed with is raised in the coroutine
             self.step(error)
         else:
             self.step()
@@ -132,16 +132,16 @@ class Activity:
     def _end(self, result: Any, error: BaseException | None) -> None:
         self._coroutine = None
         finished = self._finished
-        del self._finished  # it may refer to this activity: likewise
+        del self._finished  # it may refer to this activity: avoid a reference cycle
         finished(result, error)
 
     def _cancelled(self) -> CancelledError:
         return CancelledError() if self._cancel_message is None else CancelledError(self._cancel_message)
 
-    # What asyncio.timeout, TaskGroup and the like ask of the current task.
+    # The interface that asyncio.timeout, TaskGroup and others use of the current task.
 
     def cancel(self, msg: Any = None) -> bool:
-        """Raise CancelledError in the coroutine at its next step; False when it has ended."""
+        """Raise CancelledError in the coroutine at its next step; returns False if it has ended."""
         if self._coroutine is None:
             return False
         self._cancel_requests += 1

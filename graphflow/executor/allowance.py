@@ -1,4 +1,4 @@
-"""How often something may be done for others: a bucket of turns that fills again with time."""
+"""Rate limiting of work on behalf of other processes, by a token bucket."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from graphflow.times import NANOSECONDS
 
 
 class Allowance:
-    """So many turns a second, and as many at once after a rest. Callable from any thread.
+    """A token bucket: a rate, and a burst of one second's tokens. Callable from any thread.
 
     Args:
-        per_second: Turns that come back each second, and the most that gather.
-        now_ns: Tells the time, in nanoseconds.
+        per_second: Tokens added per second, which is also the capacity.
+        now_ns: Returns the time in nanoseconds.
     """
 
     __slots__ = ("_left", "_now_ns", "_per_second", "_since", "refused")
@@ -21,10 +21,10 @@ class Allowance:
         self._per_second = self._left = per_second
         self._now_ns, self._since = now_ns, now_ns()
         self.refused = 0
-        """Turns that were wanted and not there."""
+        """Requests refused for lack of a token."""
 
     def take(self) -> bool:
-        """Whether there is a turn; it is then taken."""
+        """Take a token; returns False if there is none."""
         now = self._now_ns()
         self._left = min(self._per_second, self._left + (now - self._since) / NANOSECONDS * self._per_second)
         self._since = now

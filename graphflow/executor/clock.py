@@ -1,4 +1,4 @@
-"""Clocks: all code that waits in graph time asks one, so that tests and simulations can own time."""
+"""Clocks: all waits in graph time go through one, so that tests and simulations control time."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from graphflow.times import Time, to_ns
 
 
 class Alarm(Protocol):
-    """A scheduled call, which can be cancelled."""
+    """A scheduled call that can be cancelled."""
 
     def cancel(self) -> None: ...
 
 
 class Clock(ABC):
-    """Time and waiting. Subclasses say what time it is and how to be called at a given time."""
+    """Time and waiting. Subclasses define the current time and how to schedule a call."""
 
     def now(self) -> Time:
-        """The time of day."""
+        """Return the time of day."""
         return Time(self.time_ns())
 
     @abstractmethod
     def time_ns(self) -> int:
-        """The time of day in nanoseconds since 1970."""
+        """Return the time of day in nanoseconds since 1970."""
 
     @abstractmethod
     def monotonic_ns(self) -> int:
-        """Nanoseconds since some fixed point; never goes back."""
+        """Return nanoseconds since an arbitrary fixed point; never decreases."""
 
     @abstractmethod
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
@@ -50,7 +50,7 @@ class Clock(ABC):
             handle.cancel()
 
     async def every(self, period: float | None = None, *, hz: float | None = None) -> AsyncGenerator[int, None]:
-        """Count 0, 1, 2, ... once a period (seconds) or `hz` times a second; late ones are skipped, phase is kept."""
+        """Count 0, 1, 2, ... every `period` seconds or `hz` times a second; late ticks are skipped."""
         step = period_ns(period, hz)
         start, n = self.monotonic_ns(), 0
         while True:
@@ -64,10 +64,10 @@ class Clock(ABC):
 
 
 class ClockTimeout:
-    """A block that is cancelled after some time of a clock; made by `Clock.timeout`.
+    """A block that is cancelled after a time on a clock. Made by `Clock.timeout`.
 
     Attributes:
-        until_ns: When, by the clock; 0 before it is entered.
+        until_ns: The deadline by the clock, in nanoseconds; 0 before the block is entered.
     """
 
     def __init__(self, clock: Clock, seconds: float) -> None:
@@ -94,7 +94,7 @@ def _wake(future: asyncio.Future[None]) -> None:
 
 
 def period_ns(period: float | None, hz: float | None) -> int:
-    """A period in nanoseconds, given in seconds or as a rate.
+    """Convert a period in seconds or a rate in Hz to a period in nanoseconds.
 
     Raises:
         ValueError: Both or neither are given, or the value is not a positive number.
@@ -109,7 +109,7 @@ def period_ns(period: float | None, hz: float | None) -> int:
 
 
 class WallClock(Clock):
-    """The system's clocks: time of day for stamps, the loop's monotonic clock for waiting."""
+    """The system's clocks: the time of day for stamps, and the loop's monotonic clock for waits."""
 
     time_ns = staticmethod(time.time_ns)
     monotonic_ns = staticmethod(time.monotonic_ns)

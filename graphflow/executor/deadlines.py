@@ -1,4 +1,4 @@
-"""Deadlines of many calls by one alarm: an alarm for each would take a tenth of the time of a call."""
+"""Deadlines of many calls with a single alarm: one alarm each would take a tenth of a call's time."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from graphflow.executor.clock import Alarm, Clock
 
 
 class Deadlines:
-    """Ends futures that are not done in time. No alarm is set while there are none.
+    """Deadlines of futures. No alarm is set while there are none.
 
     Args:
-        clock: The clock whose time the deadlines are of.
+        clock: The clock of the deadlines.
     """
 
     __slots__ = ("_alarm", "_alarm_ns", "_due", "clock")
@@ -25,13 +25,13 @@ class Deadlines:
         self._alarm_ns = 0
 
     def add(self, future: Future[Any], deadline_ns: int, error: Callable[[], Exception]) -> None:
-        """End a future with an error, made then, once the clock has reached `deadline_ns`."""
+        """Fail a future with `error()` once the clock has reached `deadline_ns`."""
         self._due[future] = (deadline_ns, error)
         if self._alarm is None or deadline_ns < self._alarm_ns:
             self._set(deadline_ns)
 
     def discard(self, future: Future[Any]) -> None:
-        """Forget a future, which may have ended."""
+        """Remove a future, which may have ended."""
         self._due.pop(future, None)
         if not self._due and self._alarm is not None:
             self._alarm.cancel()
@@ -44,7 +44,7 @@ class Deadlines:
 
     def _ring(self) -> None:
         self._alarm = None
-        now = max(self._alarm_ns, self.clock.monotonic_ns())  # a loop may ring a little early
+        now = max(self._alarm_ns, self.clock.monotonic_ns())  # a loop may call a little early
         for future, (deadline_ns, error) in sorted(self._due.items(), key=lambda item: item[1][0]):
             if deadline_ns > now:
                 break

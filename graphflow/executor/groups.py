@@ -1,4 +1,4 @@
-"""Concurrency groups at run time: a node's, by name, and the slots that its handlers' runs hold."""
+"""Concurrency groups at run time: the groups of a node, and the slots that its handlers' runs occupy."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from graphflow.machines.regrouping import Regrouping
 from graphflow.names import did_you_mean
 
 GROUPS_BOUND = 100
-"""Groups of a node, beyond which moving a handler makes no more."""
+"""Most groups of a node that moving a handler may create."""
 
 
 class DeclaredGroup(Protocol):
-    """What a class says about a group."""
+    """A group's declaration in a class."""
 
     limit: int | None
     when_full: WhenFull
@@ -29,16 +29,16 @@ class DeclaredGroup(Protocol):
 
 
 class Member(Protocol):
-    """What queues for a slot."""
+    """A waiter in a group's queue."""
 
     def granted(self, group: HandlerGroup) -> None:
-        """A slot of `group` was handed over; the member holds it from now on."""
+        """Accept a slot of `group`, which the member occupies from now on."""
 
     def yields(self) -> None:
-        """Drop what waits: newer work has come, in a group that keeps only the newest."""
+        """Drop queued work: newer work has arrived, in a group that keeps only the newest."""
 
     def wake(self) -> None:
-        """Run what the group allows by now; a member that had all its slots has no ticket for more."""
+        """Start the runs that the group allows by now; a member with all its slots has no ticket for more."""
 
 
 class HandlerGroup(GroupState[Member]):
@@ -54,13 +54,13 @@ class HandlerGroup(GroupState[Member]):
         """Whether `def` handlers run in threads."""
 
     def give_back(self, loop: AbstractEventLoop) -> None:
-        """End of a run: the slot goes to the member that has waited longest."""
+        """Release a slot at the end of a run: it goes to the member that has waited longest."""
         successor = self.release()
         if successor is not None:
             loop.call_soon(successor.granted, self)
 
     def set_limit(self, limit: int | None, loop: AbstractEventLoop) -> None:
-        """Allow this many runs at a time from now on; runs under way stay."""
+        """Change the number of runs allowed at a time; runs in progress continue."""
         self.limit = limit
         while (successor := self.grant()) is not None:
             loop.call_soon(successor.granted, self)
@@ -72,7 +72,7 @@ class HandlerGroup(GroupState[Member]):
         """Release the running handler's slot for the length of the block, then queue for it again at the tail.
 
             async with self.motion.released():
-                await self.planner.call(request)      # others of the group may run meanwhile
+                await self.planner.call(request)      # other handlers of the group may run
 
         State that the group protects may have changed when the block ends. A handler that is cancelled in the block
         also waits for its slot before it proceeds to its cleanup, as `asyncio.Condition.wait` does.
@@ -89,7 +89,7 @@ class HandlerGroup(GroupState[Member]):
         loop = asyncio.get_running_loop()
         run.group = None
         self.give_back(loop)
-        loop.call_soon(run.runner.wake)  # its own handler may run again meanwhile
+        loop.call_soon(run.runner.wake)  # its own handler may also run in the meantime
         try:
             yield
         finally:
@@ -112,7 +112,7 @@ class HandlerGroup(GroupState[Member]):
             raise cancelled
 
     def statistics(self) -> dict[str, Any]:
-        """Limit, slots taken, waiting members, and the runs begun and failed in the group since the start."""
+        """Return the limit, slots taken, waiting members, and the runs started and failed since the start."""
         members: list[Any] = self.members
         return {
             "limit": self.limit,
@@ -124,7 +124,7 @@ class HandlerGroup(GroupState[Member]):
 
 
 class _Return:
-    """A run that returns to its group."""
+    """A run that waits to return to its group."""
 
     def __init__(self, loop: AbstractEventLoop) -> None:
         self.slot: Future[None] = loop.create_future()
@@ -133,43 +133,43 @@ class _Return:
         self.slot.set_result(None)
 
     def yields(self) -> None:
-        """Nothing: a run under way is not work that waits to begin."""
+        """Do nothing: a run in progress is not queued work."""
 
     def wake(self) -> None:
-        """Nothing, likewise."""
+        """Do nothing: a run in progress has nothing to start."""
 
 
 @dataclass(frozen=True)
 class Placement:
-    """Where a handler runs."""
+    """A handler's group, and whether it runs in threads."""
 
     group: HandlerGroup | None
     is_threaded: bool = False
 
 
 class Groups:
-    """The groups of one node and which handler is in which.
+    """The groups of one node, and the assignment of handlers to them.
 
     Args:
-        declared: The groups of the class by name.
+        declared: The groups of the class, by name.
         default: The class's `default_group`.
-        regrouping: What a graph file says.
+        regrouping: The graph file's changes.
     """
 
     def __init__(
         self, declared: Mapping[str, DeclaredGroup], default: DeclaredGroup | None, regrouping: Regrouping
     ) -> None:
         self.regrouping = regrouping
-        """What a graph file would say to get the groups that there are now."""
+        """The changes in a graph file that would produce the current groups."""
         self.by_name: dict[str, HandlerGroup] = {}
         self._of: dict[DeclaredGroup, HandlerGroup] = {}
         self._default = default
         self._chosen: dict[str, str] = {}
-        """Group names by handler, where a graph file has chosen."""
+        """Group names that the graph file assigns, by handler."""
         self._placed: list[str] = []
         self._unnamed = 0
         self.known = {*declared, *regrouping.groups}
-        """Names that a graph file can use."""
+        """Group names that a graph file can use."""
         for name, group in declared.items():
             self._of[group] = self.by_name.setdefault(name, _made(group, name))
         for name, change in regrouping.groups.items():
@@ -192,7 +192,7 @@ class Groups:
             self._chosen[handler] = name
 
     def place(self, handler: str, declared: DeclaredGroup | HandlerGroup | None) -> Placement:
-        """Where a handler runs, by name: as the graph file says, else as declared, else in the default group."""
+        """Return a handler's placement: from the graph file, else as declared, else in the default group."""
         self._placed.append(handler)
         if handler in self._chosen:
             group = self.by_name.get(self._chosen[handler])
@@ -202,7 +202,7 @@ class Groups:
         return Placement(group, group is not None and group.is_threaded)
 
     def at_work(self, group: DeclaredGroup | HandlerGroup) -> HandlerGroup:
-        """What a declaration has become on this node; `self.motion` already is that."""
+        """Return the node's group for a declaration; `self.motion` already is one."""
         if isinstance(group, HandlerGroup):
             return group
         if group not in self._of:
@@ -214,7 +214,7 @@ class Groups:
         return self._of[group]
 
     def named(self, name: str) -> HandlerGroup | None:
-        """The group of that name, made if missing; None for the word that means no group.
+        """Return the group of that name, created if missing; None for the name that means no group.
 
         Raises:
             DeclarationError: The name is not legal for a group.
@@ -228,15 +228,15 @@ class Groups:
         return self.by_name.setdefault(name, HandlerGroup(name=name))
 
     def note_move(self, handler: str, group: str) -> None:
-        """A handler is in another group from now on."""
+        """Note that a handler has moved to another group."""
         self.regrouping = self.regrouping.moved([handler], group)
 
     def note_limit(self, group: str, limit: int | None) -> None:
-        """A group has another limit from now on."""
+        """Note a group's new limit."""
         self.regrouping = self.regrouping.limited(group, limit)
 
     def refuse_strays(self) -> None:
-        """Raises DeclarationError when the graph file has placed a handler that the node has not made."""
+        """Raise DeclarationError if the graph file places a handler that the node does not have."""
         for handler, group in self._chosen.items():
             if handler not in self._placed:
                 near = did_you_mean(handler, self._placed)

@@ -1,12 +1,12 @@
-"""The ledger: which calls, goals and threads the handlers of one process wait for, and what runs on the loop right now.
+"""The ledger of a process: the calls, goals and threads that handlers wait for, and the handler on the loop.
 
-It is written as things happen, an entry per wait and none per message, and entered by `with`:
+It is updated as waits start and end, with an entry per wait and none per message, by a `with` block:
 
     with ledger.call(future, gid, sequence, "/add", began_ns, deadline_ns):
         await future
 
-The search for deadlocks reads it, from any thread. Entries are keyed by the awaited future, since that is
-what a suspended coroutine shows of its wait.
+The deadlock search reads it, from any thread. Entries are keyed by the awaited future, which is all that a suspended
+coroutine reveals of its wait.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from graphflow.machines.waits.wait_graph import call_id
 
 
 class PendingCall:
-    """A service call that waits for its response; entered for as long as it waits.
+    """A service call that waits for its response. A context manager that enters the call in the ledger.
 
     Attributes:
-        gid, sequence: The client's GID and its number for the call, which together name the call everywhere.
+        gid, sequence: The client's GID and sequence number, which together identify the call in all processes.
         service: The full name of the service.
-        began_ns, deadline_ns: By the clock of the client's node; None for a call without a deadline.
+        began_ns, deadline_ns: Times by the clock of the client's node; the deadline may be None.
     """
 
     __slots__ = ("_future", "_ledger", "began_ns", "deadline_ns", "gid", "sequence", "service")
@@ -49,7 +49,7 @@ class PendingCall:
 
     @property
     def id(self) -> str:
-        """The id of the call in the wait-for graphs of all processes."""
+        """The call's id in the wait-for graphs of all processes."""
         return call_id(self.gid, self.sequence)
 
     def __enter__(self) -> Self:
@@ -62,12 +62,12 @@ class PendingCall:
 
 
 class PendingGoal(ABC):
-    """A goal that was sent from this process and has not ended.
+    """A goal sent by this process that has not ended.
 
     Attributes:
         goal_id: 16 bytes.
         action: The full name of the action.
-        began_ns: When it was sent, by the process's clock.
+        began_ns: Time of sending, by the process's clock.
         ended: A future that is done when the goal has ended.
     """
 
@@ -83,23 +83,23 @@ class PendingGoal(ABC):
 
 
 class Opening(NamedTuple):
-    """A wait for somebody to offer a service."""
+    """A wait for a node to offer a service."""
 
     service: str
     began_ns: int
-    """By the clock of the client's node."""
+    """Start of the wait, by the clock of the client's node."""
 
 
 def _nothing() -> None:
-    """Does nothing: deadlocks are not looked for."""
+    """Do nothing: the deadlock search is off."""
 
 
 class Ledger:
     """The waits of one process.
 
     Attributes:
-        alert: Called when something begins to wait: a call, or work that finds no slot. Must cost next to nothing.
-        at_work: The runner whose handler has been called and has not returned or suspended yet.
+        alert: Called at the start of a wait: a call, or work without a free slot. Must be cheap.
+        at_work: The runner whose handler is executing and has not suspended.
     """
 
     __slots__ = (
@@ -125,17 +125,17 @@ class Ledger:
         self.calls: dict[Future[Any], PendingCall] = {}
         """Calls, by the future of the response."""
         self.goals: dict[Future[Any], PendingGoal] = {}
-        """Goals that are waited for, by the future of their end or of news about them."""
+        """Goals that are awaited, by the future of their end or of news about them."""
         self.served: dict[Future[Any], bytes] = {}
-        """Ids of goals of this process whose results are waited for."""
+        """Ids of goals of this process whose results are awaited."""
         self.openings: dict[Future[Any], Opening] = {}
-        """Services that are waited for until somebody offers them."""
+        """Services that are awaited until a node offers them."""
         self.threads: dict[Future[Any], threading.Thread] = {}
-        """Threads that are waited for."""
+        """Threads that are awaited."""
         self.asking: dict[int, asyncio.Task[Any]] = {}
-        """Calls that threads wait for, by the thread's number."""
+        """Calls that threads wait for, by the thread's id."""
         self.blocking: Future[Any] | None = None
-        """What a call that blocks the event loop waits for."""
+        """The future of a call that blocks the event loop."""
 
     def call(
         self,
@@ -146,12 +146,12 @@ class Ledger:
         began_ns: int,
         deadline_ns: int | None,
     ) -> PendingCall:
-        """A call whose response `future` waits for; an entry while it is entered."""
+        """Return a call whose response `future` waits for, to be entered with `with`."""
         return PendingCall(self, future, gid, sequence, service, began_ns, deadline_ns)
 
     @contextmanager
     def goal(self, future: Future[Any], goal: PendingGoal) -> Iterator[None]:
-        """A wait for the end of a goal, or for news about it."""
+        """Enter a wait for the end of a goal, or for news about it."""
         self.goals[future] = goal
         try:
             yield
@@ -160,7 +160,7 @@ class Ledger:
 
     @contextmanager
     def serving(self, future: Future[Any], goal_id: bytes) -> Iterator[None]:
-        """This process's own wait for the end of a goal that it executes, to report its result."""
+        """Enter this process's own wait for the end of a goal that it executes, to report its result."""
         self.served[future] = goal_id
         try:
             yield
@@ -169,7 +169,7 @@ class Ledger:
 
     @contextmanager
     def opening(self, future: Future[Any], service: str, began_ns: int) -> Iterator[None]:
-        """A wait for somebody to offer a service."""
+        """Enter a wait for a node to offer a service."""
         self.openings[future] = Opening(service, began_ns)
         self.alert()
         try:
@@ -179,7 +179,7 @@ class Ledger:
 
     @contextmanager
     def thread_work(self, future: Future[Any], thread: threading.Thread) -> Iterator[None]:
-        """A wait for a thread's end."""
+        """Enter a wait for a thread's end."""
         self.threads[future] = thread
         try:
             yield
@@ -188,7 +188,7 @@ class Ledger:
 
     @contextmanager
     def asked_from(self, thread: int, task: asyncio.Task[Any]) -> Iterator[None]:
-        """A thread blocks until a task on the loop has its response."""
+        """Enter a thread's wait for the response to a task on the loop."""
         self.asking[thread] = task
         try:
             yield
@@ -197,7 +197,7 @@ class Ledger:
 
     @contextmanager
     def blocked_by(self, future: Future[Any]) -> Iterator[None]:
-        """The event loop itself blocks until a future is done, which it never will be."""
+        """Enter the event loop's own wait for a future, which cannot complete meanwhile."""
         self.blocking = future
         try:
             yield

@@ -1,4 +1,4 @@
-"""A runner feeds the items of one queue to one handler, one run at a time or as many as the group allows."""
+"""Runners: each passes the items of a queue to one handler, as many at a time as its group allows."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.ledger import Ledger
 
 BURST = 64
-"""Runs of one handler in a row before the loop gets a turn."""
+"""Successive runs of one handler before the loop gets a turn."""
 SLICE = 0.003
-"""Seconds after which no further run follows in the row: timers, other handlers and Ctrl-C have waited that long."""
+"""Seconds after which a burst ends, since timers, other handlers and Ctrl-C have waited that long."""
 
 
 def _references_of_one() -> int:
-    """The `getrefcount` of an object that only one local variable refers to: it depends on the interpreter."""
+    """Return `getrefcount` of an object with a single local reference, which depends on the interpreter."""
     alone = object()
     return getrefcount(alone)
 
@@ -37,15 +37,15 @@ _ALONE = _references_of_one()
 _next_number = itertools.count(1).__next__
 
 RunnerKind = Literal["", "timer", "subscription", "service", "action", "reply"]
-"""What runs are begun for; `reply` delivers responses to a client that is in a group, and nothing drops them."""
+"""The purpose of a runner's runs; `reply` delivers responses to a client in a group, and is never dropped."""
 
 
 class Run(Activity):
-    """An activity of a `Runner`, to which it reports its end. A message has one for itself.
+    """An activity of a `Runner`, to which it reports its end. One per message.
 
     Attributes:
-        item: What the run was begun for.
-        number: Rises from run to run through the whole process, and is never used twice.
+        item: The item that the run handles.
+        number: An increasing number, unique in the process.
     """
 
     __slots__ = ("item", "number", "runner")
@@ -58,7 +58,7 @@ class Run(Activity):
         context: Context,
         group: HandlerGroup | None,
     ) -> None:
-        # Written out: calling the constructor above would take a tenth of a run.
+        # Inlined: calling the constructor above would take a tenth of a run.
         self.name = runner.name
         self._loop = runner._loop
         self._coroutine = coroutine
@@ -82,7 +82,7 @@ class Run(Activity):
 
 
 def title_of(kind: RunnerKind, handler: str) -> str:
-    """Kind and handler, for people: `service add`."""
+    """Return kind and handler for people: `service add`."""
     return handler if handler.startswith(f"{kind} ") else f"{kind} {handler}".strip()
 
 
@@ -91,20 +91,19 @@ Finished = Callable[[Any, Any, BaseException | None], None]
 
 @dataclass(frozen=True, slots=True)
 class RunnerSpec:
-    """What a runner runs, and what it reports to.
+    """The handler of a runner, and the callbacks for its outcomes.
 
     Attributes:
-        handler: The method, or what messages call one.
-        invoke: Called with an item; returns a result, or a coroutine that will.
+        handler: The method's name, or its substitute in messages.
+        invoke: Called with an item; returns a result, or a coroutine for it.
         finished: Called with (item, result, error) after each run.
         node: The full name of the node.
         refused: Called with an item that is dropped because the group is full.
-        dropped: How many items were lost because the queue was full.
-        is_inner: Whether the handler belongs to graphflow, as every node's parameter services do.
-        is_serial: Whether its runs exclude each other in any group; None: only when they run in no group.
-        wants_results: Whether `finished` is called after runs that ended well, too.
-        begins_outside: Whether `invoke` runs nothing of the handler's, as it only makes a coroutine: so it may be
-            called outside of the run's context.
+        dropped: Returns the number of items lost to a full queue.
+        is_inner: Whether the handler belongs to graphflow, as those of parameter services do.
+        is_serial: Whether its runs exclude each other in any group; None if only outside of a group.
+        wants_results: Whether `finished` is also called after successful runs.
+        begins_outside: Whether `invoke` only creates a coroutine, so that it may be called outside the run's context.
     """
 
     handler: str
@@ -121,11 +120,11 @@ class RunnerSpec:
 
 
 class Runner:
-    """Feeds a queue to a handler under a group.
+    """The queue of a handler, run under a group.
 
     Args:
         items: The queue, filled by other code, which then calls `wake`.
-        group: Whose slots the runs take; None for a runner that queues behind itself only.
+        group: The group whose slots the runs take; None for a runner that only queues behind itself.
     """
 
     __slots__ = (
@@ -160,21 +159,21 @@ class Runner:
         self.number = _next_number()
         self.items = items
         self.at_hand: Any = None
-        """The item that its handler was called with and for which it has not yet returned or suspended."""
+        """The item whose handler was called and has not returned or suspended."""
         self.runs = 0
-        """Runs begun since the start."""
+        """Runs started so far."""
         self.errors = 0
         """Runs that ended with an error."""
         self.group = group
         self.active: set[Run] = set()
-        """Runs that have begun and not yet ended."""
+        """Runs that have started and not ended."""
         self._ledger, self._loop = ledger, ledger.loop
-        # What every run needs, without going through the spec.
+        # Copies of the spec's fields that every run needs.
         self._invoke, self._finished, self._is_serial = spec.invoke, spec.finished, spec.is_serial
         self._wants_results, self._begins_outside = spec.wants_results, spec.begins_outside
         self._spare: Run | None = None
-        """A run that ended in its first step and that nobody has kept: the next message's."""
-        # Every run begins with the context variables of where the handler was made, never with those of an earlier run.
+        """A run that ended in its first step and that nothing refers to, for reuse by the next message."""
+        # Every run starts with the context variables of the handler's creation, never with those of an earlier run.
         self._context = copy_context()
         self._waking = False
         self._scheduled = False
@@ -188,12 +187,12 @@ class Runner:
 
     @property
     def title(self) -> str:
-        """Kind and handler, for people: `service add`."""
+        """Kind and handler for people: `service add`."""
         return title_of(self.spec.kind, self.spec.handler)
 
     @property
     def is_serial(self) -> bool:
-        """Whether the handler's runs come one after the other."""
+        """Whether the handler's runs exclude each other."""
         return self.group is None if self._is_serial is None else self._is_serial
 
     @property
@@ -202,22 +201,23 @@ class Runner:
         return self._closed
 
     def stalled(self) -> None:
-        """Say that there is work and no slot for it."""
+        """Report that there is work and no slot for it."""
         self._ledger.alert()
 
     def wake(self) -> None:
-        """Run what the group allows of what may be in the queue."""
+        """Start the runs that the group allows for the items in the queue."""
         if not (self._waking or self._closed or self._scheduled):
             self._run(BURST)
 
     def _run(self, most: int, granted: HandlerGroup | None = None) -> None:
-        """Run the handler for one item after the other, each to its end or to its first suspension.
+        """Run the handler for one item after another, each to its end or its first suspension.
 
-        It is the step of every message, and long because each call in it would take a twentieth of one.
+        Every message takes this path. It is a single long function because each call in it would add a twentieth to a
+        message's time.
 
         Args:
-            most: How many runs.
-            granted: The group that has given a slot for the first of them.
+            most: The most runs to start.
+            granted: The group that has granted a slot for the first run.
         """
         loop, ledger, items, active = self._loop, self._ledger, self.items, self.active
         invoke, copy, begins_outside = self._invoke, self._context.copy, self._begins_outside
@@ -238,7 +238,7 @@ class Runner:
                     if active and (group is None if self._is_serial is None else self._is_serial):
                         ledger.alert()
                         return
-                    # No runner asks for more slots than the group has: after a run it queues again, at the tail.
+                    # No runner requests more slots than the group has: after a run it queues again, at the tail.
                     if group is not None and (self._fills(group) or not group.admit(self)):
                         if group.when_full != "wait" and self.spec.kind != "reply":
                             self._overflow(group)
@@ -260,7 +260,7 @@ class Runner:
                             run._coroutine, run._context, run.item, run.group = result, context, item, group
                             run.number = _next_number()
                         active.add(run)
-                        # As `Activity.step`, without what cannot have happened before the first step.
+                        # As `Activity.step`, without the cases that cannot occur before the first step.
                         _enter_task(loop, run)  # type: ignore[arg-type]
                         try:
                             awaited = context.run(result.send, None)
@@ -277,7 +277,7 @@ class Runner:
                     if run is not None:
                         run._end(None, exit_)
                     raise
-                except BaseException as raised:
+                except BaseException as raised:  # the handler's end, cancellation included, goes to `finished`
                     result, error = None, raised
                 if run is not None:
                     group = run.group
@@ -287,7 +287,7 @@ class Runner:
                         self._spare = run
                 if error is not None or self._wants_results or group is not None or self._idle is not None:
                     self._ended(group, item, result, error)
-                    error = None  # its traceback refers to this frame: leave no cycle for the garbage collector
+                    error = None  # its traceback refers to this frame: avoid a reference cycle
         finally:
             self._waking = was_waking
             ledger.at_work, self.at_hand = around, None
@@ -296,7 +296,7 @@ class Runner:
             loop.call_soon(self._go_on)
 
     def _fills(self, group: HandlerGroup) -> bool:
-        """Whether the runner's own runs hold all slots of the group; those that have released theirs do not count."""
+        """Whether the runner's own runs occupy all slots of the group, not counting those that have released theirs."""
         if group.limit is None or len(self.active) < group.limit:
             return False
         return sum(run.group is group for run in self.active) >= group.limit
@@ -306,7 +306,7 @@ class Runner:
         self.wake()
 
     def _overflow(self, group: HandlerGroup) -> None:
-        """The group is full, and not everything may wait for it."""
+        """Apply the group's policy to queued work while the group is full."""
         if group.when_full == "drop_new":
             group.withdraw(self)
             self._refuse(0)
@@ -323,7 +323,7 @@ class Runner:
                 min(runs, key=lambda run: run.number).cancel("cancelled for newer work of its group")
 
     def _refuse(self, keep: int) -> None:
-        """Drop what waits, except the newest."""
+        """Drop queued items, except the newest `keep`."""
         while len(self.items) > keep:
             item = self.items.popleft()
             if self.spec.refused is not None:
@@ -345,7 +345,7 @@ class Runner:
             self.wake()
 
     def move(self, group: HandlerGroup | None) -> None:
-        """Take the slots of another group from the next run on; runs under way keep what they hold."""
+        """Use another group from the next run on; runs in progress keep their slots."""
         if self.group is not None:
             self.group.withdraw(self)
             self.group.members.remove(self)
@@ -360,7 +360,7 @@ class Runner:
         if error is not None or self._wants_results:
             try:
                 self._finished(item, result, error)
-            except Exception as failure:
+            except Exception as failure:  # a bug in the report must not keep the slot from being released
                 message = f"{self.name}: the end of a run could not be reported"
                 self._loop.call_exception_handler({"message": message, "exception": failure})
         if group is not None:
@@ -371,7 +371,7 @@ class Runner:
             self.wake()
 
     def cancel(self) -> asyncio.Future[None]:
-        """Begin no more runs and cancel those under way, except those already cleaning up after a cancellation.
+        """Stop starting runs, and cancel those in progress, except those already cleaning up after a cancellation.
 
         Returns:
             A future that is done when all runs have ended.
@@ -389,7 +389,7 @@ class Runner:
         return self._idle
 
     def reopen(self) -> None:
-        """Begin runs again after `cancel`."""
+        """Start runs again after `cancel`."""
         if not self._closed:
             return
         self._closed, self._idle = False, None

@@ -1,8 +1,8 @@
-"""Simulated time: a clock that /clock drives, for nodes whose `use_sim_time` is true.
+"""Simulated time: a clock driven by /clock, for nodes whose `use_sim_time` is true.
 
-It says 0 until the first message. Then it keeps two counts: the time of day is what /clock said last, even when it
-jumps back, as when a recording starts over; what sleeps and timers go by is how far it has moved forward in all, so
-that a jump back delays nothing and nothing is due twice. While /clock is silent, time stands still.
+The time is 0 until the first message. Then there are two counts. The time of day is the last value on /clock, even
+after a jump back, as when a recording restarts. Sleeps and timers use the sum of all forward movements, so that a jump
+back delays nothing and nothing is due twice. While /clock is silent, time stands still.
 
 Source: the ROS 2 design article "Clock and Time".
 """
@@ -35,7 +35,7 @@ class _SimAlarm:
 
 
 class SimClock(Clock):
-    """Time as given from outside."""
+    """A clock that is set from outside."""
 
     def __init__(self, loop: AbstractEventLoop) -> None:
         self._loop = loop
@@ -62,15 +62,15 @@ class SimClock(Clock):
         return alarm
 
     def set_time(self, now_ns: int) -> None:
-        """Set the time to `now_ns`. Whatever has become due runs in the loop's next iteration."""
-        if self._now_ns:  # the first message is where time begins, not a jump
+        """Set the time to `now_ns`. Alarms that become due run in the loop's next iteration."""
+        if self._now_ns:  # the first message sets the start of time; it is not a jump
             self._elapsed_ns += max(0, now_ns - self._now_ns)
         self._now_ns = now_ns
         while self._alarms and self._alarms[0][0] <= self._elapsed_ns:
             self._loop.call_soon(heapq.heappop(self._alarms)[2].run)
 
     def retire(self, successor: Clock) -> None:
-        """Stop following /clock: whatever still waits here waits out the rest on another clock."""
+        """Stop following /clock: pending waits continue for the remaining time on another clock."""
         self._successor = successor
         while self._alarms:
             when_ns, _, alarm = heapq.heappop(self._alarms)

@@ -1,4 +1,4 @@
-"""The nodes that come with graphflow, by a name that no project's `nodes/` can take: `graphflow.nodes.turtlesim`."""
+"""The nodes that come with graphflow, under a name that a project's own `nodes/` cannot hide."""
 
 from graphflow.workspace.project import add_interfaces, demos_root
 

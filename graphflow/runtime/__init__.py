@@ -1,6 +1,6 @@
-"""Nodes as they run.
+"""The runtime: nodes, their endpoints and their parameters.
 
-Begin with `node` (the facade) and `node_core` (its workings); `context` is what the nodes of a process share. A node's
-parts are in `endpoints`, `actions` and `parameters`; `declarations` reads a class, `mistakes` tells users of theirs.
-Imports the layers below, `transport`, `executor` and `deadlock`.
+Start with `node` (the facade) and `node_core` (the implementation); `context` holds the state that a
+process's nodes share. A node's parts are in `endpoints`, `actions` and `parameters`. `declarations` reads node
+classes, and `mistakes` reports common errors in user code. The layers below are `transport`, `executor` and `deadlock`.
 """

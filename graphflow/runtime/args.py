@@ -1,4 +1,4 @@
-"""A node's ROS 2 arguments: `--ros-args -r from:=to -p name:=value --`.
+"""Parsing of a node's ROS 2 arguments: `--ros-args -r from:=to -p name:=value --`.
 
 Source: rcl arguments; `ros2 run ... --help` and the "Passing ROS arguments" guide.
 """
@@ -27,7 +27,7 @@ _EXAMPLES = {
     "--params-file": "params.yaml",
 }
 _LEFT_OUT = ("--log-config-file", "--log-file-name", "-e", "--enclave")
-"""Options with a value that mean nothing here: logs are the supervisor's, and there are no enclaves."""
+"""Options with a value that graphflow ignores: the supervisor owns the logs, and there are no security enclaves."""
 _FLAGS = {
     f"--{verb}-{what}-logs": verb == "enable"
     for verb in ("enable", "disable")
@@ -39,29 +39,29 @@ _OPTIONS = (*_VALUED, *_LEFT_OUT, *_FLAGS, "--ros-args", "--")
 
 @dataclass
 class RosArgs:
-    """What the arguments say."""
+    """The parsed ROS 2 arguments of one command line."""
 
     remaps: list[Remap] = field(default_factory=list)
     params: list[tuple[str | None, str, Any, str]] = field(default_factory=list)
-    """(node or None for all, parameter, value, where it was written)."""
+    """(node or None for all, parameter, value, source of the value)."""
     params_files: list[str] = field(default_factory=list)
     log_level: str = "info"
     log_levels: dict[str, str] = field(default_factory=dict)
-    """Of single loggers, by name."""
+    """Levels of single loggers, by logger name."""
     has_rosout: bool = True
-    """Whether what nodes log is published on /rosout."""
+    """Whether log records are published on /rosout."""
     has_stdout: bool = True
-    """Whether what nodes log is printed."""
+    """Whether log records are printed."""
     rest: list[str] = field(default_factory=list)
-    """Words that are not for ROS."""
+    """Arguments that are not ROS 2's."""
     unknown: list[str] = field(default_factory=list)
-    """Words after `--ros-args` that are no argument of ROS's, where those are not refused."""
+    """Unrecognized arguments after `--ros-args`, if the caller allows them."""
 
     def params_for(self, interface: Interface) -> dict[str, tuple[Any, str]]:
-        """Values for a node of a class, by parameter, each with where it was written.
+        """Return the parameter values for a node of a class: name to (value, source of the value).
 
         Raises:
-            GraphFileError: A parameter file is wrong, or has nothing for this node.
+            GraphFileError: A parameter file is invalid, or has no section for this node.
         """
         full_name = Resolver(interface.node_name, "/", self.remaps).full_name
         if self.params_files:
@@ -81,13 +81,13 @@ class RosArgs:
 
 
 def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> RosArgs:
-    """Read a node's arguments. A bare `from:=to`, which ROS 2 would silently ignore, is taken as a remap.
+    """Parse a node's arguments. A bare `from:=to`, which ROS 2 silently ignores, counts as a remap.
 
     Args:
-        refuses_unknown: Whether a word that is no argument of ROS's is an error; if not, `from:=to` is such a word.
+        refuses_unknown: Whether an unrecognized argument is an error; if not, a bare `from:=to` is unrecognized too.
 
     Raises:
-        GraphflowError: A rule or an option is wrong.
+        GraphflowError: A remap rule or an option is invalid.
     """
     result = RosArgs()
     todo = list(words)
@@ -119,11 +119,11 @@ def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> Ros
 
 
 def meant(word: str) -> str:
-    """A sentence that says how a word is written that ROS does not know; empty where that cannot be told."""
+    """Return a hint on how to write an argument that ROS 2 does not know, as the end of a sentence; "" if unknown."""
     if ":=" in word and not word.startswith(_DASHES):
         match, _, replacement = word.partition(":=")
         key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
-        is_private = key is None and re.match("_[a-z]", match) is not None  # as ROS 1 sets a parameter
+        is_private = key is None and re.match("_[a-z]", match) is not None  # ROS 1's syntax for a parameter
         option = "-p" if is_private or (key is None and is_number_or_truth(replacement)) else "-r"
         return f"; write --ros-args {option} {key or match[is_private:]}:={replacement}"
     option, equals, value = word.partition("=")
@@ -135,10 +135,10 @@ def meant(word: str) -> str:
 
 
 def cut_off(word: str, words: Sequence[str]) -> str:
-    """The end of a sentence on a word that a space has cut off from the value before it; empty for any other.
+    """Return a hint about an argument that a space split from the value before it; "" for any other.
 
     Args:
-        words: The command line.
+        words: The whole command line.
     """
     place = list(words).index(word)
     option, before = words[place - 2 : place] if place > 1 else ("", "")
@@ -147,15 +147,15 @@ def cut_off(word: str, words: Sequence[str]) -> str:
 
 
 def is_number_or_truth(text: str) -> bool:
-    """Whether a text is a number or a truth value, which no name can be."""
+    """Whether a text is a number or a boolean, neither of which can be a name."""
     return text.lower() in ("true", "false") or text.lstrip("+-").replace(".", "", 1).isdecimal()
 
 
 def missed(words: Sequence[str]) -> str:
-    """A sentence about words outside of `--ros-args` that seem to be meant for ROS; empty if there are none.
+    """Return a sentence about arguments outside `--ros-args` that seem meant for ROS 2; "" if there are none.
 
-    ROS 2 leaves them to the program, without a word. Programs may have options of their own, so only what is hardly one
-    is taken for a mistake.
+    ROS 2 silently passes them to the program. A program may have options of its own, so only those that are
+    unlikely to belong to it count as mistakes.
     """
     in_ros = False
     for place, word in enumerate(words):
@@ -176,7 +176,7 @@ def missed(words: Sequence[str]) -> str:
 
 
 def _slip(word: str) -> str:
-    """The option of ROS's that a word hardly misses, such as `-ros-args` or `--rosargs`; empty if there is none."""
+    """Return the ROS 2 option that an argument almost spells, such as `-ros-args`; "" if there is none."""
     if (pasted := meant_option(word)) in _OPTIONS:
         return pasted
     bare = word.lstrip("".join(_DASHES))

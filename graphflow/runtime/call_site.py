@@ -1,4 +1,4 @@
-"""The user's line that has called into this package."""
+"""Source lines of user code that call the public API."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pathlib import Path
 from graphflow.errors import Place
 
 _PACKAGES = (str(Path(__file__).parent), str(Path(__file__).parents[1] / "testing"))
-"""This package, and the one by which tests call it."""
+"""Directories whose frames are skipped: this package and `graphflow.testing`, through which tests call it."""
 
 
 def here(depth: int = 2) -> Place:
-    """The line that called the calling function; the first outside of this package and of that for tests."""
+    """Return the line that called the calling function: the first outside this package and `graphflow.testing`."""
     frame = sys._getframe(depth)
     while frame.f_code.co_filename.startswith(_PACKAGES) and frame.f_back is not None:
         frame = frame.f_back

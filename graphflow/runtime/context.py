@@ -1,4 +1,4 @@
-"""What all nodes of a process share: the session, the clock, the graph cache, the ids."""
+"""The state shared by all nodes of a process: session, clock, graph cache, ledger and ids."""
 
 from __future__ import annotations
 
@@ -44,17 +44,17 @@ T = TypeVar("T")
 logger = logging.getLogger("graphflow")
 
 OFFLOAD_LIMIT = 32
-"""Functions that `offload` runs in threads at a time; others wait for one of them to end."""
+"""Functions that `offload` runs in threads at the same time; further calls wait."""
 LINK_GRACE = 3.0
-"""Seconds that other machines have to answer before this one goes on without them."""
+"""Seconds to wait for other machines to answer before continuing without them."""
 
 
 class Context:
-    """One process's part in a domain. Made by `open` or, over any session, by the constructor.
+    """One process's participation in a domain. Made by `open` or, over any session, by the constructor.
 
     Args:
-        deadlock: What is done about deadlocks that involve this process.
-        call_timeout: Seconds that calls without a timeout of their own wait; None for ever.
+        deadlock: The policy for deadlocks that involve this process.
+        call_timeout: Default timeout of calls, in seconds; None for no limit.
     """
 
     def __init__(
@@ -71,26 +71,26 @@ class Context:
         self.clock = clock or WallClock()
         self.loop = asyncio.get_running_loop()
         self.profile = wire_profile()
-        """Which distribution's definitions this process offers."""
+        """The wire profile: the ROS 2 distribution whose definitions this process offers."""
         self.cache = GraphCache()
-        """The domain's nodes and endpoints, as far as their tokens have arrived."""
+        """The nodes and endpoints of the domain whose tokens have arrived."""
         self.switchboard = Switchboard(session, domain, self.loop)
-        """Calls to and from other graphflow processes."""
+        """Direct calls to and from other graphflow processes."""
         self.intra_process = IntraProcess()
-        """Messages between nodes of this process."""
+        """Delivery between nodes of this process."""
         self.readers = Readers(session, domain)
-        """Subscriptions that read large messages from this process's memory."""
+        """Subscriptions in other processes that read large messages from shared memory."""
         self.reasons = Reasons(session, domain)
-        """Why goals did not come to their end."""
+        """Reasons for rejected and aborted goals."""
         self.call_timeout = call_timeout
         self.nodes: list[Subject] = []
-        """The nodes that run here."""
+        """The running nodes of this process."""
         self.elsewhere: list[Elsewhere] = []
-        """What else runs callbacks of this process, for the search for deadlocks."""
+        """Other sources of callbacks in this process, for the deadlock search."""
         self.ledger = Ledger(self.loop)
-        """What the handlers of this process wait for."""
+        """The waits of this process's handlers."""
         self.noticed: Callable[[BaseException], object] = id
-        """Called with each error that a node here has reported and does not end by; tests replace it."""
+        """Called with each error that a node reported and survived; tests replace it."""
         self._offloads, self._is_full_told = asyncio.Semaphore(OFFLOAD_LIMIT), False
         self.search = Search(self, deadlock)
         self._inspection = Inspection(self, self.search)
@@ -121,15 +121,15 @@ class Context:
         """Join the machine's graphs over Zenoh.
 
         Args:
-            domain: See `domain_id`.
+            domain: The domain number; None for the environment's, as `domain_id` reads it.
             mode: The Zenoh session's mode: `peer` or `client`.
-            checked: The rendezvous was checked a moment ago by a process this one trusts.
-            link: Link this machine to others too, if the environment says so.
+            checked: Whether a trusted process has just checked the rendezvous.
+            link: Whether to link this machine to others if the environment configures it.
             router: The rendezvous, if it was checked and this process is it.
             deadlock, call_timeout: As for `Context`.
 
         Raises:
-            TransportError: The rendezvous cannot be reached or hosted, or is another user's.
+            TransportError: The rendezvous cannot be reached or hosted, or belongs to another user.
         """
         from graphflow.transport.rendezvous import establish
         from graphflow.transport.takeover import Takeover
@@ -159,19 +159,19 @@ class Context:
 
     @property
     def is_rendezvous(self) -> bool:
-        """Whether this process is where others of the machine find each other."""
+        """Whether this process hosts the machine's rendezvous."""
         return self._takeover is not None and self._takeover.is_router
 
     @property
     def router_id(self) -> str:
-        """The Zenoh id of that place; empty as long as there is none."""
+        """The rendezvous's Zenoh id in hex; "" while there is none."""
         return "" if self._takeover is None else self._takeover.router_id
 
     def open_link(self) -> None:
-        """Link this machine to others, if the environment says so.
+        """Link this machine to others if the environment configures it.
 
         Raises:
-            TransportError, GraphFileError: The environment says something invalid.
+            TransportError, GraphFileError: The environment's link settings are invalid.
         """
         from graphflow.transport.config import reaches_out
 
@@ -181,16 +181,16 @@ class Context:
             self._link = Link(self.session.bell, self.domain)
 
     async def wait_linked(self) -> None:
-        """Wait until the other machines have answered; if they do not, log that and go on."""
+        """Wait until the other machines have answered; on a timeout, log it and continue."""
         if self._link is not None:
             await self._link.wait_ready(LINK_GRACE)
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
-        """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""
+        """Return the requests that the loop has not processed yet: (runner, client GID, sequence number) each."""
         return self.switchboard.arrived()
 
     def next_id(self) -> int:
-        """A number no other node or endpoint of this process has."""
+        """Return a number that no other node or endpoint of this process has."""
         return next(self._ids)
 
     async def in_thread(
@@ -199,10 +199,10 @@ class Context:
         """Run `fn(*args)` in a thread, which cannot be cancelled.
 
         Args:
-            stays: Whether to wait for its end even when the waiting is cancelled, and raise the cancellation then.
-            ended: Called on the loop when the thread has done it, whether or not anybody still waits.
+            stays: Whether to wait for the thread even when cancelled, and raise the cancellation afterwards.
+            ended: Called on the loop when the thread ends, whether or not a caller still waits.
 
-        The interpreter does not wait for such a thread when it ends, as it would for those of a pool.
+        The threads are daemons: unlike those of a pool, they do not delay the interpreter's exit.
         """
         future: asyncio.Future[T] = self.loop.create_future()
         context = copy_context()
@@ -227,7 +227,7 @@ class Context:
 
     @property
     def is_here(self) -> bool:
-        """Whether this is the thread of the event loop."""
+        """Whether the current thread is the event loop's."""
         return threading.get_ident() == self.ledger.thread
 
     def refuse_other_threads(self, what: str, instead: str = "node.call_soon(fn, ...) calls fn there") -> None:
@@ -237,7 +237,7 @@ class Context:
             raise WrongThread(f"{what} may not be used from the thread {name!r}, only on the event loop; {instead}")
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
-        """Run `fn(*args)` as `in_thread` does, when fewer than `OFFLOAD_LIMIT` others are running."""
+        """Run `fn(*args)` in a thread, at most `OFFLOAD_LIMIT` at a time."""
         if self._offloads.locked() and not self._is_full_told:
             self._is_full_told = True
             name = getattr(fn, "__name__", fn)
@@ -250,12 +250,12 @@ class Context:
         self._is_full_told = False
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
-        """Call `listener` for every node or endpoint that comes or goes; returns a function that stops this."""
+        """Call `listener` for every node or endpoint that appears or leaves; returns a function that stops this."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
     def on_name(self, name: str, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
-        """Call `listener` for every endpoint called `name` that comes or goes; returns a function that stops this."""
+        """Call `listener` for every endpoint called `name` that appears or leaves; returns a function to stop."""
         listeners = self._by_name.setdefault(name, [])
         listeners.append(listener)
 
@@ -267,7 +267,7 @@ class Context:
         return stop
 
     async def wait_for(self, condition: Callable[[], bool]) -> None:
-        """Wait until `condition` holds, looking again whenever the graph changes."""
+        """Wait until `condition` holds; it is evaluated whenever the graph changes."""
         if condition():
             return
         future = self.loop.create_future()
@@ -278,7 +278,7 @@ class Context:
             try:
                 if condition():
                     future.set_result(None)
-            except Exception as error:  # for the waiting caller, not for others that look at the graph
+            except Exception as error:  # belongs to the waiting caller, not to other listeners of the graph
                 future.set_exception(error)
 
         stop = self.on_change(look)
@@ -306,7 +306,7 @@ class Context:
             logger.warning("%s has %s: %s", entity.node_name, entity.name, text)
 
     async def close(self) -> None:
-        """Leave the network. Nodes must have been stopped before."""
+        """Leave the network. All nodes must have stopped."""
         self.search.close()
         self.twins.close()
         self.unmatched.close()
@@ -320,7 +320,7 @@ class Context:
 
 
 async def _seen_through(future: asyncio.Future[Any]) -> None:
-    """Wait for a thread to end, even if the waiting is cancelled meanwhile; then raise the cancellation."""
+    """Wait for a thread to end even if the wait is cancelled; then raise the cancellation."""
     cancelled: asyncio.CancelledError | None = None
     while not future.done():
         try:
@@ -331,7 +331,7 @@ async def _seen_through(future: asyncio.Future[Any]) -> None:
             cancelled = error
         except GeneratorExit:
             raise
-        except BaseException:  # the thread's own, which the caller raises
+        except BaseException:  # the thread's error, which the caller raises
             return
     if cancelled is not None and future.exception() is None:
         raise cancelled
@@ -340,7 +340,7 @@ async def _seen_through(future: asyncio.Future[Any]) -> None:
 def _settle(future: asyncio.Future[Any], result: Any, error: BaseException | None) -> None:
     if future.done():
         return
-    if isinstance(error, StopIteration):  # no future can carry it
+    if isinstance(error, StopIteration):  # a future cannot carry StopIteration
         error = RuntimeError(f"a thread raised {error!r}")
     if error is not None:
         future.set_exception(error)

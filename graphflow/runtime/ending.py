@@ -1,4 +1,4 @@
-"""How a program that runs nodes is ended: by signals that stop them in order; and what stands in the way of that."""
+"""Orderly shutdown: signals that stop nodes, and the reasons why a process does not end."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ logger = logging.getLogger("graphflow")
 SAME_SIGNAL = 0.1
 """Seconds within which a second signal counts as the first."""
 REMIND_AFTER = 1.0
-"""Seconds after a signal at which a program that is still stopping says so, and what it waits for."""
+"""Seconds after a signal at which a program that is still stopping reports what it waits for."""
 LOOK_AFTER, LOOK_EVERY = 1.0, 60.0
-"""Seconds until it is first looked whether the handlers are still in place, and between two looks at most: libraries
-take signals when they are begun to be used, and each look comes after twice as long as the one before."""
+"""Seconds until the signal handlers are first checked, and the longest time between two checks.
+The interval doubles with each check, as libraries replace signal handlers when they are first used."""
 _MANAGER = "_ExecutorManagerThread"
-"""The class of the thread that keeps the interpreter until the work of a `ProcessPoolExecutor` is done."""
+"""The class of the thread that keeps the interpreter alive until a `ProcessPoolExecutor` has finished."""
 
 
 class StopRequest(asyncio.Event):
-    """Set when a program is to stop.
+    """An event that stops a program.
 
-    Code that waits for it goes on only some turns of the loop later, and a timer that is due runs in each of them.
-    `when_set` is called at once.
+    A task that waits for the event resumes only some iterations of the loop later, and due timers run in each of them.
+    `when_set` is called synchronously.
     """
 
     def __init__(self) -> None:
@@ -47,10 +47,10 @@ class StopRequest(asyncio.Event):
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
-    """Set `stop` on SIGINT, SIGTERM or SIGHUP; a second one ends the process at once, even when the loop is blocked.
+    """Set `stop` on SIGINT, SIGTERM or SIGHUP; a second signal ends the process at once, even if the loop is blocked.
 
-    Signals that come together count as one: a signal to a process and then to its group is meant once. A library that
-    replaces one of the handlers keeps nodes from stopping in order; that is logged, with its name.
+    Signals within `SAME_SIGNAL` count as one: a shell may signal a process and then its group. A library that replaces
+    a handler prevents an orderly shutdown; a warning names it.
 
     Returns:
         A function that restores the former handlers.
@@ -64,7 +64,7 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 
     def caught(number: int, _: object) -> None:
         nonlocal first
-        if os.getpid() != own:  # a child that was forked, as those of process pools are
+        if os.getpid() != own:  # a forked child, such as a process pool's, inherits the handler
             signal.signal(number, signal.SIG_DFL)
             signal.raise_signal(number)
         now, is_first = time.monotonic(), not first
@@ -74,10 +74,10 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
             os._exit(1)
         if not loop.is_closed():
             loop.call_soon_threadsafe(stop.set)
-        if is_first and not reminder.finished.is_set():  # another may come while it is being started
+        if is_first and not reminder.finished.is_set():  # a second signal may arrive while the thread is starting
             reminder.start()
 
-    # Not the loop's own handlers, which would wait for a handler that does not return.
+    # Not loop.add_signal_handler: its callbacks would wait for a handler that blocks the loop.
     former = {number: signal.signal(number, caught) for number in _stop_signals()}
     watch = loop.call_later(LOOK_AFTER, lambda: look(LOOK_AFTER))
 
@@ -107,13 +107,13 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 def _stop_signals() -> Iterator[signal.Signals]:
     yield signal.SIGINT
     yield signal.SIGTERM
-    hang_up = getattr(signal, "SIGHUP", None)  # the terminal was closed; under `nohup` that is ignored
+    hang_up = getattr(signal, "SIGHUP", None)  # the terminal was closed; nohup makes the process ignore it
     if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
         yield hang_up
 
 
 def _name(handler: Any) -> str:
-    """The function of a signal handler with its place, or as much as is known of it."""
+    """Return a signal handler's function and its place, as far as they are known."""
     function = handler.__func__ if isinstance(handler, MethodType) else handler
     if isinstance(function, FunctionType):
         code = function.__code__
@@ -130,12 +130,12 @@ def _remind() -> None:
 
 
 def hindrances() -> Iterator[str]:
-    """The reasons why this process does not end: lines of the user's code, by thread, and work in process pools."""
+    """List the reasons why this process does not end: lines of user code, by thread, and work in process pools."""
     for thread in threading.enumerate():
         if thread.daemon or thread.ident is None:
             continue
         if type(thread).__name__ == _MANAGER:
-            import multiprocessing  # which that thread's pool has imported
+            import multiprocessing  # already imported by that thread's pool
 
             workers = ", ".join(str(child.pid) for child in multiprocessing.active_children())
             yield f"the work of a process pool, processes {workers}"

@@ -1,4 +1,4 @@
-"""What a node does about errors in its handlers: it logs them, not too often, and ends when there are too many."""
+"""Errors in a node's handlers: rate-limited logging, and the budget after which they end the node."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from graphflow.times import NANOSECONDS, to_ns
 
 
 class ErrorBudget(NamedTuple):
-    """How many errors in how many seconds are tolerated; one more ends the node."""
+    """The number of errors tolerated per period (seconds); one more ends the node."""
 
     errors: int
     per: float
@@ -35,14 +35,14 @@ def report(log: logging.Logger, label: str, error: BaseException) -> None:
     elif isinstance(error, GraphflowError):
         place = place_in(error)
         log.error("%s: %s%s", label, error, place and f" ({place})")
-    elif not place_in(error):  # it was raised about the user's code, not in it
+    elif not place_in(error):  # raised about user code, not within it
         log.error("%s: %s: %s", label, type(error).__name__, error)
     else:
         log_with_traceback(log, f"{label}: ", error)
 
 
 def log_with_traceback(log: logging.Logger, prefix: str, error: BaseException) -> None:
-    """Log an error with what to write instead, as far as that is known, and with the user's part of its traceback."""
+    """Log an error with advice, where there is some, and the user's part of its traceback."""
     explain(error)
     remark, trace = remark_on(error), (type(error), error, users_part(error))
     text = "; ".join(filter(None, [str(error), remark]))
@@ -50,17 +50,17 @@ def log_with_traceback(log: logging.Logger, prefix: str, error: BaseException) -
 
 
 def _with_line(label: str, error: DeadlockError) -> str:
-    """The text of a deadlock error, with the line of this handler, which only passes the error on."""
+    """Return the text of a deadlock error with the line of this handler, which only propagates the error."""
     head, newline, rest = str(error).partition("\n")
     place = PurePath(place_in(error)).name
     return f"{head}; {label} waited in {place}{newline}{rest}" if place and f"{place} " not in rest else str(error)
 
 
 class Failures:
-    """The errors in one node's handlers.
+    """The error policy of one node.
 
     Args:
-        budget: How many are tolerated; None for any number.
+        budget: The errors tolerated; None for any number.
         end: Called with the error that ends the node.
     """
 
@@ -68,19 +68,19 @@ class Failures:
         self._host, self._budget, self._end = host, budget, end
         self._counted: deque[int] = deque()
         self._silence: dict[tuple[str, str, str], tuple[int, int]] = {}
-        """Until when an error of a handler, of one kind and place, is not logged, and how many were not."""
+        """For each (handler, error type, line): the end of its silence in nanoseconds, and the records suppressed."""
 
     def failed(self, label: str, error: BaseException, on_error: OnError) -> None:
-        """A handler has raised."""
+        """Handle an error that a handler raised."""
         now = self._host.context.clock.monotonic_ns()
-        self._say(label, error, now)
+        self._log(label, error, now)
         if on_error == "end":
             self._end(error)
         elif on_error == "budget" and self._budget is not None:
             self._count(label, error, now, self._budget)
 
-    def _say(self, label: str, error: BaseException, now: int) -> None:
-        """Log the first error of a kind and place in a handler, and then one a second."""
+    def _log(self, label: str, error: BaseException, now: int) -> None:
+        """Log the first error of a kind and line in a handler, and then at most one a second."""
         key = (label, type(error).__name__, place_in(error))
         until, unsaid = self._silence.get(key, (0, 0))
         if now < until:

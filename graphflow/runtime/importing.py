@@ -1,4 +1,4 @@
-"""Modules that are imported for the node classes in them: they must not run nodes meanwhile."""
+"""Guard against modules that run nodes while they are imported for their node classes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from graphflow.analysis.user_code import users_frame
 from graphflow.errors import Place, RunsWhenImported
 
 _names: list[str] = []
-"""The modules that are being imported, the innermost last."""
+"""Names of the modules being imported, innermost last."""
 
 
 @contextmanager
 def importing(name: str) -> Iterator[None]:
-    """In the block, a module is imported for its classes."""
+    """Mark a module as being imported for its classes, for the length of the block."""
     _names.append(name)
     try:
         yield
@@ -24,18 +24,18 @@ def importing(name: str) -> Iterator[None]:
 
 
 def refuse_to_run(call: str) -> None:
-    """See that nodes are not run by a module that is only imported.
+    """Refuse to run nodes while a module is imported for its classes.
 
     Args:
-        call: What is to run them.
+        call: The call that would run them.
 
     Raises:
-        RunsWhenImported: They are; with the line of the module that does so.
+        RunsWhenImported: A module is being imported; the text has its line that runs nodes.
     """
     if not _names:
         return
     frame = users_frame(sys._getframe(1))
-    while frame is not None and frame.f_code.co_name != "<module>":  # which may call a `main` that runs them
+    while frame is not None and frame.f_code.co_name != "<module>":  # the module may call a `main` that runs them
         frame = users_frame(frame.f_back)
     where = _names[-1] if frame is None else f"{Place(frame.f_code.co_filename, frame.f_lineno)}: this"
     raise RunsWhenImported(f"{where} calls {call} when it is imported; write it below if __name__ == '__main__':")

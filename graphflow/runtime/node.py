@@ -1,4 +1,4 @@
-"""The node: what users subclass, a facade over its `NodeCore`."""
+"""The node class that users derive from, a facade over its `NodeCore`."""
 
 from __future__ import annotations
 
@@ -46,10 +46,10 @@ from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.mistakes import unrun
-from graphflow.runtime.mistakes.doubled import tell_doubled
+from graphflow.runtime.mistakes.doubled import warn_doubled
 from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.rclpy_words import OF_PARTS, SpeaksRos, in_our_words
-from graphflow.runtime.mistakes.repeats import tell_same
+from graphflow.runtime.mistakes.repeats import warn_duplicate
 from graphflow.runtime.mistakes.source.shadowing import check_names
 from graphflow.runtime.node_arguments import rules_of
 from graphflow.runtime.node_core import NodeCore
@@ -60,34 +60,34 @@ T = TypeVar("T")
 
 
 class Node(SpeaksRos):
-    """A ROS 2 node as an async Python class. Subclass it, declare what it holds and does, and `graphflow.run` it.
+    """A ROS 2 node as an async Python class. Subclass it, declare its endpoints and handlers, and `graphflow.run` it.
 
     Args:
-        name: Its name; by default the class's in snake case.
-        namespace: Where it lives: `/` or `/robot1`.
-        remap: Rules, first match wins; as objects or as text `from:=to`.
-        overrides: Parameter values from outside with where they were written, for graph files and command lines.
-        concurrency: Groups that differ from what the class declares, by name, for graph files.
-        start_parameter_services, enable_rosout, enable_logger_service: False for a tool that needs no parameter
-            services, no /rosout or no log level services.
+        name: The node's name; by default the class name in snake case.
+        namespace: The node's namespace: `/` or `/robot1`.
+        remap: Remap rules, as objects or as text `from:=to`; the first match wins.
+        overrides: Parameter values from graph files and command lines: name to (value, place that gives it).
+        concurrency: Changes to the declared groups from a graph file, by group name.
+        start_parameter_services, enable_rosout, enable_logger_service: False to leave out the parameter services, the
+            publisher on /rosout, or the log level services.
         **params: Parameter values by name.
 
     Raises:
-        InvalidName: The name, the namespace or a rule is not legal.
+        InvalidName: The name, the namespace or a rule is invalid.
         ParameterError: A parameter value does not fit its declaration.
         DeclarationError: `concurrency` puts a handler in two groups.
     """
 
     default_group: ClassVar[Group | None] = None
-    """The group of handlers that name none; None lets each queue behind itself only."""
+    """The group of handlers without one of their own; with None, each handler's runs queue only behind each other."""
     error_budget: ClassVar[ErrorBudget | None] = ErrorBudget(20, per=10.0)
-    """Errors in timers and subscriptions that the node tolerates; None for any number."""
+    """Errors in timers and subscriptions tolerated before the node ends; None for any number."""
     node_name: ClassVar[str] = ""
-    """The name of nodes that are given none; empty for the class's name in snake case."""
+    """Default name of the nodes of this class; "" for the class name in snake case."""
     dynamic_names: ClassVar[bool | Sequence[str]] = False
-    """Names the class makes at run time, unknown to checks: True, or patterns such as `*/cmd_vel`."""
+    """Names made at run time, exempt from checks: True for any, or patterns such as `*/cmd_vel`."""
     is_managed: ClassVar[bool] = False
-    """Whether nodes of the class have a life cycle."""
+    """Whether nodes of the class are lifecycle nodes."""
     __firstlineno__: ClassVar[int]
     _core_class: ClassVar[type[NodeCore]] = NodeCore
 
@@ -115,7 +115,8 @@ class Node(SpeaksRos):
             self, names, values, replace(around, groups={**(concurrency or {}), **around.groups})
         )
         self.log = self._core.log
-        """The node's logger; its records go to the console and to /rosout."""
+        """The node's logger (`throttle=`, `once=` and `skip_first=` as in rclpy); records go to the console and to
+        /rosout."""
         self.parameters = self._core.parameters
         self._core.bind(
             parameter_services=start_parameter_services,
@@ -125,7 +126,7 @@ class Node(SpeaksRos):
 
     @classmethod
     def interface(cls) -> Interface:
-        """Everything the class declares, and what its methods are seen to make, as data; known without a node."""
+        """Return the class's declarations, and the endpoints its methods are seen to create, without making a node."""
         check_module(cls)
         check_names(cls)  # type: ignore[arg-type]
         return with_made(cls, declared.interface_of(cls))
@@ -138,7 +139,7 @@ class Node(SpeaksRos):
         check_hooks(cls)
         declared.check_attributes(cls, Node)
         unrun.defined(cls)
-        declared.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
+        declared.interface_of(cls)  # an invalid declaration fails at import, not in a later run
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.full_name}{' running' if self.is_running else ''}>"
@@ -174,21 +175,21 @@ class Node(SpeaksRos):
         return self._core.names.derivations
 
     def resolve_topic_name(self, name: str) -> str:
-        """The full name of a topic that the node calls `name`, remapped."""
+        """Return the full name of a topic after remapping. Raises InvalidName if `name` is not legal."""
         return self._core.names.resolve(name)
 
     def resolve_service_name(self, name: str) -> str:
-        """The full name of a service or action that the node calls `name`, remapped."""
+        """Return the full name of a service or action after remapping. Raises InvalidName if `name` is not legal."""
         return self._core.names.resolve(name, "service")
 
     @property
     def context(self) -> Context:
-        """The context that the node runs in. Raises ClosedError when it is not running."""
+        """The context of the node. Raises ClosedError when the node is not running."""
         return self._core.context
 
     @property
     def clock(self) -> Clock:
-        """The clock for the node's timers, sleeps and deadlines: simulated time when `use_sim_time` is true.
+        """The clock for timers, sleeps and deadlines: simulated time while the parameter `use_sim_time` is true.
 
         Raises:
             ClosedError: The node is not running.
@@ -197,14 +198,14 @@ class Node(SpeaksRos):
 
     @property
     def group(self) -> HandlerGroup:
-        """The group of the handler that is running: `async with self.group.released(): ...`.
+        """The group of the running handler: `async with self.group.released(): ...`.
 
         Raises:
-            RuntimeError: What is running is not a handler in a group but, say, a task.
+            RuntimeError: The current task is not a handler run in a group, but for example a `@task`.
         """
         group = getattr(asyncio.current_task(), "group", None)
         if not isinstance(group, HandlerGroup):
-            raise RuntimeError(f"{self.full_name}: what is running here is not a handler that holds a slot of a group")
+            raise RuntimeError(f"{self.full_name}: the current task is not a handler that holds a slot of a group")
         return group
 
     @property
@@ -213,18 +214,18 @@ class Node(SpeaksRos):
 
     @property
     def endpoints(self) -> list[Endpoint]:
-        """Everything the node has on the network; for actions, the services and topics that they consist of."""
+        """The node's endpoints on the network; an action counts as the services and topics it consists of."""
         return self._core.endpoints
 
     def statistics(self) -> dict[str, dict[str, Any]]:
-        """Numbers since the start, by the name of each handler, endpoint and group."""
+        """Return counters since the start, by the name of each handler, endpoint and group."""
         return self._core.statistics()
 
     @in_our_words
     def create_publisher(
         self, type_: type[M], name: str, qos: Qos | int = 10, *, on_event: OnEvent | None = None
     ) -> TopicPublisher[M]:
-        """A publisher on `name`, remapped; `on_event` is called with each `QosEvent`."""
+        """Create a publisher on the remapped topic `name`; `on_event` is called with each `QosEvent`."""
         core, place = self._core, here()
         check_type(type_, Message, "create_publisher", place)
         check_text(name, "create_publisher", place)
@@ -246,14 +247,17 @@ class Node(SpeaksRos):
         on_event: OnEvent | None = None,
         on_error: OnError = "budget",
     ) -> TopicSubscription[M]:
-        """A subscription on `name`, remapped.
+        """Create a subscription on the remapped topic `name`.
 
         Args:
-            callback: A `def` or an `async def`, called with each message; None for a subscription to be iterated.
-            takes_info: Call it with the message and a `MessageInfo`: sender, times, sequence number.
-            ignore_local: Leave out what this process publishes itself.
+            callback: A `def` or an `async def`, called with each message; None to iterate the subscription instead.
+            qos: The QoS profile, or the queue depth.
+            group: The concurrency group of the callback; by default the class's `default_group`.
+            thread: Whether a `def` callback runs in a thread.
+            takes_info: Whether the callback also takes a `MessageInfo`: sender, times, sequence number.
+            ignore_local: Whether to skip messages that this process publishes.
             on_event: Called with each `QosEvent`.
-            on_error: What an error in the callback means for the node.
+            on_error: The policy for errors in the callback.
         """
         what, place = "create_subscription", here()
         check_type(type_, Message, what, place)
@@ -266,11 +270,11 @@ class Node(SpeaksRos):
             check_callback(callback, range(2, 3) if takes_info else range(1, 2), what, place, hint)
         core, resolved = self._core, self._core.names.resolve(name)
         same = (part for part in core.parts if isinstance(part, TopicSubscription) and part.name == resolved)
-        tell_doubled(core.log, callback, place, f"each message of {resolved}", same)
+        warn_doubled(core.log, callback, place, f"each message of {resolved}", same)
         label, call, slots = core.place(callback, f"subscription {name}", group, thread)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
         made = TopicSubscription(core, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
-        tell_same(core, core.parts, made, callback)
+        warn_duplicate(core, core.parts, made, callback)
         return core.add(made, late=callback is not None)
 
     @in_our_words
@@ -285,13 +289,13 @@ class Node(SpeaksRos):
         thread: bool = False,
         introspection: Introspection = "off",
     ) -> ServiceServer[Request, Response]:
-        """A service on `name`, remapped; `callback` takes the request and returns the response.
+        """Create a service on the remapped `name`; `callback` takes the request and returns the response.
 
-        As in ROS 2 it may take a second argument, an empty response to fill in and return.
+        As in ROS 2, it may take a second argument, an empty response to fill in and return.
 
         Args:
-            introspection: What is published of each call on `name`/_service_event: nothing, its metadata, or
-                request and response as well.
+            group, thread: As for `create_subscription`.
+            introspection: Content of the events on `name`/_service_event: "off", "metadata" or "contents".
         """
         what, place = "create_service", here()
         check_type(type_, Service, what, place)
@@ -319,10 +323,10 @@ class Node(SpeaksRos):
         introspection: Introspection = "off",
         group: Group | HandlerGroup | None = None,
     ) -> ServiceClient[Request, Response]:
-        """A client of the service `name`, remapped; `introspection` as for `create_service`.
+        """Create a client of the remapped service `name`; `introspection` as for `create_service`.
 
         Args:
-            group: Responses wait for a slot of it, as in ROS 2; without a group they need none.
+            group: The group in which responses take a slot, as in ROS 2; by default they take none.
         """
         core, place = self._core, here()
         check_type(type_, Service, "create_client", place)
@@ -348,14 +352,14 @@ class Node(SpeaksRos):
         on_client_loss: OnClientLoss = "continue",
         cleanup_timeout: float = 10.0,
     ) -> ActionServer[Goal, Result, Feedback]:
-        """An action on `name`, remapped; `callback` takes the goal's `ServerGoalHandle` and returns the result.
+        """Create an action server on the remapped `name`; `callback` takes a `ServerGoalHandle` and returns the result.
 
         Args:
-            policy: What becomes of a goal that arrives while another is under way.
-            accept: Called with each goal's message; False rejects it, and so does a text that says why.
+            policy: The policy for a goal that arrives while another runs.
+            accept: Called with each goal message; rejects the goal by returning False or the reason as text.
             cancellable: Whether cancel requests are granted, or a function of the handle that decides.
-            on_client_loss: What becomes of a goal whose client has gone.
-            cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.
+            on_client_loss: The policy for a goal whose client has gone.
+            cleanup_timeout: Seconds that a cancelled callback has for cleanup before its goal counts as aborted.
         """
         what, place = "create_action_server", here()
         check_type(type_, Action, what, place)
@@ -372,7 +376,7 @@ class Node(SpeaksRos):
     def create_action_client(
         self, type_: type[Action[Goal, Result, Feedback]], name: str
     ) -> GoalClient[Goal, Result, Feedback]:
-        """A client of the action `name`, remapped."""
+        """Create a client of the remapped action `name`."""
         check_type(type_, Action, "create_action_client", here())
         check_text(name, "create_action_client", here())
         return self._core.add(GoalClient(self._core, type_, self._core.names.resolve(name, "service")))
@@ -388,7 +392,7 @@ class Node(SpeaksRos):
         takes_info: bool = False,
         on_error: OnError = "budget",
     ) -> Timer:
-        """Call `callback` once a `period` (seconds).
+        """Create a timer that calls `callback` every `period` seconds.
 
         Raises:
             ValueError: The period is not positive.
@@ -400,10 +404,10 @@ class Node(SpeaksRos):
         check_callback(callback, range(1, 2) if takes_info else range(1), what, place)
         nanoseconds = period_ns(period, None)
         same = (part for part in self._core.parts if isinstance(part, Timer) and part.period == nanoseconds / 1e9)
-        tell_doubled(self._core.log, callback, place, "each period", same)
+        warn_doubled(self._core.log, callback, place, "each period", same)
         label, call, slots = self._core.place(callback, "timer", group, thread)
         made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)
-        tell_same(self._core, self._core.parts, made, callback)
+        warn_duplicate(self._core, self._core.parts, made, callback)
         return self._core.add(made, late=True)
 
     @in_our_words
@@ -411,28 +415,28 @@ class Node(SpeaksRos):
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
 
         Args:
-            dynamic: Whether it takes values of any type and may be deleted.
+            dynamic: Whether the parameter takes values of any type and may be deleted.
 
         Raises:
-            ParameterError: The parameter exists, or the value given from outside does not fit.
+            ParameterError: The parameter is already declared, or the override for it does not fit.
         """
         return self.parameters.declare(Param(default, name=name, **limits).with_typing(dynamic=dynamic))
 
     def undeclare_parameter(self, name: str) -> None:
-        """Remove a parameter that `declare_parameter` has made. Raises ParameterError if it cannot."""
+        """Remove a parameter made by `declare_parameter`. Raises ParameterError if it is unknown or read-only."""
         self.parameters.undeclare(name)
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
-        """Run `fn(*args)` in a worker thread, for work that would block the loop. It cannot be cancelled.
+        """Run the blocking function `fn(*args)` in a worker thread. It cannot be cancelled.
 
-        At most 32 run at a time, those of all nodes of the process together; others wait their turn.
+        At most 32 run at a time in a process; further calls wait.
         """
         check_function(fn, "offload", "await self.offload(time.sleep, 0.5)")
         check_plain(fn, "offload")
         return await self.context.offload(fn, *args)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
-        """Run `fn(*args)` alongside everything else until the node stops; from any thread.
+        """Run the coroutine function `fn(*args)` in the background until the node stops; from any thread.
 
         An error in it ends the node.
         """
@@ -443,38 +447,38 @@ class Node(SpeaksRos):
             call_soon(self._core, self._core.spawn, (fn, *args))
 
     def call_soon(self, fn: Callable[..., object], *args: Any) -> None:
-        """Call `fn(*args)` on the event loop: the way to it from another thread, such as that of a driver's callback.
+        """Call `fn(*args)` on the event loop from any thread, such as a driver's callback thread.
 
         An error in it is logged.
 
         Raises:
-            ClosedError: The node does not run.
+                        ClosedError: The node is not running.
         """
         check_function(fn, "call_soon", "self.call_soon(self.work)")
         call_soon(self._core, fn, args)
 
     async def on_start(self) -> None:
-        """For subclasses: prepare. Publishers and clients work; no handler, timer or task runs before it returns.
+        """Prepare the node; for subclasses. No handler, timer or task runs before it returns.
 
-        An error in it ends the node.
+        Publishers and clients already work. An error in it ends the node.
         """
 
     async def on_shutdown(self) -> None:
-        """For subclasses: finish. Handlers and tasks have ended; publishers and clients still work."""
+        """Clean up; for subclasses. Handlers and tasks have ended; publishers and clients still work."""
 
     async def enter(self, manager: AbstractAsyncContextManager[T] | AbstractContextManager[T]) -> T:
-        """Enter a context manager that is left when the node stops, in reverse order, after `on_shutdown`."""
+        """Enter a context manager; it is exited when the node stops, last entered first, after `on_shutdown`."""
         if isinstance(manager, AbstractAsyncContextManager):
             return await self._core.entered.enter_async_context(manager)
         return self._core.entered.enter_context(manager)
 
     def shutdown(self) -> None:
-        """End the node from within: the code that runs it will stop it, and a process with nothing else to run ends.
+        """End the node from within, from any thread; a process with nothing else to run then ends.
 
         From any thread.
         """
         self._core.shutdown()
 
     async def wait_ended(self) -> None:
-        """Wait until the node ends itself by `shutdown`, or fails; raises the error it failed with."""
+        """Wait until the node ends by `shutdown` or fails; raises the error it failed with."""
         await self._core.wait_ended()

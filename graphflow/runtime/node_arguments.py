@@ -1,4 +1,4 @@
-"""Arguments that nodes and `graphflow.run` are given in the words or shapes of others: what to write instead."""
+"""Hints for arguments that users of other tools pass to nodes and to `graphflow.run`."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _WORDS = {
     **dict.fromkeys(("params", "parameters", "parameter_overrides"), ""),
     **dict.fromkeys(("node_name",), "name"),
 }
-"""Other words for the arguments of a node; the empty text for those that go by their own names."""
+"""Other names for a node's arguments; the empty text for arguments whose name is the same."""
 
 
 def rules_of(remap: object) -> list[Remap]:
-    """The rules of a node's argument `remap`.
+    """Parse a node's argument `remap`.
 
     Raises:
-        InvalidName: A rule is not legal, or this is no list of them; the text says what to write.
+        InvalidName: A rule is invalid, or `remap` is not a list of rules; the text has the correct form.
     """
     if isinstance(remap, str):
         raise InvalidName(f"{here()}: remap= is a list: remap=[{_quoted(remap)}]")
@@ -37,7 +37,7 @@ def rules_of(remap: object) -> list[Remap]:
 
 
 def instead_of(word: str, value: object) -> str:
-    """What to write for a keyword that a node does not have, in place of the argument that it has; empty for others."""
+    """Return what to write in place of a keyword that a node does not have; "" if unknown."""
     meant = _WORDS.get(word)
     if meant is None:
         return ""
@@ -45,10 +45,10 @@ def instead_of(word: str, value: object) -> str:
 
 
 def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> None:
-    """See that `graphflow.run` is given no keywords that are for a node.
+    """Refuse keywords of `graphflow.run` that belong to a node.
 
     Raises:
-        UsageFault: It is.
+        UsageFault: There is a keyword.
     """
     if given:
         first = next(iter(nodes), None)
@@ -59,7 +59,7 @@ def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> Non
 
 
 def _argument(word: str, value: object) -> str:
-    """An argument of a node as it is written."""
+    """Return an argument of a node as it is written in code."""
     meant = _WORDS.get(word, word)
     if meant == "remap":
         return _as_rules(value)

@@ -1,4 +1,4 @@
-"""The clock of a node: its context's, or the time on /clock for as long as `use_sim_time` is true."""
+"""A node's clock: its context's, or the time on /clock while `use_sim_time` is true."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ TIMELESS = (
     "simulator, or play a bag with --clock, or set use_sim_time to false"
 )
 TELL_AFTER = 3.0
-"""Seconds that simulated time has to begin until the node's log tells that it has not."""
+"""Seconds that simulated time has to start before a warning."""
 
 
 class NodeClock:
-    """The choice between the two clocks.
+    """The choice between a context's clock and simulated time.
 
     Args:
-        resolve: Makes a full name of one, for the topic.
+        resolve: Resolves the topic's name.
         add: Adds the subscription to the node's parts.
     """
 
@@ -40,16 +40,16 @@ class NodeClock:
 
     @property
     def current(self) -> Clock:
-        """The clock to go by. Raises ClosedError when the node does not run and follows no /clock."""
+        """The clock in force. Raises ClosedError when the node does not run and does not follow /clock."""
         return self._host.context.clock if self._simulated is None else self._simulated[0]
 
     def complaints(self) -> list[str]:
-        """That simulated time does not begin, if that is so."""
+        """Report that simulated time has not started, if so."""
         is_waiting = self._simulated is not None and self._simulated[0].time_ns() == 0
         return [TIMELESS] if is_waiting else []
 
     def follow(self, *, is_simulated: bool) -> None:
-        """Follow /clock, or the context's clock; what waits on the other one waits out the rest here."""
+        """Switch to /clock or to the context's clock; pending waits continue on the new clock."""
         former = self._simulated
         if is_simulated and former is None:
             from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage

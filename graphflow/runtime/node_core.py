@@ -1,4 +1,4 @@
-"""The workings of one node, behind `Node`: its parts, its life, its handlers' runners, and what becomes of errors."""
+"""The implementation of a node: its parts, life cycle, runners and error handling."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ from graphflow.wire.liveliness import Entity, Kind
 P = TypeVar("P", bound=Part)
 
 STOP_LIMIT = 2.0
-"""Seconds that cancelled handlers and tasks have for their cleanup."""
+"""Seconds that cancelled handlers and tasks have for cleanup."""
 
 
 class Instance(declared.NodeClass, Creator, Protocol):
-    """What the core needs from the user's object."""
+    """The user's node object, as its core sees it."""
 
     error_budget: ClassVar[ErrorBudget | None]
 
@@ -63,11 +63,11 @@ class Instance(declared.NodeClass, Creator, Protocol):
 
 
 class NodeCore:
-    """What a `Node` is made of: its parts' `Host`, and the search's `Subject`.
+    """The implementation behind a `Node`: the `Host` of its parts, and a `Subject` of the deadlock search.
 
     Args:
-        overrides: Parameter values from outside, by name, each with where it was written.
-        concurrency: What a graph file says about its groups.
+        overrides: Parameter values by name, each with the place that gives it.
+        concurrency: The graph file's changes to the groups.
     """
 
     def __init__(
@@ -85,25 +85,25 @@ class NodeCore:
         self.parameters = Parameters(overrides)
         self.groups = Groups(declared.groups(cls), cls.default_group, concurrency)
         self.starting: asyncio.Task[Any] | None = None
-        """The task in which `on_start` runs, until it returns."""
+        """The task that runs `on_start`, until it returns."""
         self.tasks: set[asyncio.Task[Any]] = set()
-        """Tasks that `spawn` has started and that have not ended."""
+        """Running tasks that `spawn` has started."""
         self.runners: list[Runner] = []
         self.refuses_unused = False
-        """Whether remap rules that match nothing are an error."""
+        """Whether a remap rule that matches nothing is an error."""
         self.failure: BaseException | None = None
         """The error that ended the node."""
         self.failure_taken = False
-        """Whether the end of the node was waited for."""
+        """Whether a caller has waited for the node's end."""
         self.entered = AsyncExitStack()
-        """Context managers that are left after `on_shutdown`."""
+        """Context managers to exit after `on_shutdown`."""
         self._made: dict[str, Any] = {}
-        """What `Node.__init__` has set on the instance."""
+        """The attributes that `Node.__init__` has set on the instance."""
         self._context: Context | None = None
         self._ended: asyncio.Future[None] | None = None
         self.parts: list[Part] = []
         self._late: list[Part] | None = []
-        """What is opened once `on_start` has returned; None from then on."""
+        """Parts to open once `on_start` has returned; None from then on."""
         self._binding = Binding(instance, self, self.parameters)
         self._failures = Failures(self, instance.error_budget, self._fail)
         self._repeats = Repeats(self)
@@ -113,7 +113,7 @@ class NodeCore:
         self._parameter_events: ParameterEvents | None = None
         self._clock = NodeClock(self, self.names.resolve, self.add)
 
-    # who it is
+    # identity
 
     @property
     def name(self) -> str:
@@ -146,16 +146,16 @@ class NodeCore:
     def clock(self) -> Clock:
         return self._clock.current
 
-    # what it has
+    # contents
 
     @property
     def held(self) -> Mapping[str, Any]:
-        """What the declarations of the class have become, by attribute."""
+        """The runtime objects of the class's declarations, by attribute."""
         return self._binding.held
 
     @property
     def handlers(self) -> frozenset[str]:
-        """Methods that are known as handlers before a node is made, declared or read from the source."""
+        """Names of the class's handlers, declared or found in its source."""
         return _handlers(type(self.instance))
 
     @property
@@ -164,7 +164,7 @@ class NodeCore:
 
     @property
     def endpoints(self) -> list[Endpoint]:
-        """Everything the node has on the network; for actions, the services and topics that they consist of."""
+        """The node's endpoints on the network; an action counts as the services and topics it consists of."""
         return [endpoint for part in self.parts for endpoint in part.endpoints]
 
     @property
@@ -177,14 +177,14 @@ class NodeCore:
         return any(e.kind is Kind.SERVICE and e.name == service for e in self.endpoints)
 
     def statistics(self) -> dict[str, dict[str, Any]]:
-        """Numbers since the start, by the name of each handler, endpoint and group."""
+        """Return counters since the start, by the name of each handler, endpoint and group."""
         found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
         return found | {part.title: part.statistics() for part in self.parts if part.title}
 
-    # how it is made
+    # construction
 
     def bind(self, *, parameter_services: bool, rosout: bool, logger_service: bool) -> None:
-        """Make what the class declares, and what every node has."""
+        """Create the endpoints that the class declares and those that every node has."""
         self._made = dict(vars(self.instance))
         self._binding.bind_parameters()
         self.parameters.observe(self._parameters_changed)
@@ -205,14 +205,14 @@ class NodeCore:
         self._binding.bind()
 
     def serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
-        """Make one of the services that every node has; they exist before `on_start` runs."""
+        """Offer one of the services that every node has; they exist before `on_start` runs."""
         type_: Any = registry.interface_class(type_name)
         self._own_services.add(f"~/{name}")
         resolved = self.names.resolve(f"~/{name}", "service")
         self.add(ServiceServer(self, type_, resolved, qos, callback, name, is_inner=True))
 
     def add(self, part: P, *, late: bool = False) -> P:
-        """Add a part, and open it if the time has come: `late` ones wait for `on_start`. May raise WrongThread."""
+        """Add a part, and open it if it is due: `late` parts open after `on_start`. Raises WrongThread off the loop."""
         if self._context is not None:
             self._context.refuse_other_threads(f"create_... of node {self.full_name}")
         self.parts.append(part)
@@ -234,11 +234,11 @@ class NodeCore:
     def place(
         self, callback: Callable[..., Any] | None, otherwise: str, group: Group | HandlerGroup | None, thread: bool
     ) -> tuple[str, Any, HandlerGroup | None]:
-        """A handler's name, how to call it, and the group whose slots its runs take.
+        """Return a handler's label, the function to call, and the group whose slots its runs take.
 
         Args:
             callback: None for a subscription that is iterated.
-            otherwise: What stands for a handler without a name, such as a lambda.
+            otherwise: The label of a handler without a name, such as a lambda.
         """
         name = getattr(callback, "__name__", "")
         label = name if name and name != "<lambda>" else otherwise
@@ -253,7 +253,7 @@ class NodeCore:
             raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
 
         async def run(*args: Any) -> Any:
-            # A thread cannot be cancelled: until it has ended the run goes on, and holds its slot.
+            # A thread cannot be cancelled: the run, and with it the slot, lasts until the thread has ended.
             return await self.context.in_thread(fn, *args, stays=True)
 
         return run
@@ -265,11 +265,11 @@ class NodeCore:
         return made
 
     def ensure_made(self) -> None:
-        """Check that the node was made correctly.
+        """Check that the node was constructed correctly.
 
         Raises:
             DeclarationError: Its `__init__` has overwritten an attribute that every node has.
-            ParameterError: A value was given for a parameter that it does not have.
+            ParameterError: There is an override for a parameter that the node does not have.
         """
         for attribute, value in self._made.items():
             if vars(self.instance).get(attribute) is not value:
@@ -279,10 +279,10 @@ class NodeCore:
         if unused := self.parameters.unused_overrides(type(self.instance)):
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
 
-    # its life
+    # life cycle
 
     async def start(self, context: Context) -> None:
-        """Go on the network: open what is declared, announce it, start timers and tasks.
+        """Join the network: open and announce the declared endpoints, then start timers and tasks.
 
         Raises:
             GraphflowError: An override names no parameter, `concurrency` no handler, or something cannot be opened;
@@ -310,7 +310,7 @@ class NodeCore:
             raise
 
     async def _begin(self) -> None:
-        """Start what the class declares as `@task`."""
+        """Start the class's `@task` methods."""
         for attribute, handler in declared.handlers(type(self.instance)).items():
             if handler.kind == "task":
                 self.spawn(getattr(self.instance, attribute))
@@ -330,7 +330,7 @@ class NodeCore:
             await self.instance.on_start()
         except Exception as error:
             self.refuses_unused = False
-            self.warn_unused_remaps()  # which may be why
+            self.warn_unused_remaps()  # an unused rule may have caused the error
             self.failure = error
             self.report_error("on_start", error)
             raise
@@ -343,29 +343,29 @@ class NodeCore:
             part.open()
 
     def warn_unused_remaps(self) -> None:
-        """Warn of remap rules that have matched nothing, or raise a UsageFault where their author waits for it."""
+        """Warn of remap rules that match nothing, or raise UsageFault if `refuses_unused`."""
         if (problems := self.unused_remaps()) and self.refuses_unused:
             raise UsageFault("; ".join(problems))
         for problem in problems:
             self.log.warning("%s", problem)
 
     def unused_remaps(self) -> list[str]:
-        """What is wrong with the remap rules that have matched nothing so far, a sentence for each."""
+        """Return a sentence for each remap rule that has matched nothing so far."""
         return list(unused_remaps(self.names, self._own_services, self.instance.dynamic_names, self.parameters))
 
     def complaints(self) -> list[str]:
-        """What is wrong with the node that it knows itself, a sentence for each."""
+        """Return the problems that the node knows of, a sentence each."""
         return [*self.unused_remaps(), *self._clock.complaints(), *(c for p in self.parts for c in p.complaints())]
 
     def shutdown(self) -> None:
-        """End the node from within, from any thread: the code that runs it will stop it."""
+        """End the node from within, from any thread; the code that runs it then stops it."""
         if self._context is not None and not self._context.is_here:
             call_soon(self, self.shutdown, ())
         elif self._ended is not None and not self._ended.done():
             self._ended.set_result(None)
 
     async def wait_ended(self) -> None:
-        """Wait until the node ends itself by `shutdown` or fails; raises the error it failed with."""
+        """Wait until the node ends by `shutdown` or fails; raises the error it failed with."""
         assert self._ended is not None
         try:
             await asyncio.shield(self._ended)
@@ -373,7 +373,7 @@ class NodeCore:
             self.failure_taken = True
 
     async def stop(self) -> None:
-        """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything."""
+        """Leave the network: cancel handlers and tasks, wait for their cleanup, close all parts."""
         context = self._context
         if context is None:
             return
@@ -381,8 +381,8 @@ class NodeCore:
             await self.end(self.begin_to_stop(), self.tasks)
             await self._finish()
         finally:
-            self.log.say_gathered()
-            # Even when this wait is cancelled: nothing stays open.
+            self.log.log_suppressed()
+            # Runs even when the wait above is cancelled, so that nothing stays open.
             if self._rosout is not None:
                 self._rosout.detach()
             for part in list(reversed(self.parts)):
@@ -391,16 +391,16 @@ class NodeCore:
                 self._token.close()
             if self._ended is not None and not self._ended.done():
                 self._ended.cancel()
-            if self in context.nodes:  # two callers may stop a node
+            if self in context.nodes:  # two callers may stop a node at the same time
                 context.nodes.remove(self)
             self._context = None
 
     def begin_to_stop(self) -> list[Runner | None]:
-        """Have timers and the like begin no more work; returns the runners, whose `cancel` does the same for runs."""
+        """Keep the parts from starting more work; returns the runners to cancel."""
         return [*(part.begin_to_stop() for part in self.parts), *self._binding.runners()]
 
     async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[Any]]) -> None:
-        """Cancel what runs and give it time to clean up."""
+        """Cancel runs and tasks, and give them `STOP_LIMIT` seconds to clean up."""
         ending: dict[asyncio.Future[Any], str] = {r.cancel(): r.name for r in runners if r is not None}
         for task in {*tasks} - {asyncio.current_task()}:
             task.cancel()
@@ -417,7 +417,7 @@ class NodeCore:
         await self.limited("leaving what was entered", self.entered.aclose)
 
     async def limited(self, what: str, work: Callable[[], Coroutine[Any, Any, Any]]) -> None:
-        """Do one part of stopping: if it fails or takes too long, the rest is done all the same."""
+        """Run one step of stopping; its failure or timeout does not prevent the next ones."""
         try:
             async with asyncio.timeout(STOP_LIMIT):
                 await work()
@@ -427,7 +427,7 @@ class NodeCore:
             self.report_error(what, error)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
-        """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""
+        """Run `fn(*args)` in the background until the node stops. An error in it ends the node."""
         task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
         self.tasks.add(task)
         task.add_done_callback(self._task_done)
@@ -443,9 +443,9 @@ class NodeCore:
             self._fail(error)
 
     def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
-        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # from a coroutine, or from a thread
+        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # of a coroutine, or of a thread
             return
-        if on_error is None or not self.is_running:  # stopping did not wait for this run
+        if on_error is None or not self.is_running:  # the run outlived the stop
             self.report_error(label, error)
         else:
             self._failures.failed(label, error, on_error)
@@ -460,7 +460,7 @@ class NodeCore:
         if self._ended is not None and not self._ended.done():
             self.failure = error
             self._ended.set_exception(error)
-            self._ended.exception()  # it is logged: asyncio need not complain when nothing waits for it
+            self._ended.exception()  # already logged: keeps asyncio from warning that it was never retrieved
 
     # parameters and time
 
@@ -473,7 +473,7 @@ class NodeCore:
             self._parameter_events.tell(changes)
 
     def _follow_sim_time(self) -> None:
-        """Follow /clock, or the context's clock, as the parameter `use_sim_time` says."""
+        """Follow /clock or the context's clock, as the parameter `use_sim_time` selects."""
         self._clock.follow(is_simulated=bool(self.parameters.get("use_sim_time")))
         for part in self.parts:
             part.clock_changed()
@@ -492,7 +492,7 @@ def _handlers(cls: Any) -> frozenset[str]:
 
 
 def core_of(node: object) -> NodeCore:
-    """The workings of a `Node`, for what runs it. Raises DeclarationError for what is none, or was not fully made."""
+    """Return a node's core. Raises DeclarationError if `node` is not a node or not fully constructed."""
     check_node(node)
     core = vars(node).get("_core")
     if not isinstance(core, NodeCore):

@@ -1,7 +1,7 @@
-"""What a node is given by what runs it, a graph file or a command line: it comes to the node from its surroundings.
+"""Options that the environment, a graph file or a command line, gives to a node under construction.
 
-So a class whose `__init__(self)` takes nothing, as ROS 2 teaches it, gets its name, remaps and parameters too. What the
-surroundings say wins over what is written in the class.
+They travel in a context variable, so that a class whose `__init__(self)` takes nothing, as ROS 2 teaches it, gets its
+name, remaps and parameters too. They take precedence over the values in the class.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
 from graphflow.names import Remap, Resolver, did_you_mean, whole_rule
 from graphflow.runtime.args import is_number_or_truth
-from graphflow.runtime.mistakes.slow_hooks import telling_slow_init
+from graphflow.runtime.mistakes.slow_hooks import warn_slow_init
 
 T = TypeVar("T")
 
 _NAMES = ("name", "node_name")
-"""What the first argument of an `__init__` is called that takes the node's name."""
+"""Names of an `__init__`'s first argument that takes the node's name."""
 
 
 @dataclass(frozen=True)
 class NodeOptions:
-    """What is said of a node from outside.
+    """The options of one node.
 
     Attributes:
-        name: Its name; None leaves that to the class.
-        namespace: Where it lives; None likewise.
-        remaps: Rules that come before the class's own.
-        overrides: Parameter values, each with where it was written.
-        concurrency: What a graph file says about its groups.
-        rosout: Whether what it logs is published.
+        name: The node's name; None for the class's choice.
+        namespace: The node's namespace; None for the class's choice.
+        remaps: Remap rules, which precede the class's own.
+        overrides: Parameter values, each with the place that gives it.
+        concurrency: The graph file's changes to the groups.
+        rosout: Whether log records are published on /rosout.
     """
 
     name: str | None = None
@@ -47,33 +47,33 @@ class NodeOptions:
 
 
 NOTHING = NodeOptions()
-_given: ContextVar[tuple[type, NodeOptions] | None] = ContextVar("graphflow_surroundings", default=None)
+_given: ContextVar[tuple[type, NodeOptions] | None] = ContextVar("graphflow_options", default=None)
 
 
-def make_within(cls: type[T], surroundings: NodeOptions, default_name: str) -> T:
-    """A node of a class, within surroundings.
+def make_within(cls: type[T], options: NodeOptions, default_name: str) -> T:
+    """Make a node of a class with these options.
 
     Args:
-        default_name: What an `__init__` gets that insists on a name, where the surroundings have none.
+        default_name: The name for an `__init__` that requires one, if the options have none.
 
     Raises:
         DeclarationError: Its `__init__` needs more than a name, or does not call its parent's.
-        Exception: Whatever its `__init__` raises.
+        Exception: The error that its `__init__` raises.
     """
     reason = why_not(cls)
     if reason:
         raise DeclarationError(reason)
-    arguments = (surroundings.name or default_name,) if _required(cls) else ()
-    token = _given.set((cls, surroundings))
+    arguments = (options.name or default_name,) if _required(cls) else ()
+    token = _given.set((cls, options))
     try:
-        with telling_slow_init(cls):
+        with warn_slow_init(cls):
             return cls(*arguments)
     finally:
         _given.reset(token)
 
 
 def take(node: object) -> NodeOptions:
-    """What the surroundings have for a node that is being made; another node that it makes gets nothing."""
+    """Return the options for a node under construction; other nodes that it makes get none."""
     given = _given.get()
     if given is None or given[0] is not type(node):
         return NOTHING
@@ -82,7 +82,7 @@ def take(node: object) -> NodeOptions:
 
 
 def why_not(cls: type) -> str:
-    """Why nodes of a class cannot be made, as a sentence; empty if they can."""
+    """Return the reason why nodes of a class cannot be made, as a sentence; "" if they can."""
     init = inspect.unwrap(cls.__init__)  # type: ignore[misc]
     code = getattr(init, "__code__", None)
     is_ours = init.__module__.startswith("graphflow.")
@@ -102,7 +102,7 @@ def why_not(cls: type) -> str:
 
 
 def _required(cls: type) -> list[str]:
-    """The names of the arguments that cannot be left out."""
+    """Return the names of an `__init__`'s required arguments."""
     parameters = list(inspect.signature(cls.__init__).parameters.values())[1:]  # type: ignore[misc]
     kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
     return [p.name for p in parameters if p.default is p.empty and p.kind not in kinds]
@@ -111,12 +111,12 @@ def _required(cls: type) -> list[str]:
 def unused_remaps(
     names: Resolver, own: Container[str], dynamic: bool | Sequence[str], parameters: Container[str]
 ) -> Iterator[str]:
-    """What is wrong with the remap rules of a node that have matched nothing, a sentence for each.
+    """Return a sentence for each remap rule of a node that has matched nothing.
 
     Args:
-        own: Names that every node has, which no rule is suspected to mean.
-        dynamic: Names that the class makes at run time, and may use later.
-        parameters: Those of the node, which a rule may have been meant to set.
+        own: Names that every node has, which are not suggested.
+        dynamic: Names that the class makes at run time, possibly later.
+        parameters: The node's parameters, which a rule may have been meant to set.
     """
     known = [r.given for r in names.derivations.values() if r.given not in own]
     for rule in names.unused():
@@ -124,7 +124,7 @@ def unused_remaps(
         may_be_made = may_make(dynamic, names.full(rule.match)) if "*" not in rule.match else dynamic
         if may_be_made and not is_value:
             continue
-        name = rule.match[1:] if rule.match.startswith("_") else rule.match  # as ROS 1 sets a parameter
+        name = rule.match[1:] if rule.match.startswith("_") else rule.match  # ROS 1's syntax for a parameter
         is_param = name in parameters
         set_by = f"-p {name}:={rule.replacement}"
         hint = f"; to set the parameter write {set_by}" if is_param else whole_rule(rule.match, rule.replacement, known)

@@ -1,4 +1,4 @@
-"""The services that every ROS 2 node has besides those for its parameters: type descriptions and logger levels.
+"""Services of every ROS 2 node besides the parameters': type descriptions and logger levels.
 
 Source: type_description_interfaces/srv/GetTypeDescription (REP-2016); rcl_interfaces/srv/GetLoggerLevels and
 SetLoggerLevels.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class TypeDescriptions:
-    """Answers for the types of a node's own endpoints."""
+    """Responses about the types of a node's own endpoints."""
 
     def __init__(self, endpoints: Callable[[], Iterable[Endpoint]]) -> None:
         self._endpoints = endpoints
@@ -40,7 +40,7 @@ class TypeDescriptions:
             return failed(f"this node uses no type {name!r}")
         try:
             digest = registry.hash_of(name)
-        except InterfaceError as error:  # a recorder's: it passes on what it does not know
+        except InterfaceError as error:  # a recorder's type, which it passes on without knowing its definition
             return failed(str(error))
         if request.type_hash and request.type_hash != digest:
             return failed(f"this node's {name} has the hash {digest}, not {request.type_hash}")
@@ -72,7 +72,7 @@ def _described(message: Message) -> description.IndividualTypeDescription:
 
 
 def _sources(names: Iterable[str]) -> list[description.TypeSource]:
-    """The text of the definition files; derived types, which have none, are `implicit`."""
+    """Return the text of definition files; derived types have none and are `implicit`."""
     from graphflow.msgs.type_description_interfaces.msg import TypeSource
 
     sources = []
@@ -90,7 +90,7 @@ _ROS_LEVELS = {number: python for python, number in LEVELS.items()}
 
 
 class LoggerLevels:
-    """Reads and sets the levels of a node's loggers: its own, by its ROS name, and those below it."""
+    """Access to the levels of a node's logger, by its ROS name, and of those below it."""
 
     def __init__(self, own: logging.Logger) -> None:
         self._own = own.name.removeprefix(f"{ROOT}.")

@@ -1,4 +1,4 @@
-"""What a node's parts need from it, and what it needs from its parts."""
+"""The interface between a node and its parts."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from graphflow.runtime.mistakes.rclpy_words import SpeaksRos
 
 
 class Host(Protocol):
-    """A node as its publishers, services, timers and the like see it."""
+    """A node as its parts see it."""
 
     @property
     def id(self) -> int:
-        """The node's number in the process, once it runs."""
+        """The node's number in the process; 0 until it runs."""
 
     @property
     def name(self) -> str: ...
@@ -40,37 +40,37 @@ class Host(Protocol):
 
     @property
     def context(self) -> Context:
-        """The context that the node runs in. Raises ClosedError when it does not run."""
+        """The context of the node. Raises ClosedError when it is not running."""
 
     @property
     def clock(self) -> Clock:
-        """The clock for its timers, sleeps and deadlines. Raises ClosedError when the node does not run."""
+        """The clock for timers, sleeps and deadlines. Raises ClosedError when the node is not running."""
 
     def serves(self, service: str) -> bool:
-        """Whether a service of that full name is the node's own."""
+        """Whether the node offers the service of that full name."""
 
     def runner(self, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> Runner:
-        """A runner for one of its handlers; without a group it queues behind itself only."""
+        """Make a runner for a handler; without a group its runs queue only behind each other."""
 
     def forget(self, part: Part) -> None:
-        """Remove a closed part from the list."""
+        """Remove a closed part from the node."""
 
     def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
-        """Report an error in a handler and what it means for the node; None where a caller gets the error."""
+        """Report an error in a handler and apply its policy; None if the caller receives the error."""
 
     def report_error(self, label: str, error: BaseException) -> None:
         """Log an error: graphflow's own as a sentence, any other with its traceback."""
 
 
 class Part(SpeaksRos, ABC):
-    """What a node opens, stops and closes: an endpoint, an action, a timer."""
+    """A resource that a node opens, stops and closes: an endpoint, an action, a timer."""
 
     opens_last = False
-    """Whether the part must open after everything else, because it begins work by itself."""
+    """Whether the part opens after all others, because it starts work by itself."""
     is_inner = False
-    """Whether the part belongs to graphflow, as every node's parameter services do."""
+    """Whether the part belongs to graphflow, such as a node's parameter services."""
     idle_because = ""
-    """Why the part does no work though it is on the network; empty while it does."""
+    """The reason why the part does no work while on the network; "" while it works."""
 
     @property
     def title(self) -> str:
@@ -79,37 +79,37 @@ class Part(SpeaksRos, ABC):
 
     @property
     def handler_title(self) -> str:
-        """Kind and handler of what the part runs: `service add`; empty if it runs nothing."""
+        """Kind and handler of the part: `service add`; "" without a handler."""
         return ""
 
     @property
     def endpoints(self) -> Sequence[Any]:
-        """What the part has on the network, as `Endpoint`."""
+        """The part's endpoints."""
         return ()
 
     def statistics(self) -> dict[str, Any]:
-        """Numbers since the start."""
+        """Return counters since the start."""
         return {}
 
     def complaints(self) -> list[str]:
-        """What is wrong with the part that it knows itself, a sentence for each."""
+        """Return the problems that the part knows of, a sentence each."""
         return []
 
     @abstractmethod
     def open(self) -> None:
-        """Begin. Called by the node."""
+        """Open the part. Called by the node."""
 
     def begin_to_stop(self) -> Runner | None:
-        """Begin no more work; returns the runner of its handler, whose runs are then cancelled and waited for."""
+        """Start no more work; returns the handler's runner, which the node then cancels and waits for."""
         return None
 
     def pause(self, why: str) -> Runner | None:
-        """Stay on the network, but do nothing until `resume`; returns the runner whose runs are to be cancelled."""
+        """Do no work until `resume`, but stay on the network; returns the runner whose runs must be cancelled."""
         self.idle_because = why
         return None
 
     def resume(self) -> Runner | None:
-        """Do again what the part is for; returns its runner, which begins runs again."""
+        """Resume work; returns the runner, which starts runs again."""
         self.idle_because = ""
         return None
 
@@ -118,4 +118,4 @@ class Part(SpeaksRos, ABC):
         """Withdraw the part from the network. Closing twice is harmless."""
 
     def clock_changed(self) -> None:
-        """The node has switched to another clock."""
+        """Adapt to the node's new clock."""

@@ -1,4 +1,4 @@
-"""The nodes of one process: started beside each other, joined and left by others, and ended together."""
+"""The nodes of one process: started concurrently, joined and left by others, and ended together."""
 
 from __future__ import annotations
 
@@ -8,39 +8,39 @@ from typing import Any
 
 from graphflow.runtime.context import Context
 from graphflow.runtime.ending import StopRequest
-from graphflow.runtime.mistakes.errors.lost_errors import tell_lost_errors
-from graphflow.runtime.mistakes.other_threads import tell_strangers
+from graphflow.runtime.mistakes.errors.lost_errors import log_lost_errors
+from graphflow.runtime.mistakes.other_threads import report_foreign_calls
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 
 
 class Company:
-    """Nodes that run in one context until they are asked to stop, one fails, or all have ended themselves.
+    """The nodes of one context, until a stop is requested, one fails, or all have ended.
 
     Args:
-        stop: Set when they are asked to stop.
+        stop: Set when the nodes must stop.
         ready: Called with each of the first nodes once it has started.
     """
 
     def __init__(self, context: Context, stop: StopRequest, ready: Callable[[Node], None] | None = None) -> None:
         self._context, self._stop, self._ready = context, stop, ready
         self.nodes: list[Node] = []
-        """The nodes, in the order in which they came; those that have ended themselves go with the others."""
+        """The nodes in order of arrival, including those that have ended themselves."""
         self._ends: dict[Node, asyncio.Task[None]] = {}
-        """The nodes that run, and the task in which each end is waited for."""
+        """The running nodes, each with the task that waits for its end."""
         self._changed = asyncio.Event()
-        """Set when a node has joined or left."""
+        """Set when a node joins or leaves."""
         stop.when_set = self._begin_to_stop
 
     async def run(self, nodes: Sequence[Node]) -> None:
-        """Run nodes, and those that join, to their end. The caller then closes the context.
+        """Run the nodes, and those that join, until they end. The caller then closes the context.
 
         Raises:
-            Exception: What ended a node.
+            Exception: The error that ended a node.
         """
         self.nodes += nodes
-        tell_lost_errors(self._context.loop)
-        tell_strangers(self._context.loop)
+        log_lost_errors(self._context.loop)
+        report_foreign_calls(self._context.loop)
         asked = asyncio.create_task(self._stop.wait())
         try:
             try:
@@ -56,7 +56,7 @@ class Company:
                 await core_of(node).stop()
 
     def _begin_to_stop(self) -> None:
-        """Let the node that is stopped first begin nothing more; the others go on until it has ended."""
+        """Quiesce the node that stops first; the others keep running until it has ended."""
         running = [node for node in self.nodes if node in self._ends] or self.nodes
         for node in running[-1:]:
             for runner in core_of(node).begin_to_stop():
@@ -75,13 +75,13 @@ class Company:
                     end.result()
 
     async def _start(self, nodes: Sequence[Node], asked: asyncio.Task[bool]) -> bool:
-        """Start the first nodes beside each other: one may wait for another's.
+        """Start the first nodes concurrently: one may wait for another's services.
 
         Returns:
-            Whether all are ready: False when they are asked to stop before.
+            Whether all have started; False if a stop was requested before.
 
         Raises:
-            Exception: One could not start; the others are cancelled then.
+            Exception: A node failed to start; the others are cancelled.
         """
         starting = {asyncio.create_task(core_of(node).start(self._context)): node for node in nodes}
         left: set[asyncio.Task[Any]] = {asked, *starting}
@@ -93,7 +93,7 @@ class Company:
                         self._ready(node)
         finally:
             for task in starting:
-                task.cancel()  # has no effect on one that is done
+                task.cancel()  # no effect on a task that is done
             await asyncio.gather(*starting, return_exceptions=True)
         for task, node in starting.items():
             if not task.cancelled():
@@ -106,13 +106,13 @@ class Company:
         self._changed.set()
 
     async def join(self, node: Node) -> None:
-        """Start another node. Raises what its start raises; the others are not concerned."""
+        """Start another node. Its errors are raised here and do not affect the other nodes."""
         await core_of(node).start(self._context)
         self.nodes.append(node)
         self._watch(node)
 
     async def leave(self, node: Node) -> None:
-        """Stop one node; the others go on."""
+        """Stop one node; the others keep running."""
         self.nodes.remove(node)
         if node in self._ends:
             self._ends.pop(node).cancel()

@@ -1,4 +1,4 @@
-"""Running nodes: `graphflow.run(Talker())` is a whole program; `async with graphflow.running(...)` is for your own."""
+"""Entry points that run nodes: `run` is a whole program, `running` a block inside one."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from graphflow.runtime.importing import refuse_to_run
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import log_level, setup_console
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
-from graphflow.runtime.mistakes.errors.lost_errors import tell_lost_errors
-from graphflow.runtime.mistakes.other_threads import tell_strangers
+from graphflow.runtime.mistakes.errors.lost_errors import log_lost_errors
+from graphflow.runtime.mistakes.other_threads import report_foreign_calls
 from graphflow.runtime.mistakes.unentered import Unentered
 from graphflow.runtime.mistakes.unread import unread
 from graphflow.runtime.node import Node
@@ -37,18 +37,18 @@ logger = logging.getLogger("graphflow")
 
 
 def running(*nodes: Node, context: Context | None = None) -> AbstractAsyncContextManager[Context]:
-    """Run nodes for the length of the block; a node that fails cancels the block and its error is raised from it.
+    """Run nodes for the length of the block; if a node fails, the block is cancelled and the error raised from it.
 
-    Errors are raised as they are, and only if several happen at once as an ExceptionGroup.
+    A single error is raised as it is; simultaneous errors are raised as an ExceptionGroup.
 
     Args:
-        context: Where to run them; without one, a new one over Zenoh, closed at the end.
+        context: The context to use; by default a new one over Zenoh, closed with the block.
     """
     return _Running(nodes, context)
 
 
 class _Running(Unentered[Context]):
-    """The block of `running`."""
+    """The context manager that `running` returns."""
 
     def __init__(self, nodes: tuple[Node, ...], context: Context | None) -> None:
         for node in nodes:
@@ -74,8 +74,8 @@ async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerat
         if own := context is None:
             context = await Context.open()
             stack.push_async_callback(context.close)
-        tell_lost_errors(context.loop)
-        tell_strangers(context.loop)
+        log_lost_errors(context.loop)
+        report_foreign_calls(context.loop)
         for node in nodes:
             core = core_of(node)
             await core.start(context)
@@ -101,7 +101,7 @@ async def serve(nodes: Sequence[Node], context: Context, stop: StopRequest) -> N
     """Run nodes until `stop` is set, one fails, or all have ended themselves. The caller then closes the context.
 
     Raises:
-        Exception: What ended a node.
+        Exception: The error that ended a node.
     """
     await Company(context, stop).run(nodes)
 
@@ -110,14 +110,14 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
     """Run nodes until Ctrl-C or SIGTERM, then stop them in order.
 
     Args:
-        nodes: Nodes, or node classes, which are then made with what the command line says.
-        args: Instead of the command line's words; `--ros-args -r from:=to -p name:=value` are understood. They are for
-            classes: a node that has been made has its names and values.
-        **strange: None: the names of a node and its parameters are arguments of its class.
+        nodes: Nodes, or node classes, which are made with the command line's names and parameters.
+        args: The arguments, by default the command line's: `--ros-args -r from:=to -p name:=value`. They apply to
+            classes only: an existing node has its names and values.
+        **strange: None are accepted: names and parameters are arguments of the node class.
 
     Raises:
-        RuntimeError: An event loop is running here, as in a notebook.
-        SystemExit: With 1 and a message when a node failed, with 2 when the arguments are wrong.
+        RuntimeError: An event loop is running in this thread, as in a notebook.
+        SystemExit: Status 1 with a message if a node failed, 2 if the arguments are invalid.
     """
     refuse_to_run("graphflow.run")
     _refuse_running_loop(nodes)
@@ -143,7 +143,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
                 core_of(node)
         made += [n if isinstance(n, Node) else make(n, ros) for n in nodes]
         for node in made:
-            core_of(node).refuses_unused = len(made) == 1  # of several, each may be meant by some
+            core_of(node).refuses_unused = len(made) == 1  # with several nodes a rule need not match in each
     except GraphflowError as error:
         print_error(error)
         raise SystemExit(2) from None
@@ -158,7 +158,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
         return
     except Exception as error:
         is_logged = any(core_of(node).failure is error for node in made)
-        if is_logged and not isinstance(error, TooManyErrors):  # of these the node has logged each, and not the sum
+        if is_logged and not isinstance(error, TooManyErrors):  # the node has logged each of these, but not their sum
             raise SystemExit(1) from None
         if not isinstance(error, GraphflowError):
             explain(error)
@@ -168,10 +168,10 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
 
 
 def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
-    """See that no event loop runs in this thread.
+    """Refuse to run inside a running event loop.
 
     Raises:
-        RuntimeError: One does; the text says what to write there.
+        RuntimeError: A loop is running in this thread; the text has the correct form.
     """
     try:
         asyncio.get_running_loop()
@@ -184,15 +184,15 @@ def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
 
 
 def _names(nodes: Sequence[Node | type[Node]]) -> str:
-    """Nodes as a call has them."""
+    """Return nodes as they are written in a call."""
     return ", ".join(f"{node.__name__}()" if isinstance(node, type) else node.name for node in nodes)
 
 
 def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
-    """See that remaps and parameters of the command line reach every node.
+    """Refuse remaps and parameters of the command line that do not reach every node.
 
     Raises:
-        GraphflowError: One has been made already.
+        GraphflowError: A node exists already, so that they cannot apply to it.
     """
     made = [node for node in nodes if isinstance(node, Node)]
     if made and (ros.remaps or ros.params or ros.params_files):
@@ -203,10 +203,10 @@ def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
 
 
 def _refuse_unread(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
-    """See that the program may read the words that are not for ROS.
+    """Refuse arguments that are not ROS 2's and that the program does not read.
 
     Raises:
-        GraphflowError: Nothing reads them.
+        GraphflowError: The program does not seem to read its arguments.
     """
     classes = [node if isinstance(node, type) else type(node) for node in nodes]
     if text := unread(ros.rest, classes, is_own_program=True):
@@ -214,16 +214,16 @@ def _refuse_unread(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
 
 
 def print_error(error: GraphflowError) -> None:
-    """Tell the user at the terminal, with the line of the user's own in which it happened."""
+    """Print an error and the line of user code that caused it to stderr."""
     place = place_in(error)
     sys.stderr.write(f"error: {error}{f' ({place})' if place and place not in str(error) else ''}\n")
 
 
 def make(cls: type[Node], ros: RosArgs) -> Node:
-    """A node as the command line wants it.
+    """Make a node of a class from the command line's arguments.
 
     Raises:
-        GraphflowError: A parameter does not exist or fit.
+        GraphflowError: A parameter does not exist, or its value does not fit.
     """
     interface = cls.interface()
     given = NodeOptions(remaps=ros.remaps, overrides=ros.params_for(interface), rosout=ros.has_rosout)

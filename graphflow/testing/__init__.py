@@ -1,4 +1,4 @@
-"""For tests of nodes: a graph in memory, a clock that moves only when told, and taps on topics.
+"""Test support for nodes: a graph in memory, a clock that moves only on demand, and taps on topics.
 
     async def test_talker_greets_twice_in_two_seconds(graph: Graph) -> None:
         await graph.start(Talker(rate=1.0))
@@ -8,7 +8,7 @@
 
         assert [m.data for m in heard] == ["Hello World: 1", "Hello World: 2"]
 
-Installing graphflow gives pytest the fixture `graph`, and runs `async def` tests that use it.
+Installing graphflow adds the fixture `graph` to pytest, and runs `async def` tests that use it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["Graph", "ManualClock", "Tap"]
 
 
 def __getattr__(name: str) -> object:
-    # Imported when first used: pytest loads the plugin next to this in every run, and most runs have no graphs in them.
+    # Imported on first use: every pytest run loads the plugin beside this module, and most runs have no graphs.
     if name == "ManualClock":
         from graphflow.testing.clock import ManualClock
 

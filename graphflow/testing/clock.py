@@ -1,4 +1,4 @@
-"""A clock that a test moves by hand."""
+"""A clock that a test advances manually."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from graphflow.testing.outside import outside
 from graphflow.times import to_ns
 
 START_NS = 1_700_000_000_000_000_000
-"""The time of day at which every manual clock begins."""
+"""The time of day, in nanoseconds, at which every manual clock starts."""
 OUTSIDE_LIMIT = 4.0
-"""Seconds of real time that `settle` waits for threads and child processes; less than a test may stand still."""
+"""Seconds of real time that `settle` waits for threads and child processes; shorter than a test's idle limit."""
 _TURNS = 100_000
 _settling: WeakKeyDictionary[asyncio.AbstractEventLoop, int] = WeakKeyDictionary()
 
@@ -32,7 +32,7 @@ class _ManualAlarm:
 
 
 class ManualClock(Clock):
-    """Stands still until `advance`."""
+    """A clock that stands still until `advance`."""
 
     def __init__(self) -> None:
         self._elapsed_ns = 0
@@ -52,7 +52,7 @@ class ManualClock(Clock):
 
     @awaited
     async def advance(self, seconds: float) -> None:
-        """Let `seconds` pass: whatever falls due happens in order, each with all its consequences."""
+        """Let `seconds` pass: due work happens in order, each with all its consequences."""
         if seconds < 0:
             raise ValueError(f"time does not go back: advance({seconds!r})")
         until = self._elapsed_ns + to_ns(seconds)
@@ -61,7 +61,7 @@ class ManualClock(Clock):
             when_ns, _, alarm = heapq.heappop(self._alarms)
             if alarm.callback is not None:
                 self._elapsed_ns = max(self._elapsed_ns, when_ns)
-                # By the loop and not from here: a handler must not run inside the test's own task.
+                # Scheduled on the loop, since a handler must not run inside the test's own task.
                 asyncio.get_running_loop().call_soon(alarm.callback)
                 await settle()
         self._elapsed_ns = until
@@ -69,12 +69,12 @@ class ManualClock(Clock):
 
 
 async def settle() -> None:
-    """Return when nothing is left to do but wait for time, or for the world outside this process.
+    """Wait until only the passage of time, or the world outside this process, could cause more work.
 
-    Threads, pools and child processes that the loop has started are waited for.
+    This includes the threads, pools and child processes that the loop has started.
 
     Raises:
-        RuntimeError: Something keeps itself busy for ever, or a thread or child process does not end.
+        RuntimeError: Some work never ends: a busy loop, a thread or a child process.
     """
     loop = asyncio.get_running_loop()
     work = outside(loop)
@@ -91,14 +91,14 @@ async def settle() -> None:
 
 
 async def _idle(loop: asyncio.AbstractEventLoop) -> None:
-    """Return when the loop has nothing to do."""
-    # asyncio has no public way to ask whether the loop is idle.
+    """Wait until the loop has no callbacks to run."""
+    # asyncio has no public API for whether the loop is idle.
     ready: Any = getattr(loop, "_ready", ())
     _settling[loop] = _settling.get(loop, 0) + 1
     try:
         for _ in range(_TURNS):
             await asyncio.sleep(0)
-            # Other calls of `settle` are always in the queue, and are not what this one waits for.
+            # Other calls of `settle` are always in the queue; waiting for them would never end.
             if len(ready) < _settling[loop]:
                 return
     finally:

@@ -1,4 +1,4 @@
-"""Calls whose `await` a test has forgotten, such as `graph.clock.advance(1.0)`: nothing happens in them."""
+"""Calls without their `await` in tests, such as `graph.clock.advance(1.0)`, which have no effect."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class _Call(NamedTuple):
 
 
 _calls: list[_Call] = []
-"""Those that had not begun when the last one was made."""
+"""Calls that had not started when the last one was made."""
 
 
 def awaited(method: Callable[P, Coroutine[Any, Any, T]]) -> Callable[P, Coroutine[Any, Any, T]]:
-    """Remember the calls of a method of the fixture's until they begin."""
+    """Track the calls of a method of the fixture until they start."""
 
     @wraps(method)
     def call(*args: P.args, **kwargs: P.kwargs) -> Coroutine[Any, Any, T]:
@@ -39,11 +39,11 @@ def awaited(method: Callable[P, Coroutine[Any, Any, T]]) -> Callable[P, Coroutin
 
 
 def forgotten() -> list[str]:
-    """A sentence for each call that has not begun, with its line; they are given up."""
+    """Return a sentence with its line for each call that has not started, and discard them."""
     calls = [*filter(_has_not_begun, _calls)]
     _calls.clear()
     for call in calls:
-        call.coroutine.close()  # or Python complains of it as well
+        call.coroutine.close()  # or Python warns that it was never awaited, too
     return [f"{call.place}: this does nothing until it is awaited; write {_written(call)}" for call in calls]
 
 
@@ -52,7 +52,7 @@ def _has_not_begun(call: _Call) -> bool:
 
 
 def _written(call: _Call) -> str:
-    """The line with its `await`, as far as it is no more than the call."""
+    """Return the line with its `await`, if it consists of the call only."""
     line = linecache.getline(call.place.file, call.place.line).partition("  #")[0].strip()
     name = getattr(call.coroutine, "__name__", "")
     is_whole = line.endswith(")") and line.partition("(")[0].endswith(f".{name}")

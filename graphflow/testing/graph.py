@@ -1,4 +1,4 @@
-"""A graph for one test: nodes on a memory network under a manual clock."""
+"""A graph for one test: nodes on an in-memory network under a manual clock."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ N = TypeVar("N", bound=Node)
 
 
 class Tap(SpeaksRos, Generic[M]):
-    """What has been published on a topic since the tap was opened; a sequence of messages, equal to a list of them."""
+    """The messages published on a topic since the tap was opened; a sequence that compares equal to a list."""
 
     def __init__(self, type_: type[M], topic: str, messages: list[M]) -> None:
         self._type, self._topic = type_, topic
         self.messages = messages
         self.missed = 0
-        """Messages that had been published before."""
+        """Messages published before the tap was opened."""
 
     def __iter__(self) -> Iterator[M]:
         return iter(self.messages)
@@ -60,7 +60,7 @@ class Tap(SpeaksRos, Generic[M]):
 
     @property
     def latest(self) -> M:
-        """The newest message; IndexError when there is none."""
+        """The newest message. Raises IndexError if there is none."""
         if not self.messages:
             raise IndexError(f"nothing was published on {self._topic} since the tap was opened")
         return self.messages[-1]
@@ -79,11 +79,11 @@ _INSTEAD = {
     **dict.fromkeys(("send_goal", "create_action_client"), "write graph.action_client(Type, name)"),
     "create_client": "write await graph.call(Type, name, request)",
 }
-"""What other words for what a graph does are here."""
+"""The methods of a graph for other tools' names of the same."""
 
 
 class Graph(SpeaksRos):
-    """Nodes, a clock and a network for the length of a test. Made by the fixture `graph`."""
+    """The nodes, clock and network of one test. Made by the fixture `graph`."""
 
     def _hint(self, name: str) -> str:
         return _WAYS.get(name, "")
@@ -93,24 +93,24 @@ class Graph(SpeaksRos):
         self.network = Network()
         self.nodes: list[Node] = []
         self.deadlock: DeadlockPolicy = "raise"
-        """Used by nodes started from now on."""
+        """The deadlock policy of nodes started from now on."""
         self._waits_outside = True
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
         self.tester: Node | None = None
-        """The node that the test itself has, once it needs one."""
+        """The test's own node, created on first use."""
         self.taps: list[tuple[str, Tap[Any]]] = []
-        """Each with the full name of its topic."""
+        """The taps, each with the full name of its topic."""
         self.unheard: list[tuple[TopicPublisher[Any], int, str]] = []
-        """Publishers of the test, with how many messages they had published before the node of that name listened."""
+        """Publishers of the test: (publisher, messages published before the named node subscribed, node)."""
         self.failed: list[BaseException] = []
-        """Assertions that have failed in nodes, each of which fails the test; one that means them clears the list."""
+        """Failed assertions in nodes, each of which fails the test; a test that expects one clears the list."""
         self.loop: asyncio.AbstractEventLoop | None = None
-        """The event loop that its nodes run in, from the first on."""
+        """The event loop of the nodes, set by the first one."""
 
     @property
     def waits_outside(self) -> bool:
-        """Whether `settle` and `clock.advance` wait for threads and child processes; False if some cannot end."""
+        """Whether `settle` and `clock.advance` wait for threads and processes; set it to False if some never end."""
         return self._waits_outside
 
     @waits_outside.setter
@@ -142,14 +142,14 @@ class Graph(SpeaksRos):
         remap: Sequence[Remap | str] = (),
         **parameters: Any,
     ) -> N:
-        """A node as a graph file makes it, also of a class whose `__init__(self)` takes no parameters; `start` it.
+        """Make a node as a graph file does, even if the class's `__init__(self)` takes no parameters; then `start` it.
 
         Args:
-            parameters: Values of its parameters, those that it declares when it is made included.
+            parameters: Parameter values by name, including parameters that the constructor declares.
 
         Raises:
             DeclarationError: Its `__init__` needs more than a name.
-            ParameterError: It has no such parameter, or refuses the value.
+            ParameterError: A parameter does not exist, or its value does not fit.
         """
         rules = [rule if isinstance(rule, Remap) else Remap.parse(rule) for rule in remap]
         given = NodeOptions(name, namespace, rules, {key: (value, "graph.make") for key, value in parameters.items()})
@@ -162,7 +162,7 @@ class Graph(SpeaksRos):
         await settle()
 
     def tap(self, type_: type[M], topic: str, qos: Qos | int = 1000) -> Tap[M]:
-        """Collect everything published on `topic` from now on."""
+        """Collect all messages published on `topic` from now on."""
         messages: list[M] = []
         made = self._test_node().create_subscription(type_, topic, messages.append, qos)
         tap = Tap(type_, made.name, messages)
@@ -173,14 +173,14 @@ class Graph(SpeaksRos):
         return tap
 
     def publisher(self, type_: type[M], topic: str, qos: Qos | int = 10) -> TopicPublisher[M]:
-        """A publisher for the test to use."""
+        """Create a publisher for the test."""
         return self._test_node().create_publisher(type_, topic, qos)
 
     @awaited
     async def call(
         self, type_: type[Service[Request, Response]], name: str, request: Request, *, timeout: float = 10.0
     ) -> Response:
-        """Call a service; the clock is not needed for it.
+        """Call a service. Simulated time need not pass for it.
 
         Raises:
             CallError: As for `ServiceClient.call`.
@@ -195,16 +195,16 @@ class Graph(SpeaksRos):
     def action_client(
         self, type_: type[Action[Goal, Result, Feedback]], name: str
     ) -> GoalClient[Goal, Result, Feedback]:
-        """A client for the test to send goals with."""
+        """Create a client with which the test sends goals."""
         return self._test_node().create_action_client(type_, name)
 
     @awaited
     async def settle(self) -> None:
-        """Let everything happen that can without time passing."""
+        """Let everything happen that does not need time to pass."""
         await settle()
 
     async def close(self) -> None:
-        """Stop all nodes; raises the error of a failed node, if the test did not catch it, or of a failed assertion."""
+        """Stop all nodes; raises a failed node's error that the test did not catch, or a failed assertion."""
         for node in reversed(self.nodes):
             await core_of(node).stop()
         for context in self._contexts:
@@ -215,15 +215,15 @@ class Graph(SpeaksRos):
         self.raise_failed()
 
     def raise_failed(self) -> None:
-        """Raise the first assertion that has failed in a node, once: its handler has only logged it."""
-        failures = [core_of(node).failure for node in self.nodes]  # which `close` raises, or the test has taken
+        """Raise the first assertion that failed in a node, since its handler has only logged it."""
+        failures = [core_of(node).failure for node in self.nodes]  # `close` raises these, or the test has caught them
         failed = [error for error in self.failed if error not in failures]
         self.failed.clear()
         if failed:
             raise failed[0]
 
     def _noticed(self, error: BaseException) -> None:
-        """A node has reported an error: remember what is meant for the test, as `assert` and `pytest.fail` are."""
+        """Record an error that a node has reported if it is meant for the test, as `assert` and `pytest.fail` are."""
         if isinstance(error, AssertionError) or not isinstance(error, (Exception, *_OF_PROGRAMS)):
             self.failed.append(error)
 
@@ -233,7 +233,7 @@ class Graph(SpeaksRos):
         return f"'Graph' object has no attribute {name!r}{hint}"
 
     def _publishers(self, node: Node | None) -> list[TopicPublisher[Any]]:
-        """The publishers of a node that keep nothing for those who come later."""
+        """Return a node's publishers that keep nothing for late subscriptions."""
         parts = core_of(node).parts if node is not None else []
         found = [part for part in parts if isinstance(part, TopicPublisher)]
         return [publisher for publisher in found if publisher.qos.durability is Durability.VOLATILE]
@@ -241,7 +241,7 @@ class Graph(SpeaksRos):
     def _test_node(self) -> Node:
         if self.tester is None:
             self.tester = Node(f"_test_{next(self._names)}")
-            # Starting is a coroutine only for what it may wait for; a bare node waits for nothing.
+            # Starting awaits only other services, and a bare node needs none: the coroutine ends without suspending.
             _run_now(core_of(self.tester).start(self._context()))
             self.nodes.append(self.tester)
         return self.tester
@@ -273,8 +273,8 @@ _WAYS = {
     **dict.fromkeys(("subscribe", "subscription", "listen"), "write heard = graph.tap(Type, topic)"),
     **dict.fromkeys(("add", "add_node", "launch"), "write await graph.start(node)"),
 }
-"""What to write in place of attributes that the fixture has not."""
+"""The correct form for attributes that the fixture does not have."""
 _OF_PROGRAMS = (SystemExit, KeyboardInterrupt, GeneratorExit, asyncio.CancelledError)
-"""What is no error of a test's, though no `Exception`."""
+"""BaseExceptions that do not come from a failed assertion."""
 TRANSIENT_LOCAL = Qos(depth=1000, durability=Durability.TRANSIENT_LOCAL)
-"""For taps on latched topics."""
+"""The profile for taps on latched topics."""

@@ -1,7 +1,7 @@
 """Work outside the event loop that a test waits for: threads, pools and child processes.
 
-Time stands still for as long as such work takes. asyncio has no way to ask for it, so the methods of a loop that start
-it are followed.
+Simulated time stands still during such work. asyncio does not list it, so the methods of a loop that start it are
+wrapped.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ _followed: WeakKeyDictionary[asyncio.AbstractEventLoop, Outside] = WeakKeyDictio
 
 
 class Outside:
-    """Work outside of one event loop that the loop has started."""
+    """The outside work that one event loop has started."""
 
     def __init__(self) -> None:
         self.is_awaited = True
-        """Whether tests wait for it."""
+        """Whether tests wait for the work."""
         self.ledgers: list[Ledger] = []
-        """Ledgers of the node processes in the loop: they know the threads of handlers and of `offload`."""
+        """Ledgers of the loop's node processes, which know the threads of handlers and of `offload`."""
         self._futures: dict[asyncio.Future[Any], str] = {}
         self._processes: list[tuple[asyncio.SubprocessTransport, str]] = []
 
@@ -33,7 +33,7 @@ class Outside:
         return next(self.pending(), None) is not None
 
     def pending(self) -> Iterator[str]:
-        """Work that has not ended, in words; threads that themselves wait for the loop are left out."""
+        """Describe the work in progress, without threads that themselves wait for the loop."""
         for ledger in self.ledgers:
             for thread in ledger.threads.values():
                 if thread.ident not in ledger.asking:
@@ -45,7 +45,7 @@ class Outside:
                 yield f"the process {program}"
 
     def follow(self, loop: Any) -> None:
-        """Know of what a loop starts from now on; a loop that is not written in Python tells nothing."""
+        """Track the work that a loop starts from now on; loops that are not written in Python cannot be tracked."""
         run_in_executor = loop.run_in_executor
 
         def follow_future(executor: Any, fn: Any, *args: Any) -> asyncio.Future[Any]:
@@ -74,7 +74,7 @@ class Outside:
 
 
 def outside(loop: asyncio.AbstractEventLoop) -> Outside:
-    """The work outside of a loop that it has started, from the first call on."""
+    """Return the outside work of a loop, tracked from the first call on."""
     if loop not in _followed:
         _followed[loop] = Outside()
         _followed[loop].follow(loop)

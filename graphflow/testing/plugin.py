@@ -1,8 +1,8 @@
-"""The pytest plugin: the fixture `graph`, and `async def` tests run in an event loop of their own.
+"""The pytest plugin: the fixture `graph`, and an event loop for each `async def` test.
 
-Nothing heavy is imported before a test asks for it: the plugin is loaded by every pytest run of an environment that
-has graphflow installed. Another plugin for asynchronous tests (pytest-asyncio, anyio) runs those that it has taken, in
-its own loop, and those that do not use `graph`; the limits of a test hold there, too.
+Heavy imports wait for the first test that needs them: every pytest run in an environment with graphflow loads the
+plugin. Another plugin for asynchronous tests (pytest-asyncio, anyio) runs the tests it has claimed, in its own loop,
+and those that do not use `graph`; the time limits apply there, too.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 Test: TypeAlias = Callable[..., Coroutine[Any, Any, None]]
 
 LIMIT = 60.0
-"""Seconds of real time that an asynchronous test may take."""
+"""Longest duration of an asynchronous test, in seconds of real time."""
 IDLE_LIMIT = 5.0
-"""Seconds of real time in which a test with a manual clock may do nothing at all."""
+"""Longest idle time of a test with a manual clock, in seconds of real time."""
 IDLE = 0.02
-"""Seconds of processor time in one of real time that count as nothing."""
+"""Processor time in seconds, per second of real time, below which a test counts as idle."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Put a project's own `nodes` before those that come with an editable graphflow."""
+    """Give a project's own `nodes` package precedence over an editable graphflow's."""
     root = str(config.rootpath)
     if (config.rootpath / "nodes").is_dir() and root not in sys.path:
         sys.path.insert(0, root)
@@ -39,25 +39,25 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.fixture
 def graphflow_runner() -> Iterator[asyncio.Runner]:
-    """The event loop of one test."""
+    """Return the event loop of one test."""
     with asyncio.Runner() as runner:
         yield runner
 
 
 @pytest.fixture
 def graph(graphflow_runner: asyncio.Runner) -> Iterator[Graph]:
-    """A graph in memory under a manual clock; all its nodes are stopped after the test."""
+    """Return a graph in memory under a manual clock; all its nodes are stopped after the test."""
     from graphflow.testing.graph import Graph
 
     made = Graph()
     yield made
-    if made.loop in (None, graphflow_runner.get_loop()):  # in the loop of another plugin, the test has closed it
+    if made.loop in (None, graphflow_runner.get_loop()):  # in another plugin's loop, the test has closed it
         graphflow_runner.run(made.close())
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Limit an `async def` test that uses `graph` or `graphflow_runner`, whatever plugin runs it."""
+    """Limit the duration of `async def` tests that use `graph` or `graphflow_runner`, whichever plugin runs them."""
     if not isinstance(item, pytest.Function) or "graphflow_runner" not in item.fixturenames:
         return (yield)
     generated = getattr(item.obj, "hypothesis", None)
@@ -78,7 +78,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
-    """Say what could be meant by an attribute that is not there, as the logs of nodes do, and what to write."""
+    """Add advice to the reports of AttributeErrors, as in the logs of nodes."""
     errors = sys.modules.get("graphflow.runtime.mistakes.errors.attribute_errors")
     if call.excinfo is not None and errors is not None:
         errors.explain(call.excinfo.value)
@@ -94,7 +94,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> 
 
 
 def _is_unrun(item: pytest.Item, error: pytest.ExceptionInfo[BaseException] | None) -> bool:
-    """Whether no plugin has run a test, as it is a coroutine function."""
+    """Whether a test failed because no plugin runs coroutine functions."""
     return (
         error is not None
         and isinstance(item, pytest.Function)
@@ -105,7 +105,7 @@ def _is_unrun(item: pytest.Item, error: pytest.ExceptionInfo[BaseException] | No
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
-    """Run such a test, unless another plugin does."""
+    """Run an `async def` test, unless another plugin does."""
     if "graphflow_runner" not in pyfuncitem.fixturenames or "anyio_backend" in pyfuncitem.fixturenames:
         return None
     runner: Any = pyfuncitem.funcargs["graphflow_runner"]
@@ -124,7 +124,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
 
 
 def _limited(item: pytest.Function, test: Test) -> Test:
-    """A test that ends when it takes too long, or stands still."""
+    """Wrap a test so that it ends when it takes too long or stands still."""
     runner: Any = item.funcargs["graphflow_runner"]
     made: Any = item.funcargs.get("graph")
 
@@ -145,22 +145,22 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                     await test(*args, **kwargs)
                     if graph is not None:
                         graph.raise_failed()
-                        await asyncio.sleep(0)  # what has become a task begins
+                        await asyncio.sleep(0)  # lets new tasks start
                         _raise_forgotten()
                 except (Exception, pytest.fail.Exception) as error:
                     if graph is not None and graph.loop is loop and not _is_of_a_line(error):
-                        await _tell_unmet(item, graph)
+                        await _report_unmet(item, graph)
                     raise
                 finally:
                     if watching is not None:
                         watching.cancel()
         except TimeoutError as error:
-            ended = error.__cause__ or error.__context__  # the first since Python 3.11.3
+            ended = error.__cause__ or error.__context__  # Python 3.11.3 and later set the cause
             if isinstance(ended, asyncio.CancelledError):
                 error.add_note(_too_long(ended, time.monotonic() - began))
             raise
         finally:
-            # An example's own is closed here; the fixture's too if another plugin may close this loop before it ends.
+            # Closes an example's own graph, and the fixture's too, whose loop another plugin may close before the end.
             if graph is not None and graph.loop is loop and (graph is not made or runner.get_loop() is not loop):
                 await graph.close()
 
@@ -168,7 +168,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
 
 
 def _raise_forgotten(way: str = "") -> None:
-    """Fail a test that has not awaited what it has called of its graph."""
+    """Fail a test that has not awaited a call of its graph."""
     from graphflow.testing.forgotten import forgotten
 
     if found := forgotten():
@@ -176,29 +176,29 @@ def _raise_forgotten(way: str = "") -> None:
 
 
 def _is_of_a_line(error: BaseException) -> bool:
-    """Whether an error is about what a line says, whatever else the test may have waited for."""
+    """Whether an error concerns only a line's content, whatever else the test waited for."""
     from graphflow.errors import DeclarationError, EncodeError, InvalidName, ParameterError
 
     return isinstance(error, (DeclarationError, EncodeError, InvalidName, ParameterError, NameError, ImportError))
 
 
-async def _tell_unmet(item: pytest.Function, graph: Graph) -> None:
-    """Add to the report of a failing test what it may have waited for in vain."""
+async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
+    """Add the unmet waits to the report of a failing test."""
     from graphflow.testing.forgotten import forgotten
     from graphflow.testing.unmet import unmet
 
-    await asyncio.sleep(0)  # what has become a task begins
+    await asyncio.sleep(0)  # lets new tasks start
     found = forgotten()
     try:
         found += await unmet(graph)
-    except RuntimeError as error:  # it does not come to rest
+    except RuntimeError as error:  # the graph does not settle
         found.append(str(error))
     if found:
         item.add_report_section("call", "graphflow", "\n".join(found))
 
 
 def _by_examples(item: pytest.Function, test: Test) -> Test:
-    """A test of Hypothesis's, of which each example has a graph of its own."""
+    """Wrap a Hypothesis test so that each example has its own graph."""
     limited = _limited(item, test)
     if "graph" not in item.funcargs:
         return limited
@@ -209,7 +209,7 @@ def _by_examples(item: pytest.Function, test: Test) -> Test:
         )
     from hypothesis import HealthCheck, settings
 
-    # Which looks for fixtures that are not made anew for each example; `settings` refuses to be used twice.
+    # Hypothesis refuses fixtures that are not reset for each example, and applying `settings` twice.
     decorated: Any = getattr(item.obj, "__func__", item.obj)
     given: Any = getattr(decorated, "_hypothesis_internal_use_settings", settings.default)
     allowed = [*given.suppress_health_check, HealthCheck.function_scoped_fixture]
@@ -225,7 +225,7 @@ def _by_examples(item: pytest.Function, test: Test) -> Test:
 
 
 async def _end_when_idle(limit: asyncio.Timeout) -> None:
-    """End a test that stands still: what it waits for would come with time, and its clock does not move."""
+    """End a test that stands still: it waits for time to pass, and its clock does not move."""
     idle = 0.0
     while idle < IDLE_LIMIT:
         used, step = time.process_time(), min(1.0, IDLE_LIMIT)
@@ -235,7 +235,7 @@ async def _end_when_idle(limit: asyncio.Timeout) -> None:
 
 
 def _too_long(ended: BaseException, seconds: float) -> str:
-    """What to say of a test that has not come to its end; its clock stands still unless it is advanced."""
+    """Return the report of a test that has not ended; its clock stands still unless advanced."""
     from graphflow.analysis.user_code import place_in
 
     where = place_in(ended)

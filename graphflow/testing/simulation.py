@@ -1,4 +1,4 @@
-"""A whole graph in one process under virtual time, with a network that delays and loses messages as a seed says.
+"""Simulation of a whole graph in one process: virtual time, and a network with random delays and losses from a seed.
 
     async def story(world: World) -> None:
         await world.start(Talker(), listener := Listener())
@@ -7,8 +7,8 @@
 
     simulate(story, seed=7, delay=(0.0, 0.02), loss=0.1)
 
-The same seed gives the same run. Time passes only when nothing is left to do, and then jumps to what is due next; so a
-simulation in which nothing will ever happen again ends with an error instead of waiting.
+The same seed gives the same run. When the loop is idle, time jumps to the next due event; if there is none, the
+simulation ends with an error instead of waiting.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from graphflow.runtime.node_core import core_of
 from graphflow.transport.memory import MemorySession, Network
 
 START_NS = 1_700_000_000_000_000_000
-"""The time of day at which every simulation begins."""
+"""The time of day, in nanoseconds, at which every simulation starts."""
 
 
 _MOMENT = 1e-9
-"""Seconds between two things on one link: things due at the very same time arrive in any order."""
+"""Seconds between two arrivals on one link: asyncio runs timers of equal times in any order."""
 
 
 class Standstill(RuntimeError):
-    """Nothing will ever happen again, and the story has not ended."""
+    """No event is pending, and the story has not ended."""
 
 
 class _Selector(selectors.SelectSelector):
-    """Waits for nothing: the time that it should wait has passed."""
+    """A selector that never waits, since virtual time has already passed."""
 
     now = 0.0
 
@@ -52,7 +52,7 @@ class _Selector(selectors.SelectSelector):
 
 
 class SimulatedLoop(asyncio.SelectorEventLoop):
-    """asyncio's loop under virtual time, in seconds from 0."""
+    """An asyncio loop under virtual time, in seconds from 0."""
 
     def __init__(self) -> None:
         self._virtual = _Selector()
@@ -63,7 +63,7 @@ class SimulatedLoop(asyncio.SelectorEventLoop):
 
 
 class LoopClock(Clock):
-    """The time of a simulated loop."""
+    """The clock of a simulated loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
@@ -79,19 +79,19 @@ class LoopClock(Clock):
 
 
 class Seeded:
-    """A carrier whose delays and losses come from a seed.
+    """A carrier with random delays and losses from a seed.
 
     Args:
-        delay: Seconds that something is on its way, from, to.
-        loss: The share of publications that never arrive.
-        reorders: Whether things on one link may overtake each other.
+        delay: Shortest and longest time in transit, in seconds.
+        loss: The fraction of publications that never arrive, 0 to 1.
+        reorders: Whether publications on one link may overtake each other.
     """
 
     def __init__(self, random: Random, delay: tuple[float, float], loss: float, *, reorders: bool = False) -> None:
         self._random, self._delay, self._loss, self._reorders = random, delay, loss, reorders
         self._arrives: dict[str, float] = {}
         self.lost = 0
-        """Publications that never arrived."""
+        """Publications lost so far."""
 
     def carry(self, deliver: Callable[[], object], link: str, *, is_lossy: bool) -> None:
         loop = asyncio.get_running_loop()
@@ -122,7 +122,7 @@ class World:
             await core_of(node).start(context)
 
     async def kill(self, node: Node) -> None:
-        """End a node as `kill -9` does: from now on nothing from it reaches any other."""
+        """End a node as `kill -9` does: nothing that it sends reaches another node from now on."""
         session, context = self._sessions.pop(node)
         session.die()
         await core_of(node).stop()
@@ -143,14 +143,14 @@ def simulate(
     reorders: bool = False,
     deadlock: DeadlockPolicy = "raise",
 ) -> Any:
-    """Run a story to its end; returns what it returns.
+    """Run a story to its end; returns its result.
 
     Args:
-        seed: Seeds every delay, loss and choice, and `world.random` too.
-        delay, loss, reorders: The network's, as for `Seeded`.
+        seed: The seed of all delays, losses and choices, and of `world.random`.
+        delay, loss, reorders: Properties of the network, as for `Seeded`.
 
     Raises:
-        Standstill: Nothing will ever happen again.
+        Standstill: No event is pending, and the story has not ended.
     """
     random = Random(seed)  # noqa: S311 - to be the same every time is what it is for
     network = Network(Seeded(random, delay, loss, reorders=reorders))

@@ -1,4 +1,4 @@
-"""Causes of a test's failure: messages that were on their way, time, topics and services that no node has."""
+"""Possible causes of a test's failure: messages in transit, time, and topics and services that no node has."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from graphflow.testing.graph import Graph
 
 _ACTION = "/_action/"
-"""Stands in the names of the services that an action consists of, behind the action's."""
+"""The part between an action's name and the names of its services."""
 
 
 async def unmet(graph: Graph) -> list[str]:
-    """A sentence for each. To be called where the test has failed; what is on its way arrives meanwhile."""
+    """Return a sentence for each unmet wait. Call it after the failure: messages in transit arrive meanwhile."""
     cores = [core_of(node) for node in graph.nodes if node is not graph.tester and node.is_running]
     before = [len(tap) for _, tap in graph.taps]
     has_stood_still = not graph.clock.monotonic_ns() and any(map(_waits_for_time, cores))
@@ -42,7 +42,7 @@ async def unmet(graph: Graph) -> list[str]:
 
 
 def _unfed(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
-    """Topics that nodes listen to and nobody publishes, without which they may have nothing to publish."""
+    """Find topics with subscriptions and no publisher, without which nodes may have nothing to publish."""
     published = {e.name for node in graph.nodes for e in core_of(node).endpoints if e.kind is Kind.PUBLISHER}
     for core in cores:
         for name in sorted({e.name for e in core.endpoints if e.kind is Kind.SUBSCRIPTION} - published):
@@ -51,7 +51,7 @@ def _unfed(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
 
 
 def _tasks(core: NodeCore) -> Iterator[Any]:
-    """The tasks of a node, and the runs of its handlers."""
+    """List a node's tasks and the runs of its handlers."""
     yield from core.tasks
     for runner in core.runners:
         yield from runner.active
@@ -66,7 +66,7 @@ def _waits_for_time(core: NodeCore) -> bool:
 
 
 def _sleepers(cores: list[NodeCore]) -> Iterator[str]:
-    """Tasks and handlers that wait in real time."""
+    """Find tasks and handlers that wait in real time."""
     for core in cores:
         for task in _tasks(core):
             if any(code_of(part) is asyncio.sleep.__code__ for part in awaited(task.get_coro())):
@@ -78,7 +78,7 @@ def _sleepers(cores: list[NodeCore]) -> Iterator[str]:
 
 
 def _unserved(cores: list[NodeCore]) -> Iterator[str]:
-    """Services and actions that nodes wait for, and that nobody offers."""
+    """Find services and actions that nodes wait for, and that no node offers."""
     offered = {
         e.name.partition(_ACTION)[0]: e.name.startswith(f"{core.full_name}/")
         for core in cores
@@ -95,7 +95,7 @@ def _unserved(cores: list[NodeCore]) -> Iterator[str]:
 
 
 def _late(graph: Graph) -> Iterator[str]:
-    """Taps that were opened, and nodes that were started, after messages had been published."""
+    """Find taps that were opened, and nodes that were started, after messages had been published."""
     for topic, tap in graph.taps:
         if tap.missed:
             yield (
@@ -111,9 +111,9 @@ def _messages(count: int) -> str:
 
 
 def _strangers(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
-    """Topics that only the test itself publishes or listens to."""
+    """Find topics that only the test itself publishes or subscribes to."""
     if graph.tester is None or len(cores) < len(graph.nodes) - 1:
-        return  # some that had them may have ended
+        return  # nodes with these topics may have ended
     tester = graph.tester
     for kind, other, verb, done in (
         (Kind.SUBSCRIPTION, Kind.PUBLISHER, "publishes", "taps"),

@@ -1,1 +1,1 @@
-"""The network: small protocols and two implementations of them. Only this package knows Zenoh."""
+"""The network: small protocols, and their implementations over Zenoh and in memory. Only this package uses Zenoh."""

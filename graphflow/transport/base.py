@@ -1,8 +1,8 @@
-"""What the runtime needs from a network, as small protocols, and the queue by which foreign threads reach the loop.
+"""The runtime's interface to a network, as small protocols, and the queues between foreign threads and the loop.
 
-Everything that arrives takes one path: the network's thread appends it to an `Inbox`, which is bounded, and rings the
-`Bell` if it is silent; the loop empties the inbox. Payloads stay as the network delivered them until a handler is about
-to run, so that a message dropped from a full inbox has cost nothing.
+All arrivals take one path: the network's thread appends them to a bounded `Inbox` and rings the `Bell` unless it is
+ringing already; the loop empties the inbox. Payloads stay in the network's form until a handler is about to run, so
+that a message dropped from a full inbox has cost nothing.
 """
 
 from __future__ import annotations
@@ -21,40 +21,40 @@ if TYPE_CHECKING:
 
 Payload = bytes | bytearray | memoryview
 EARLY = 0.1
-"""Seconds after which the reports so far are passed on although others are missing."""
+"""Seconds after which incomplete reports are passed on."""
 
 
 KEEP_ALL_BOUND = 10_000
-"""Messages that a KEEP_ALL subscription holds before it counts losses."""
+"""Queue length of a KEEP_ALL subscription."""
 DEEP = 100
-"""Messages of a queue from which on its bytes are bounded, too, and it holds none of the network's buffers."""
+"""Queue length from which the bytes are limited, too, and messages are copied out of the network's buffers."""
 BYTES_BOUND = 256 << 20
-"""Bytes of messages that wait in a deep queue, or of requests."""
+"""Most bytes of messages in a deep queue, or of requests in a queue."""
 REQUESTS_BOUND = 10_000
-"""Requests that wait for the loop."""
+"""Most requests that wait for the loop."""
 STAND_INS = 10
-"""How many times that are remembered to be refused."""
+"""Limit of refused items kept for a response, as a multiple of the queue's depth."""
 
 
 class Closable(Protocol):
-    """Something declared on the network, until it is closed. Closing twice is harmless."""
+    """A declaration on the network, until closed. Closing twice is harmless."""
 
     def close(self) -> None: ...
 
 
 class Sender(Closable, Protocol):
-    """A publication on one key."""
+    """A publisher on one key."""
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anything sent now would reach a receiver or be kept for one."""
+        """Whether a message sent now would reach a receiver or be kept for one."""
 
     def put(self, payload: Payload, *, attachment: bytes) -> None:
-        """Send without waiting. A receiver that cannot keep up loses messages; the sender is not blocked."""
+        """Send without waiting. A slow receiver loses messages; the sender never blocks."""
 
 
 class Caller(Closable, Protocol):
-    """Requests to the servers on one key."""
+    """A client of the servers on one key."""
 
     def call(
         self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
@@ -65,12 +65,12 @@ class Caller(Closable, Protocol):
             answered: Called on the loop for each reply, and at the end with None.
 
         Returns:
-            A function that gives up the request; no reply comes after it.
+            A function that abandons the request; no reply is delivered after it.
         """
 
     @property
     def has_server(self) -> bool:
-        """Whether the network knows a server that this caller would reach."""
+        """Whether the network knows of a server that this caller would reach."""
 
 
 class Answer(NamedTuple):
@@ -82,14 +82,14 @@ class Answer(NamedTuple):
 
 
 class Request(Protocol):
-    """One request as a server gets it. It must be answered once: until then the caller waits."""
+    """A request at its server. It must be answered exactly once: until then the caller waits."""
 
     @property
     def payload(self) -> bytes: ...
 
     @property
     def size(self) -> int:
-        """Bytes of the payload."""
+        """Size of the payload in bytes."""
 
     @property
     def attachment(self) -> bytes | None: ...
@@ -100,7 +100,7 @@ class Request(Protocol):
 
 
 class Arrival(Protocol):
-    """One publication as it arrived, not yet copied out of the network's memory."""
+    """A publication as it arrived, still in the network's memory."""
 
     @property
     def payload(self) -> bytes: ...
@@ -110,171 +110,179 @@ class Arrival(Protocol):
 
 
 class LargeSender(Closable, Protocol):
-    """A publication on one key whose large messages are read from shared memory where all receivers can."""
+    """A publisher on one key that sends large messages through shared memory where all receivers can read it."""
 
     in_memory: int
-    """Messages that went through memory."""
+    """Messages sent through shared memory."""
 
     @property
     def memory(self) -> int:
-        """Bytes of memory that are kept for it."""
+        """Bytes of shared memory in use."""
 
     def admit(self, readers: Mapping[tuple[str, int], int] | None) -> None:
-        """Tell of the receivers.
+        """Set the receivers.
 
         Args:
-            readers: The depths of their queues, by session and entity, if all of them read the memory.
+            readers: Their queues' depths, by session and entity, if all can read shared memory; else None.
         """
 
     def put_parts(self, parts: tuple[list[Any], int], *, attachment: bytes) -> None:
-        """Send what `Codec.encode_parts` returns, without waiting."""
+        """Send the result of `Codec.encode_parts`, without waiting."""
 
     def lend(self, dtype: Any, count: int) -> Any:
-        """An array where the next message's may be, to be filled; None if it would have to be copied. One at a time."""
+        """Return an array to fill in place for the next message; None if it would be copied. One at a time."""
 
     def take_back(self) -> None:
-        """End the loan."""
+        """End the loan of the array."""
 
 
 class RingReceiver(Closable, Protocol):
-    """Where descriptors arrive, in the place of large messages."""
+    """A receiver of descriptors, which replace large messages."""
 
     reader: tuple[int, int]
-    """By what others know that this process can read their memory: its id and a file of it."""
+    """The proof that this process can read the sender's memory: its process id and a file descriptor."""
 
     def forget_ended(self) -> None:
-        """Give back the memory of senders that have gone."""
+        """Release the memory of senders that have gone."""
 
 
 class Session(Protocol):
-    """One process's place on the network."""
+    """One process's participation in the network."""
 
     zid: str
-    """The session's id as written in tokens: lower-case hex."""
+    """The session's id as in tokens: lower-case hex."""
     bell: Bell
-    """Rung by this session's inboxes."""
+    """The bell that this session's inboxes ring."""
 
     def open_sender(
         self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
     ) -> Sender:
-        """Args:
-        changed: Called on the loop when `is_wanted` may have changed; not for TRANSIENT_LOCAL ones, whose never does.
-        only_others: Whether to leave out receivers of this session; not for TRANSIENT_LOCAL ones.
+        """Open a publisher.
+
+        Args:
+            changed: Called on the loop when `is_wanted` may have changed; not for TRANSIENT_LOCAL, where it never does.
+            only_others: Whether to exclude receivers of this session; not for TRANSIENT_LOCAL.
         """
 
     def open_receiver(
         self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False, in_order: bool = False
     ) -> Closable:
-        """Put every publication on `key` into `inbox`; `read` opens what is found there.
+        """Put every publication on `key` into `inbox`, for `read` to decode.
 
         Args:
-            key: Its last part may be `*`; `key_of` then gives the full key.
-            ignore_local: Whether to leave out what this session sends itself.
-            in_order: Whether answers that were sent after a publication must not overtake it; for what is not sent
-                often. Not for TRANSIENT_LOCAL.
+            key: Its last part may be `*`; `key_of` then returns the full key.
+            ignore_local: Whether to exclude this session's own publications.
+            in_order: Whether replies sent after a publication must not overtake it; for infrequent messages. Not for
+                TRANSIENT_LOCAL.
         """
 
     def open_large_sender(self, sender: Sender, key: str) -> LargeSender | None:
-        """Send what is large through shared memory, and the rest by `sender`; None where memory cannot be shared.
+        """Send large messages through shared memory and others by `sender`; None if memory cannot be shared.
 
         Args:
-            key: That of the ring receivers.
+            key: The key of the ring receivers.
         """
 
     def open_ring_receiver(self, key: str, eid: int, inbox: Inbox) -> RingReceiver | None:
-        """Put large messages into the inbox of a receiver that has `in_order`; None where memory cannot be shared.
+        """Put large messages into the inbox of a receiver with `in_order`; None if memory cannot be shared.
 
         Args:
-            eid: The subscription's number in its session.
+            eid: The subscription's entity id.
         """
 
     def is_neighbour(self, zid: str, pid: int, fd: int) -> bool:
-        """Whether a session belongs to a process that can read this one's memory, as it says of itself."""
+        """Whether a session belongs to a process that can read this one's memory, according to its proof."""
 
     def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> Closable:
-        """Put every request on `key` into `inbox`, as `Request`s.
+        """Put every request on `key` into `inbox`, as a `Request`.
 
         Args:
-            is_paced: Whether requests come so quickly only that asking does not hold up the process; of too many, the
-                earlier end without an answer. For keys of graphflow's own, on which anybody may ask.
+            is_paced: Whether to limit the rate of requests, so that a flood does not hold up the process; excess ones
+                end without a reply, oldest first. For graphflow's own keys, on which anybody may query.
         """
 
     def open_caller(self, key: str, changed: Callable[[], None]) -> Caller:
-        """Args:
-        changed: Called on the loop when `has_server` has changed.
+        """Open a client.
+
+        Args:
+            changed: Called on the loop when `has_server` has changed.
         """
 
     def announce(self, token: str) -> Closable:
-        """Declare a liveliness token that lasts until the process ends or the result is closed."""
+        """Declare a liveliness token, which lasts until the process ends or the result is closed."""
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Closable:
-        """Call `changed(token, alive)` on the loop for every token that matches, including existing ones."""
+        """Call `changed(token, alive)` on the loop for every matching token, including existing ones."""
 
     def ask_tokens(self, key: str, limit: float, told: Callable[[list[str]], None]) -> None:
-        """Ask for the tokens that match now.
+        """Query the matching tokens.
 
         Args:
-            limit: Seconds that they have to arrive; over a network, it takes as long.
-            told: Called on the loop, once, with those that arrived.
+            limit: Seconds to collect replies; over a network it always takes that long.
+            told: Called on the loop, once, with the tokens that arrived.
         """
 
     def open_report(self, key: str, report: Callable[[], bytes]) -> Closable:
-        """Answer queries on `key` with what `report` returns. It is called on a thread of its own, where there
-        are threads, so that it answers while the loop is blocked; paced, as for `open_server`.
+        """Answer queries on `key` with the result of `report`.
+
+        If there are threads, `report` is called on one of its own, so that it answers while the loop is blocked. The
+        rate is limited as with `open_server`'s `is_paced`.
         """
 
     def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
-        """Ask all reports whose key matches.
+        """Query all reports whose key matches.
 
         Args:
-            limit: Seconds that they have to arrive.
-            told: Called on the loop with those that arrived, and whether these are all: once, or also earlier, after
-                `EARLY` seconds, when some are still missing by then.
+            limit: Seconds to collect replies.
+            told: Called on the loop with the reports and whether they are complete: once, and if some are missing after
+                `EARLY` seconds, also then.
         """
 
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
-        """Payload and attachment of something that a receiver put in an inbox.
+        """Return payload and attachment of an item that a receiver put into an inbox.
 
-        A payload in shared memory is no `bytes`, but can be decoded and copied as one.
+        A payload in shared memory is not a `bytes`, but can be decoded and copied like one.
         """
 
     def key_of(self, arrival: Any) -> str:
-        """The key on which an arrival was published."""
+        """Return the key of a publication."""
 
     def leave(self) -> None:
-        """Begin to close: what is closed from now on may stay declared until `close`, which withdraws all at once and
-        cannot be delayed by peers that are going away too.
+        """Prepare to close.
+
+        Declarations closed from now on may last until `close`, which withdraws all at once and cannot be delayed by
+        peers that are closing, too.
         """
 
     async def close(self) -> None: ...
 
 
 class Rings(Protocol):
-    """What wakes those who empty inboxes: the loop, by a `Bell`, or threads of somebody else's."""
+    """The wake-up of consumers of inboxes: the loop, by a `Bell`, or other threads."""
 
     rung: deque[Inbox]
-    """Inboxes that wait to be emptied."""
+    """Inboxes to be emptied."""
     pending: bool
-    """Whether somebody has been woken for them."""
+    """Whether a wake-up is pending."""
 
     def ring(self) -> None:
-        """Wake them. Callable from any thread."""
+        """Wake the consumer. Callable from any thread."""
 
 
 class Bell:
-    """Wakes the loop, once per burst.
+    """The wake-up of the loop, once per burst.
 
     Args:
         loop: The loop to wake.
-        threads: Whether rings come from other threads than the loop's.
+        threads: Whether other threads than the loop's ring the bell.
     """
 
     def __init__(self, loop: AbstractEventLoop, *, threads: bool = True) -> None:
         self._loop = loop
         self.rung: deque[Inbox] = deque()
-        """Inboxes that wait to be emptied."""
+        """Inboxes to be emptied."""
         self.pending = False
-        """Whether the loop has been woken for them."""
+        """Whether a wake-up of the loop is pending."""
         self._closed = False
         self._wake = loop.call_soon_threadsafe if threads else loop.call_soon
         self._fd: int | None = None
@@ -306,14 +314,14 @@ class Bell:
         rung = self.rung
         while rung and not self._closed:
             inbox = rung.popleft()
-            inbox.ringing = False  # before the queue is read, so that what arrives now rings again
+            inbox.ringing = False  # before the queue is read, so that an arrival from now on rings again
             try:
                 inbox.ready()
             except Exception as error:  # one inbox's failure must not affect the others
                 self._loop.call_exception_handler({"message": f"{inbox.ready} failed", "exception": error})
 
     def close(self) -> None:
-        """Stop waking the loop; rings not yet answered are lost."""
+        """Stop waking the loop; pending rings are lost."""
         self._closed = True
         if self._fd is not None:
             getattr(self._loop, "take_down_bell", self._loop.remove_reader)(self._fd)
@@ -325,9 +333,9 @@ class Inbox:
     """A bounded queue that a foreign thread fills and the loop empties; when full, the oldest item is dropped.
 
     Args:
-        bell: Wakes the loop, or whoever else empties it.
-        depth: Items kept; None for no bound.
-        ready: Called by whom the bell wakes when there is something that is not being handled yet.
+        bell: Wakes the consumer, usually the loop.
+        depth: Longest queue; None for no limit.
+        ready: Called by the consumer when there are new items.
     """
 
     __slots__ = ("_bell", "_losses", "_tell_at", "dropped", "items", "ready", "ringing")
@@ -336,24 +344,24 @@ class Inbox:
         self.items: deque[Any] = deque(maxlen=depth)
         self.ready = ready
         self.dropped = 0
-        """Items lost because the queue was full."""
+        """Items lost to a full queue."""
         self.ringing = False
-        """Whether the bell has been rung for what is in the queue."""
+        """Whether the bell has been rung for the queued items."""
         self._bell = bell
         self._losses: Inbox | None = None
-        """Rings the bell for losses."""
+        """A companion inbox that rings the bell for losses."""
         self._tell_at = sys.maxsize
-        """The number of losses that is told next."""
+        """The number of losses at the next report."""
 
     def tell_losses(self, told: Callable[[], None], first: int) -> None:
-        """Have whom the bell wakes call `told` at the `first` loss, and whenever there are twice as many.
+        """Let the consumer call `told` at the `first` loss and whenever the losses have doubled.
 
-        It is the only sign of a queue from which nothing is taken any more; what loses nothing pays nothing for it.
+        It is the only sign of a queue that is no longer emptied. It costs nothing while there are no losses.
         """
         self._losses, self._tell_at = Inbox(self._bell, 1, told), first
 
     def put(self, item: Any) -> None:
-        """Add an item. Callable from any thread; of losses at the same moment on two, one may not be counted."""
+        """Add an item. Callable from any thread; of two simultaneous losses on two threads, one may not be counted."""
         items = self.items
         if len(items) == items.maxlen:
             self.dropped += 1
@@ -374,10 +382,11 @@ class Inbox:
 
 
 class DeepInbox(Inbox):
-    """An inbox for so many messages that their bytes are bounded as well: by `BYTES_BOUND`.
+    """A long inbox whose bytes are limited as well, to `BYTES_BOUND`.
 
-    The loop takes messages without telling, so what waits is counted only when so much has arrived that it may be too
-    much. Then a quarter goes at once: counting costs little per message also while the queue is full.
+    The loop takes messages without accounting for them, so the queue is only counted once enough has arrived to
+    possibly exceed the limit. Then a quarter is dropped at once, so that counting costs little per message even when it
+    is full.
     """
 
     __slots__ = ("_at_most",)
@@ -385,7 +394,7 @@ class DeepInbox(Inbox):
     def __init__(self, bell: Rings, depth: int, ready: Callable[[], None]) -> None:
         super().__init__(bell, depth, ready)
         self._at_most = 0
-        """Bytes that wait if nothing was taken since they were counted."""
+        """Upper limit of the queued bytes, assuming that nothing was taken since the last count."""
 
     def put(self, item: Any) -> None:
         size = size_of(item)
@@ -399,7 +408,7 @@ class DeepInbox(Inbox):
         while waiting > BYTES_BOUND * 3 // 4:
             try:
                 waiting -= size_of(self.items.popleft())
-            except IndexError:  # the loop has taken them meanwhile
+            except IndexError:  # the loop has taken them in the meantime
                 break
             self.dropped += 1
         self._at_most = waiting
@@ -408,15 +417,15 @@ class DeepInbox(Inbox):
 
 
 class RequestInbox(Inbox):
-    """An inbox for work that somebody waits for: when it is full, what comes is refused, and what waits stays.
+    """An inbox of requests: when full, new items are refused, and queued ones stay.
 
-    It is full with `depth` items or `BYTES_BOUND` bytes, and then takes no more until a quarter has gone. What waits is
-    counted no more often than that.
+    It is full with `depth` items or `BYTES_BOUND` bytes, and then accepts no more until a quarter has been taken, which
+    also limits how often the bytes are counted.
 
     Args:
-        size: The bytes of an item.
-        stand_in: Called with what is refused, on any thread; what it returns waits in its place, unless that is None or
-            there are `STAND_INS` times the depth.
+        size: Returns the bytes of an item.
+        stand_in: Called with a refused item, on any thread; its result is queued instead, unless it is None or there
+            are `STAND_INS` times the depth.
     """
 
     __slots__ = ("_at_most", "_size", "_stand_in", "_takes_at", "depth")
@@ -433,9 +442,9 @@ class RequestInbox(Inbox):
         self.depth = depth
         self._size, self._stand_in = size, stand_in
         self._at_most = 0
-        """Bytes that wait if nothing was taken since they were counted."""
+        """Upper limit of the queued bytes, assuming that nothing was taken since the last count."""
         self._takes_at = depth - 1
-        """The number of items at which one more is taken."""
+        """Queue length at which items are accepted again."""
 
     def put(self, item: Any) -> None:
         size = self._size(item)
@@ -459,16 +468,16 @@ class RequestInbox(Inbox):
 
 
 def size_of(item: Any) -> int:
-    """Bytes of an arrival's payload."""
+    """Return the bytes of an arrival's payload."""
     return len(item.payload)
 
 
 def open_inbox(qos: Qos, bell: Rings, ready: Callable[[], None]) -> Inbox:
-    """The queue of a subscription."""
+    """Return the inbox for a subscription."""
     bound = KEEP_ALL_BOUND if qos.history is History.KEEP_ALL else qos.depth
     return DeepInbox(bell, bound, ready) if bound > DEEP else Inbox(bell, bound, ready)
 
 
 def request_size(request: Request) -> int:
-    """Bytes of a request's payload."""
+    """Return the bytes of a request's payload."""
     return request.size

@@ -1,4 +1,4 @@
-"""A client session for short commands: blocking, without asyncio, and invisible in the graph."""
+"""Blocking client sessions for short commands, without asyncio and invisible in the graph."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from graphflow.transport.config import close_session, reaches_out
 from graphflow.transport.rendezvous import join
 
 TOKENS_LIMIT = 10.0
-"""Seconds after which no more tokens are asked for."""
+"""Seconds after which queries for tokens stop."""
 MANY_TOKENS = 1000
-"""A number of tokens that takes a router noticeable time to take in."""
+"""Number of tokens that a router takes noticeable time to process."""
 
 
 class Client:
-    """A session at the rendezvous or, where nothing runs on this machine, at a router that `--connect` names.
+    """A session at the rendezvous or, if nothing runs on this machine, at a router given by `--connect`.
 
     Raises:
         TransportError: As for `rendezvous.join`.
-        SupervisorError: Nothing answers (exit 3).
+        SupervisorError: No router answers (exit status 3).
     """
 
     def __init__(self) -> None:
@@ -40,10 +40,10 @@ class Client:
         return str(self._session.info.zid())
 
     def tokens(self, key: str) -> list[str]:
-        """Every liveliness token that matches. Of many the router may not know all yet: it is asked until it does.
+        """Return every matching liveliness token, querying the router until it knows all of them.
 
         Raises:
-            TransportError: They did not all come in time.
+            TransportError: The tokens were not complete in time.
         """
         began, before = time.monotonic(), MANY_TOKENS
         while True:
@@ -55,22 +55,22 @@ class Client:
             before = len(found)
 
     def _known(self, key: str) -> list[str]:
-        """The tokens that the router knows now."""
+        """Return the tokens that the router knows now."""
         replies = self._session.liveliness().get(key, timeout=TOKENS_LIMIT)
         return [str(r.ok.key_expr) for r in replies if r.ok is not None]
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
-        """All replies on matching keys within `timeout` seconds."""
+        """Return all replies on matching keys within `timeout` seconds."""
         replies = self._session.get(
             key, target=zenoh.QueryTarget.ALL, consolidation=zenoh.ConsolidationMode.NONE, timeout=timeout
         )
         return [r.ok.payload.to_bytes() for r in replies if r.ok is not None]
 
     def call(self, key: str, payload: bytes, attachment: bytes, timeout: float) -> Answer | None:
-        """Ask the servers on a key; returns the first reply, or None when none came and none will.
+        """Call the servers on a key; returns the first reply, or None when none will come.
 
         Raises:
-            TimeoutError: Nothing came within `timeout` seconds.
+            TimeoutError: No reply arrived within `timeout` seconds.
         """
         answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._session.get(
@@ -106,6 +106,6 @@ def _nobody() -> str:
 def _dial() -> zenoh.Session | None:
     if not reaches_out():
         return None
-    from graphflow.transport.link import dial  # imports all that reads profiles
+    from graphflow.transport.link import dial  # imports the parser of net profiles
 
     return dial()

@@ -1,4 +1,4 @@
-"""How Zenoh sessions are configured, opened and closed. Free of asyncio, for the sake of short commands."""
+"""Configuration, opening and closing of Zenoh sessions. Free of asyncio, so that short commands start quickly."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"
 PROFILE_VARIABLE = "GRAPHFLOW_NET"
 """The path of a net profile (`graph.net`)."""
 
-# Undeclaring a publisher that keeps messages holds the GIL until a task of Zenoh's has ended. That takes ten seconds if
-# all threads for such tasks wait for the GIL in callbacks, of which there may be three for each action client when its
+# Undeclaring a publisher that keeps messages holds the GIL until a task of Zenoh's has ended. That takes 10 s if all
+# threads for such tasks wait for the GIL in callbacks, of which there may be three for each action client when its
 # server leaves. A thread costs next to nothing. Read when the first session is opened.
 os.environ.setdefault("ZENOH_RUNTIME", "(net: (worker_threads: 8))")
 
 CLOSE_LIMIT = 2.0
-"""Seconds a session may take to close."""
+"""Seconds for a session to close."""
 CALLBACK_LIMIT = 1.0
-"""Seconds that Zenoh's callback threads have to end, at exit, when their sessions have been closed."""
+"""Seconds for Zenoh's callback threads to end at exit, once their sessions are closed."""
 ANSWERING = "graphflow-questions"
-"""The name of threads that wait for queries: they end with the session."""
+"""Name of threads that wait for queries, which end with the session."""
 OPEN_LIMIT = 10.0
-"""Seconds that two sessions may take to connect. Peers that find each other try once: on a busy machine, with twenty of
-them starting, an impatient one would never get a connection."""
+"""Seconds for two sessions to connect. Peers that discover each other try once: on a busy machine with twenty of them
+starting, a short limit would prevent a connection for good."""
 LEASE_HERE = 120.0
-"""Seconds of a lease between processes of this machine: the system tells at once of one that ends, and of its sockets.
-Only one that is stopped is silent; it is no longer there when it has been so for as long."""
+"""Lease in seconds between processes of this machine, where the system reports a process's end and closes its sockets
+at once. Only a stopped process is silent; it leaves the graph after this time."""
 QUERY_LIMIT_MS = 600_000
-"""As in rmw_zenoh; graphflow's own deadlines are shorter and kept by the runtime."""
+"""Query timeout as in rmw_zenoh; graphflow's own deadlines are shorter and enforced by the runtime."""
 
 _CONFIG = """{
   mode: "%(mode)s",
@@ -78,7 +78,7 @@ _CONFIG = """{
 
 
 def reaches_out() -> bool:
-    """Whether the environment asks for a link to other machines (`transport.link`)."""
+    """Whether the environment requests a link to other machines (`transport.link`)."""
     return bool(os.environ.get(CONNECT_VARIABLE) or os.environ.get(PROFILE_VARIABLE))
 
 
@@ -90,10 +90,10 @@ def config(
     open_limit: float = OPEN_LIMIT,
     lease: float = LEASE_HERE,
 ) -> zenoh.Config:
-    """A session configuration. Multicast is off and nothing listens beyond `listen`.
+    """Return a session configuration. Multicast is off, and the session listens only on `listen`.
 
     Args:
-        lease: Seconds without a sign of life after which the other side may take this one for dead.
+        lease: Seconds of silence after which the other side considers this one dead.
     """
     return zenoh.Config.from_json5(
         _CONFIG
@@ -110,7 +110,7 @@ def config(
 
 @cache
 def _quiet() -> None:
-    """Limit Zenoh's own log to what RUST_LOG asks for."""
+    """Limit Zenoh's own log to the level in RUST_LOG."""
     zenoh.init_log_from_env_or("off")
 
 
@@ -118,7 +118,7 @@ def open_session(settings: zenoh.Config) -> zenoh.Session:
     """Open a raw session.
 
     Raises:
-        TransportError: Zenoh refused, or Python runs without its global lock.
+        TransportError: Zenoh failed, or Python runs without its global interpreter lock.
     """
     _quiet()
     if not getattr(sys, "_is_gil_enabled", lambda: True)():
@@ -134,7 +134,7 @@ def open_session(settings: zenoh.Config) -> zenoh.Session:
 
 
 def close_session(session: zenoh.Session) -> bool:
-    """Close a session, and say whether it is closed; give up after `CLOSE_LIMIT` s, since a stuck peer can hold it."""
+    """Close a session; returns False after `CLOSE_LIMIT` seconds, since a stuck peer can block it."""
     ended = threading.Event()
     errors: list[BaseException] = []
 
@@ -156,12 +156,12 @@ def close_session(session: zenoh.Session) -> bool:
 
 
 _works: list[threading.Event] = []
-"""Sessions that are being opened or closed: each is set when that is over."""
+"""Sessions being opened or closed; each event is set at the end."""
 
 
 @contextmanager
 def _at_work() -> Iterator[None]:
-    """Open or close a session, which the end of the interpreter waits for."""
+    """Delay the interpreter's exit while a session is opened or closed."""
     over = threading.Event()
     _works.append(over)
     try:
@@ -175,22 +175,22 @@ _to_close: list[zenoh.Session] = []
 _before_closing: list[Callable[[], None]] = []
 _closer: threading.Thread | None = None
 _closing = threading.Lock()
-"""Held while the end of the interpreter closes sessions."""
+"""Locked while sessions are closed at exit."""
 
 
 def close_at_exit(session: zenoh.Session) -> None:
-    """Close `session` when the program's threads have ended, daemons aside, if it has not been closed by then.
+    """Close `session` when the program's non-daemon threads have ended, unless it has been closed by then.
 
-    Zenoh's callback threads keep the interpreter from ending, and `atexit` comes only after it has waited for them.
-    So a thread of our own waits for the main thread, which is done the moment the interpreter begins to end, and for
-    the others that the interpreter waits for.
+    Zenoh's callback threads keep the interpreter alive, and `atexit` functions run only after it has waited for them.
+    So a thread waits for the main thread, which ends as soon as the interpreter starts to exit, and for the other
+    threads that the interpreter waits for.
     """
     _wait_for_main()
     _to_close.append(session)
 
 
 def before_closing_at_exit(what: Callable[[], None]) -> None:
-    """Call `what` when the program's threads have ended, before open sessions are closed. It must not raise."""
+    """Call `what`, which must not raise, when the program's threads have ended and before sessions are closed."""
     _wait_for_main()
     _before_closing.append(what)
 
@@ -205,12 +205,12 @@ def _wait_for_main() -> None:
 
 
 def _close_interrupted() -> None:
-    """Close them where Ctrl-C has broken off the wait for that thread: the interpreter goes on to its end all the same.
+    """Close sessions if Ctrl-C has interrupted the wait for that thread; the interpreter then exits all the same.
 
-    A second one often comes when the main thread has just ended.
+    A second Ctrl-C often arrives when the main thread has just ended.
     """
     if _closer is not None and _closer.is_alive():
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # it takes some seconds at most
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # closing takes a few seconds at most
         _close_all()
 
 
@@ -232,9 +232,9 @@ def _close_one_by_one() -> None:
     while _to_close:
         session = _to_close.pop()
         if not session.is_closed() and not close_session(session):
-            break  # the process that ends takes the others with it
-    # A session is closed from the moment at which another thread begins to close it. That must come back, too: one in
-    # Zenoh's code that asks for the GIL when the interpreter has gone aborts the process, as a callback's thread does.
+            break  # the exiting process ends the other threads
+    # A session counts as closed as soon as another thread starts to close it. That thread must return, too: one in
+    # Zenoh's code that requests the GIL after finalization aborts the process, and so does a callback's thread.
     limit = time.monotonic() + CLOSE_LIMIT
     for over in list(_works):
         over.wait(max(limit - time.monotonic(), 0))
@@ -244,15 +244,15 @@ def _close_one_by_one() -> None:
 
 
 def _programs_threads() -> list[threading.Thread]:
-    """The program's own threads that the interpreter waits for before it ends; they may still use sessions."""
+    """Return the program's own non-daemon threads, which may still use sessions."""
     not_theirs = {threading.current_thread(), threading.main_thread(), *callback_threads()}
     return [t for t in threading.enumerate() if not t.daemon and t not in not_theirs]
 
 
 def callback_threads() -> list[threading.Thread]:
-    """The threads of Zenoh's that call back, one per subscriber or queryable, and those that take questions, by name.
+    """Return Zenoh's callback threads, one per subscriber or queryable, and those that wait for queries, by name.
 
-    They end soon after their session was closed. Those that were started from a daemon thread are daemons, which the
-    interpreter does not wait for; and one that asks for the GIL when the interpreter has gone aborts the process.
+    They end soon after their session is closed. Those started from a daemon thread are daemons, which the interpreter
+    does not wait for; and a thread that requests the GIL after finalization aborts the process.
     """
     return [t for t in threading.enumerate() if t.name.endswith("(pyo3-closure)") or t.name == ANSWERING]

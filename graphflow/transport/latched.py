@@ -1,4 +1,4 @@
-"""Messages that publishers keep for those who come later: Zenoh's advanced publishers and subscribers."""
+"""Messages kept for late subscribers (TRANSIENT_LOCAL), by Zenoh's advanced publishers and subscribers."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ from graphflow.transport.base import Closable, Inbox
 logger = logging.getLogger("graphflow.transport")
 
 ASK_AGAIN = (0.5, 2.0)
-"""Seconds from the sign of life of a publisher that keeps messages until it is asked for them again."""
+"""Seconds from the appearance of a publisher that keeps messages to each repeated query."""
 
 Watch = Callable[[str, Callable[[str, bool], None]], Closable]
 """Calls back for the tokens on a key."""
 
 
 def load_ext() -> Any:
-    """Advanced pub/sub; only TRANSIENT_LOCAL endpoints need it."""
+    """Return the advanced pub/sub module, which only TRANSIENT_LOCAL endpoints need."""
     import zenoh.ext
 
     return zenoh.ext
 
 
 class AskingAgain:
-    """Asks publishers that have appeared for what they keep, a second and a third time.
+    """Repeated queries to new publishers for the messages they keep.
 
-    The subscriber asks once, at the sign of life. Across routers that may come before there is a route to the
-    publisher, and the query ends at once, unanswered: after an outage, what was sent meanwhile would be lost.
-    A heartbeat that only this session hears makes the subscriber look for whatever it has missed.
+    Zenoh's subscriber queries a publisher once, when its token appears. Across routers there may be no route to it yet,
+    and the query ends at once without a reply: messages sent during an outage would be lost. A heartbeat that only this
+    session receives makes the subscriber query again.
     """
 
     def __init__(self, raw: zenoh.Session, loop: AbstractEventLoop, watch: Watch, key: str, inbox: Inbox) -> None:
         self._raw, self._loop, self._inbox = raw, loop, inbox
         self._last: dict[str, int] = {}
-        """The last sequence number heard, by publisher."""
+        """The last sequence number received, by publisher."""
         self._timers: set[asyncio.TimerHandle] = set()
         self._signs = watch(f"{key}/@adv/pub/**", self._changed)
 
     def heard(self, sample: zenoh.Sample) -> None:
-        """A message has come. Runs on Zenoh's thread."""
+        """Note a message. Runs on Zenoh's thread."""
         source = sample.source_info
         if source is not None:
             self._last[f"{source.source_id.zid}/{source.source_id.eid}"] = source.source_sn
@@ -57,7 +57,7 @@ class AskingAgain:
 
     def _ask(self, token: str) -> None:
         publisher = "/".join(token.split("/")[-3:-1])
-        # Numbers wrap around, and half are ahead: this one surely is, so the publisher answers with what it has.
+        # Sequence numbers wrap around and half count as ahead: this one does, so the publisher replies with all it has.
         ahead = (self._last.get(publisher, 0) + (1 << 30)) % (1 << 32)
         try:
             self._raw.put(token, ahead.to_bytes(4, "little"), allowed_destination=zenoh.Locality.SESSION_LOCAL)

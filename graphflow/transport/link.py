@@ -1,11 +1,11 @@
 """The link to other machines: a router session between this machine's rendezvous and routers elsewhere.
 
-Nodes stay on loopback: what they send reaches the rendezvous, this session passes it to the routers it is connected
-to, and back. It is a session of its own, next to the one that hosts the rendezvous, so that it works the same when that
-is another graph's process, or rmw_zenohd, and goes when the process that asked for it goes.
+Nodes stay on loopback: their messages reach the rendezvous, and this session passes them to the routers it is
+connected to, and back. It is separate from the session that hosts the rendezvous, so that it works the same if that is
+another graph's process or rmw_zenohd, and ends with the process that opened it.
 
-A connection that is cut silently is the hard case: the other side may allow us a minute before it misses us,
-and TCP retransmits ever more slowly. So a connection that goes unanswered for `PATIENCE` is dropped and dialled again.
+A silently cut connection is the hard case: the other side may take a minute to notice, and TCP retransmits ever more
+slowly. So a connection without an acknowledgement for `PATIENCE` is dropped and dialled again.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ from graphflow.wire import net
 logger = logging.getLogger("graphflow.link")
 
 PATIENCE = 2.0
-"""Seconds that sent data may go without an acknowledgement."""
+"""Seconds for sent data to be acknowledged."""
 DIAL_LIMIT = 2.0
-"""Seconds until the other side must have answered a dial: time for five exchanges, and a retry comes soon."""
+"""Seconds for the other side to answer a dial: time for five round trips, and a retry follows soon."""
 LEASE = 4.0
-"""Seconds without a sign of life after which the other side may take this one for dead; 10 is Zenoh's default."""
+"""Seconds of silence after which the other side considers this one dead; Zenoh's default is 10."""
 
 _MESSAGES = (
     *("put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"),
@@ -55,21 +55,21 @@ class Link:
     """A link, until closed.
 
     Args:
-        bell: Wakes the loop on which the link hears that a connection came or went.
-        domain: What passes, if a profile says what may.
+        bell: Wakes the loop for changes of connections.
+        domain: The domain to which a net profile's rules apply.
 
     Raises:
-        TransportError: An endpoint is misspelt, or the port is taken.
-        GraphFileError: The profile is wrong.
+        TransportError: An endpoint is malformed, or the port is taken.
+        GraphFileError: The net profile is invalid.
     """
 
     def __init__(self, bell: Bell, domain: int) -> None:
         profile = _profile()
         self._wanted = _endpoints(profile)
         self._linked: dict[str, int] = {}
-        """Connections by endpoint."""
+        """Number of connections, by endpoint."""
         self.ready = asyncio.Event()
-        """Set when there has been a connection to every endpoint that must be reached."""
+        """Set once every required endpoint has been connected."""
         self._session = open_session(self._config(profile, domain))
         close_at_exit(self._session)
         if profile is not None:
@@ -108,7 +108,7 @@ class Link:
             self.ready.set()
 
     async def wait_ready(self, timeout: float) -> None:
-        """Wait until there has been a connection to every endpoint; if there is none in time, log that and go on."""
+        """Wait until every endpoint has been connected; on a timeout, log it and continue."""
         try:
             async with asyncio.timeout(timeout):
                 await self.ready.wait()
@@ -116,7 +116,7 @@ class Link:
             logger.warning("%s: no answer yet; still trying", ", ".join(self._wanted))
 
     def close(self) -> None:
-        """End the link. Blocks for as long as closing takes."""
+        """Close the link. Blocks until it is closed."""
         close_session(self._session)
 
 
@@ -138,11 +138,13 @@ def _endpoints(profile: NetProfile | None) -> list[str]:
 
 
 def dial() -> zenoh.Session | None:
-    """A client session directly at a router elsewhere, for commands on a machine where nothing runs; None if nothing
-    answers.
+    """Open a client session at a router elsewhere, for commands on a machine where nothing runs.
+
+    Returns:
+        The session; None if no router answers.
 
     Raises:
-        TransportError, GraphFileError: The environment says something invalid.
+        TransportError, GraphFileError: The environment's link settings are invalid.
     """
     profile = _profile()
     endpoints = _endpoints(profile)
@@ -171,8 +173,9 @@ def _tls(profile: NetProfile) -> dict[str, Any]:
 
 
 def _access(profile: NetProfile, domain: int) -> dict[str, Any]:
-    """What passes over encrypted connections; this machine's own are not."""
-    names = [f"{domain}{pattern}/*/*" for pattern in profile.allow]  # after a name come its type and the type's hash
+    """Return the access rules of encrypted connections; this machine's own are unencrypted."""
+    # In a key, a name is followed by its type and the type's hash.
+    names = [f"{domain}{pattern}/*/*" for pattern in profile.allow]
     latched = [f"{name}/@adv/**" for name in names]
     there = [str(zenoh.KeyExpr.autocanonize(key)) for key in (f"@ros2_lv/{domain}/**", *names, *latched)]
     allowed = {"permission": "allow", "messages": _MESSAGES, "flows": ["ingress", "egress"]}
@@ -189,7 +192,7 @@ def _access(profile: NetProfile, domain: int) -> dict[str, Any]:
 
 
 def _hang_up_early(there: str) -> None:
-    """Make the system end connections that go unanswered for `PATIENCE`, where it supports that."""
+    """Make the system end connections without an acknowledgement for `PATIENCE`, where supported."""
     if not hasattr(socket, "TCP_USER_TIMEOUT"):
         return
     import psutil

@@ -1,4 +1,4 @@
-"""How the C library treats freed memory, which decides what a megabyte of image costs."""
+"""Settings of the C library's allocator, which determine the cost of large messages."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
 
 
 def keep_freed_memory() -> None:
-    """Keep freed megabytes in the process: without this a received image costs a page fault per 4 kB.
+    """Keep freed memory in the process: otherwise each received image costs a page fault per 4 kB.
 
-    Environment variables would do the same only before a process starts. Without glibc nothing is changed.
+    Environment variables have the same effect only before a process starts. Without glibc this does nothing.
     """
     import ctypes
 

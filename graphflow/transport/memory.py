@@ -1,8 +1,8 @@
-"""A network inside one process, for tests and notebooks. Same promises as the real one, without threads.
+"""A network inside one process, for tests and notebooks, with the guarantees of the real one but without threads.
 
-Everything is delivered by the loop in the order it was sent, never inside the call that sent it. As over Zenoh, a
-request goes to every server of its key, and a transient-local sender keeps its last messages for receivers that ask for
-them. Keys match exactly, except for receivers whose key ends with the part `*`.
+The loop delivers everything in the order of sending, never inside the sending call. As over Zenoh, a request goes to
+every server on its key, and a TRANSIENT_LOCAL sender keeps its last messages for receivers that query them. Keys match
+exactly, except for receivers whose key ends with the part `*`.
 """
 
 from __future__ import annotations
@@ -30,17 +30,19 @@ class _Sample(NamedTuple):
 class _Receiver(NamedTuple):
     inbox: Inbox
     zid: str
-    """The session's."""
+    """The session's id."""
     ignore_local: bool
 
 
 class Carrier(Protocol):
-    """Takes what is sent from one session to another and delivers it at a time of its choice, if at all."""
+    """The transmission between sessions: decides when, and whether, an item is delivered."""
 
     def carry(self, deliver: Callable[[], object], link: str, *, is_lossy: bool) -> None:
-        """Args:
-        link: Sender, receiver and key: what is on one link arrives in order.
-        is_lossy: Whether it may be lost, as publications may.
+        """Transmit an item.
+
+        Args:
+            link: Sender, receiver and key: items on one link arrive in order.
+            is_lossy: Whether the item may be lost, as publications may.
         """
 
 
@@ -48,7 +50,7 @@ class Network:
     """The medium that memory sessions share.
 
     Args:
-        carrier: What delivers; without one, everything arrives at once.
+        carrier: The transmission; by default everything arrives at once.
     """
 
     def __init__(self, carrier: Carrier | None = None) -> None:
@@ -59,32 +61,32 @@ class Network:
         self.callers: dict[str, list[_Caller]] = {}
         self.reports: dict[str, Callable[[], bytes]] = {}
         self.requests: dict[int, WeakSet[_Request]] = {}
-        """Requests that servers hold, by the server's inbox."""
+        """Unanswered requests, by the server's inbox."""
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
 
     def receivers_of(self, key: str) -> list[_Receiver]:
-        """The receivers of what is sent on a key."""
+        """Return the receivers of publications on a key."""
         return [*self.receivers.get(key, ()), *self.receivers.get(_any_of(key), ())]
 
     def senders_to(self, key: str) -> list[_Sender]:
-        """The senders whose messages a receiver on a key hears."""
+        """Return the senders whose messages a receiver on a key receives."""
         return [s for k, senders in self.senders.items() if key in (k, _any_of(k)) for s in senders]
 
     def deliver(self, deliver: Callable[[], object], link: str, *, is_lossy: bool = False) -> None:
-        """Let something arrive."""
+        """Deliver an item through the carrier."""
         if self.carrier is None:
             deliver()
         else:
             self.carrier.carry(deliver, link, is_lossy=is_lossy)
 
     def session(self, loop: AbstractEventLoop) -> MemorySession:
-        """A new participant."""
+        """Return a session for a new participant."""
         return MemorySession(self, loop)
 
 
 class _Declared:
-    """Something in one of the network's lists, until closed."""
+    """An entry in one of the network's lists, until closed."""
 
     def __init__(self, undo: Callable[[], None]) -> None:
         self._undo: Callable[[], None] | None = undo
@@ -127,7 +129,7 @@ class _Sender:
             self._changed()
 
     def put(self, payload: Payload, *, attachment: bytes) -> None:
-        if self._is_closed:  # its session has died, and its node has not noticed
+        if self._is_closed:  # its session has died, which its node has not noticed
             return
         sample = _Sample(bytes(payload), attachment, self._key)
         self.history.append(sample)
@@ -154,7 +156,7 @@ class _Request:
         self._finish(Answer(payload, None, is_error=True))
 
     def abandon(self) -> None:
-        """Its server has died."""
+        """End a request whose server has died."""
         self._finish(None)
 
     def _finish(self, answer: Answer | None) -> None:
@@ -333,7 +335,7 @@ class MemorySession:
         return arrival.key
 
     def die(self) -> None:
-        """Vanish at once, like a killed process: nothing it was asked is answered."""
+        """Vanish at once, like a killed process: pending requests get no reply."""
         for declared in reversed(self._declared):
             declared.close()
         self._declared.clear()
@@ -342,7 +344,7 @@ class MemorySession:
                 request.abandon()
 
     def leave(self) -> None:
-        """Nothing takes time here."""
+        """Do nothing: closing takes no time here."""
 
     async def close(self) -> None:
         for declared in reversed(self._declared):
@@ -361,7 +363,7 @@ class MemorySession:
 
 
 def _any_of(key: str) -> str:
-    """The key with `*` for its last part."""
+    """Return the key with `*` for its last part."""
     return f"{key.rpartition('/')[0]}/*"
 
 

@@ -1,9 +1,9 @@
-"""Questions that anybody may ask a process: taken one after the other on a thread of their own, and not all of a flood.
+"""Queryables that other processes may query freely: handled one at a time on a thread, and limited in a flood.
 
-As a rule a callback hands them to that thread, which sleeps until one comes. A callback needs the GIL, and twenty
-thousand questions a second would leave nothing of it to the nodes. So after the first flood they wait in a ring: Zenoh
-keeps the latest and ends the others without an answer, all without Python. It is not there from the beginning, since a
-thread that waits for a ring wakes ten times a second (`CHECK_SIGNALS_INTERVAL` in zenoh-python's handlers.rs).
+At first a callback passes queries to that thread, which sleeps until one arrives. A callback needs the GIL, and twenty
+thousand queries a second would leave the nodes without it. So after the first flood, queries wait in a ring channel:
+Zenoh keeps the latest and ends the others without a reply, all without Python. It is not used from the start, since a
+thread that waits on it wakes ten times a second (`CHECK_SIGNALS_INTERVAL` in zenoh-python's handlers.rs).
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from graphflow.transport.config import ANSWERING
 from graphflow.transport.event_loop.foreign_threads import at_once
 
 FLOOD = 100
-"""Questions that wait when the first flood begins; more are ended without an answer."""
+"""Waiting queries that count as a flood; further ones end without a reply."""
 BOUND = 256
-"""Questions that wait in the ring."""
+"""Queries kept in the ring channel."""
 PAUSE = 0.002
-"""Seconds from one question to the next."""
+"""Seconds from one query to the next."""
 logger = logging.getLogger("graphflow.transport")
 
 
 class Questions:
-    """A queryable for questions, until undeclared.
+    """A queryable, until undeclared.
 
     Args:
-        take: Answers a question, on a thread; the question ends when nobody refers to it any more.
-        complete: Whether it answers for all of `key`.
+        take: Answers a query, on a thread; the query ends when the last reference to it is dropped.
+        complete: Whether the queryable covers all of `key`.
     """
 
     def __init__(
@@ -43,11 +43,11 @@ class Questions:
     ) -> None:
         self._session, self._key, self._take, self._complete = session, key, take, complete
         self._waiting: SimpleQueue[zenoh.Query | None] = SimpleQueue()
-        """None is the last: the callback is undeclared, or the session closed."""
+        """Queries to answer; None ends the thread: the callback is undeclared, or the session closed."""
         self._is_flooded = self._is_closed = False
         self._ring: Any = None
         self._declaring = threading.Lock()
-        """Held while it is decided which queryable there is."""
+        """Locked while the queryable is replaced."""
         self._queryable = self._declare(at_once(self._heard, lambda: self._waiting.put(None)))
         threading.Thread(target=self._take_turns, name=ANSWERING).start()
 
@@ -63,7 +63,7 @@ class Questions:
     def _take_turns(self) -> None:
         while (query := self._waiting.get()) is not None:
             self._answer(query)
-            del query  # which ends it, if nobody keeps it to answer it later
+            del query  # this ends it, unless a reference is kept to answer it later
             if self._is_flooded and self._ring is None:
                 self._change_over()
             time.sleep(PAUSE)
@@ -79,11 +79,11 @@ class Questions:
     def _answer(self, query: zenoh.Query) -> None:
         try:
             self._take(query)
-        except Exception as error:  # a question that fails must not end the answers to others
+        except Exception as error:  # a failing query must not end the answers to others
             logger.debug("a question cannot be answered", exc_info=error)
 
     def _change_over(self) -> None:
-        """Put a ring in the callback's place, for good. Meanwhile there are both, so that every question is heard."""
+        """Replace the callback by a ring channel, for good. Both exist meanwhile, so that no query is missed."""
         with self._declaring:
             if self._is_closed:
                 return
@@ -95,7 +95,7 @@ class Questions:
                 logger.debug("a ring for questions: %s", error)
 
     def undeclare(self) -> None:
-        """Take no more questions.
+        """Stop answering.
 
         Raises:
             ZError: The session is already closed.

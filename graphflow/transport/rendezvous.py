@@ -1,8 +1,8 @@
-"""The rendezvous: one router per machine, for all domains, through which sessions find each other.
+"""The rendezvous: one router per machine, for all domains, through which sessions discover each other.
 
-It is a second session inside some long-lived graphflow process: the first to bind the port has it. When that
-process dies, the others, whose direct links go on, try to take over the port at once. A Zenoh router that is
-already there, such as rmw_zenohd, is joined. Anything else on the port is an error that says what it is.
+It is a second session inside a long-lived graphflow process, the first to bind the port. When that process dies, the
+others, whose direct links continue, try to take over the port at once. An existing Zenoh router, such as rmw_zenohd, is
+joined. Any other program on the port is an error that names it.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from graphflow.transport.config import close_session, config, open_session
 TOKENS = "@graphflow/rendezvous"
 """A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""
 ANSWER_LIMIT = 0.5
-"""Seconds a listener may take to answer."""
+"""Seconds for a listener to answer."""
 _LISTENS = "0A"
-"""State of a TCP socket that listens, in Linux's tables."""
+"""The state of a listening TCP socket in Linux's tables."""
 PATIENCE = 2.0
-"""Seconds it has when it is asked again, before it is called mute: a busy machine may take that long."""
+"""Seconds for a second attempt before a listener counts as mute: a busy machine may take that long."""
 
 
 def address(endpoint: str) -> tuple[str, int]:
-    """Host and port of `tcp/HOST:PORT`.
+    """Return host and port of `tcp/HOST:PORT`.
 
     Raises:
         TransportError: `endpoint` has another form.
@@ -44,10 +44,10 @@ def address(endpoint: str) -> tuple[str, int]:
 
 
 def join() -> zenoh.Session | None:
-    """A client session at the rendezvous, or None when nothing listens there.
+    """Open a client session at the rendezvous; None if nothing listens there.
 
     Raises:
-        TransportError: What listens is not Zenoh, does not answer, or belongs to another user.
+        TransportError: The listener is not Zenoh, does not answer, or belongs to another user.
     """
     endpoint = rendezvous_endpoint()
     address(endpoint)
@@ -74,7 +74,7 @@ def _open_client(endpoint: str, limit: float) -> zenoh.Session | None:
 
 
 def _is_listening(endpoint: str) -> bool:
-    import socket  # only when something is wrong: importing it takes a tenth of a listing's time
+    import socket  # only for an error message: importing it takes a tenth of a listing's time
 
     try:
         socket.create_connection(address(endpoint), ANSWER_LIMIT).close()
@@ -87,9 +87,9 @@ def _is_listening(endpoint: str) -> bool:
 
 def _refuse_strangers(session: zenoh.Session, endpoint: str) -> None:
     uid = _listener_uid(address(endpoint)[1])
-    if uid == user_id():  # whatever anybody announces
+    if uid == user_id():  # the socket's owner outweighs any announcement
         return
-    here = {str(zid) for zid in session.info.routers_zid()}  # other machines' may be linked to it
+    here = {str(zid) for zid in session.info.routers_zid()}  # routers of other machines may be linked to it
     for reply in session.liveliness().get(f"{TOKENS}/**", timeout=ANSWER_LIMIT):
         if reply.ok is None:
             continue
@@ -103,12 +103,12 @@ def _refuse_strangers(session: zenoh.Session, endpoint: str) -> None:
 
 
 def _listener_uid(port: int) -> int | None:
-    """The user who listens on a TCP port, as Linux knows it; None where the system does not tell."""
+    """Return the user id of a TCP port's listener from Linux's tables; None if unknown."""
     for table in ("/proc/net/tcp", "/proc/net/tcp6"):
         try:
             with open(table, encoding="ascii") as file:
-                next(file, "")  # the heads of the columns
-                # Those that listen come first. The system makes the table as it is read, and of all connections of a
+                next(file, "")  # the column headings
+                # Listening sockets come first. The kernel creates the table as it is read, and for all connections of a
                 # machine that takes milliseconds.
                 for fields in map(str.split, file):
                     if fields[3] == _LISTENS and int(fields[1].rpartition(":")[2], 16) == port:
@@ -128,7 +128,7 @@ def _user_name(uid: str) -> str:
 
 
 def occupied(endpoint: str, what: str) -> str:
-    """A sentence about a process that occupies an endpoint and is of no use there, and what to do about it."""
+    """Return a sentence on a process that occupies an endpoint, with the next step."""
     owner = _listener(address(endpoint)[1])
     return (
         f"{endpoint}: {owner or 'the process listening there'} {what}. End it"
@@ -138,7 +138,7 @@ def occupied(endpoint: str, what: str) -> str:
 
 
 def _listener(port: int) -> str:
-    """`process PID (name)` of what listens on a TCP port, as far as this user may see it."""
+    """Return `process PID (name)` of a TCP port's listener, as far as this user may see it."""
     import psutil
 
     try:
@@ -160,12 +160,12 @@ class Router:
         self._token = session.liveliness().declare_token(name)
 
     def close(self) -> None:
-        """Stop being the rendezvous. Blocks for as long as closing takes."""
+        """Stop hosting the rendezvous. Blocks until it is closed."""
         close_session(self._session)
 
 
 def host() -> Router | None:
-    """Become the rendezvous: a router session on its port; None when the port is taken."""
+    """Host the rendezvous: a router session on its port; None if the port is taken."""
     try:
         return Router(open_session(config("router", listen=rendezvous_endpoint())))
     except TransportError:
@@ -173,9 +173,9 @@ def host() -> Router | None:
 
 
 def free_endpoint() -> str:
-    """An endpoint on a loopback port that is free now.
+    """Return an endpoint on a free loopback port.
 
-    It is below the ephemeral ports: when a rendezvous ends, only its successor may get its port.
+    It is below the ephemeral ports, so that only a rendezvous's successor gets its port.
     """
     import random
     import socket
@@ -185,16 +185,16 @@ def free_endpoint() -> str:
         with socket.socket() as probe:
             try:
                 probe.bind(("127.0.0.1", port))
-            except OSError:  # taken
+            except OSError:  # the port is taken
                 continue
         return f"tcp/127.0.0.1:{port}"
 
 
 def establish() -> Router | None:
-    """Make sure that there is a rendezvous: join an existing one, else host it. Blocks for some milliseconds.
+    """Ensure that there is a rendezvous: join an existing one, else host it. Blocks for a few milliseconds.
 
     Returns:
-        The router if this process is now the rendezvous, else None.
+        The router if this process now hosts the rendezvous, else None.
 
     Raises:
         TransportError: As for `join`.

@@ -1,4 +1,4 @@
-"""Keeping the rendezvous alive: when its process dies, the remaining ones try to bind its port at once."""
+"""Takeover of the rendezvous: when its process dies, the remaining ones try to bind its port at once."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ logger = logging.getLogger("graphflow.rendezvous")
 _JITTER = 0.05
 _RETRY = 0.5
 _PATIENCE = 5
-"""Attempts in vain before somebody is told: commands that come and go may be the rendezvous in turn."""
+"""Failed attempts before a warning: short-lived commands may host the rendezvous in turn."""
 
 
 class Takeover:
     """This process's part in keeping a rendezvous on the machine.
 
     Args:
-        router: The rendezvous, if this process already is it.
+        router: The rendezvous, if this process already hosts it.
     """
 
     def __init__(self, router: Router | None) -> None:
@@ -35,25 +35,25 @@ class Takeover:
         self._attempt: asyncio.Future[Router | None] | None = None
         self._watcher: Closable | None = None
         self._gone: set[str] = set()
-        """Sessions whose connection has ended. Zenoh reports that before it takes a router off its own list."""
+        """Sessions whose connection has ended, which Zenoh reports before it updates its list of routers."""
         self._failures = 0
-        """Attempts in vain since the last that was not."""
+        """Successive failed attempts."""
         self._closed = False
 
     def guard(self, session: ZenohSession) -> None:
-        """From now on, take over when the rendezvous that `session` is connected to dies or has already died."""
+        """Take over from now on when the rendezvous of `session` dies or is already dead."""
         self._session = session
         self._watcher = session.watch_transports(self._changed)
         self._look()
 
     @property
     def is_router(self) -> bool:
-        """Whether this process is the rendezvous."""
+        """Whether this process hosts the rendezvous."""
         return self._router is not None
 
     @property
     def router_id(self) -> str:
-        """The Zenoh id of the rendezvous; empty as long as there is none."""
+        """The rendezvous's Zenoh id; "" while there is none."""
         return next(iter(self._session.routers()), "") if self._session is not None else ""
 
     def _is_needed(self) -> bool:
@@ -64,7 +64,7 @@ class Takeover:
         return not routers - self._gone
 
     def _changed(self, zid: str, alive: bool) -> None:
-        """The connection to another session began or ended."""
+        """Handle the start or end of a connection to another session."""
         if alive:
             self._gone.discard(zid)
         else:
@@ -100,7 +100,7 @@ class Takeover:
         self._try()
 
     async def close(self) -> None:
-        """Stop guarding and stop being the rendezvous."""
+        """Stop guarding, and stop hosting the rendezvous."""
         self._closed = True
         if self._watcher is not None:
             self._watcher.close()

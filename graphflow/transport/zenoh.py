@@ -1,14 +1,14 @@
 """The network over Eclipse Zenoh, configured as rmw_zenoh's peers expect.
 
-Zenoh calls back on threads of its own. What runs there only appends to an inbox and rings its bell: a call into
-Zenoh, a log line or user code in a callback can stall every other stream of the process.
+Zenoh calls back on its own threads. Callbacks only append to an inbox and ring its bell: a call into Zenoh, a log line
+or user code in a callback can stall every other stream of the process.
 
-Data comes through Zenoh's default callback thread, one per subscription, which takes many samples each time it holds
-the GIL; requests, replies and tokens come directly (see `foreign`), since the default would start a
-thread per declaration and per call. So does the feedback of actions, which a result must not overtake.
+Data arrives on Zenoh's default callback thread, one per subscription, which takes many samples each time it holds the
+GIL. Requests, replies and tokens arrive directly (see `foreign_threads`), since the default would start a thread per
+declaration and per call. So does the feedback of actions, which a result must not overtake.
 
-Large messages between processes of one user go through shared memory of ours (`large`): Zenoh's is slower, since it
-copies into and out of it, and its watchdogs wake every idle process 18 times a second. So Zenoh's is off, as in ROS 2.
+Large messages between processes of one user go through graphflow's own shared memory (`shared_memory`). Zenoh's is
+off, as in ROS 2: it is slower, since it copies in and out, and its watchdogs wake every idle process 18 times a second.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ if TYPE_CHECKING:  # only nodes with large messages load them
     from graphflow.transport.shared_memory.large_messages import RingReceiver, RingSender
 
 OWN = "@graphflow/"
-"""What the keys begin with that ROS 2 does not know."""
+"""Prefix of keys unknown to ROS 2."""
 ASKED_BOUND = 10_000
-"""Tokens of an answer: other processes announce as many as they like."""
+"""Most tokens of a reply: other processes may announce any number."""
 COPIED_BELOW = 64 << 10
-"""Bytes of a message that has arrived in a buffer with others: Zenoh's are as large."""
+"""Size in bytes below which a message is copied out of the buffer it shares with others; Zenoh's are as large."""
 WATCHED_AT_ONCE = 64
-"""Tokens that are taken in before others have a turn of the loop."""
+"""Tokens processed per iteration of the event loop."""
 logger = logging.getLogger("graphflow.transport")
 
 
@@ -70,28 +70,28 @@ class _Declared:
 
 
 class _ZenohSender(_Declared):
-    """A plain publisher, which knows whether there are listeners."""
+    """A plain publisher that knows whether there are subscribers."""
 
     def __init__(self, session: ZenohSession, publisher: Any, changed: Callable[[], None] | None) -> None:
         self._publisher, self._lock, self._is_wanted = publisher, threading.Lock(), False
         self._inbox = None if changed is None else Inbox(session.bell, 1, changed)
-        # What changes is looked up when it is asked for. A callback needs the GIL on a thread of those that `config`
-        # speaks of, and there would be one for each publisher at once when a peer leaves.
+        # The state is polled: a callback needs the GIL on one of the threads that `config` describes, and when a peer
+        # leaves there would be one for each publisher at once.
         channel: Any = zenoh.handlers.RingChannel(1)
         handler = channel if self._inbox is None else at_once(self._matching)
         listener = publisher.declare_matching_listener(handler)
         self._news = listener.handler.try_recv if self._inbox is None else _nothing
         super().__init__(session, listener, publisher)
         self.put = publisher.put
-        # Earlier listeners may have been reported by now, but their leaving never will be.
+        # Subscribers may have been reported by now, but their leaving never will be.
         if publisher.matching_status.matching:
             self._is_wanted = True
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anybody listens. From any thread."""
+        """Whether there are subscribers. From any thread."""
         if self._news() is not None:
-            with self._lock:  # whoever is last knows the last
+            with self._lock:  # the last caller has the latest state
                 self._is_wanted = self._publisher.matching_status.matching
         return self._is_wanted
 
@@ -102,14 +102,14 @@ class _ZenohSender(_Declared):
 
     def close(self) -> None:
         if self._inbox is not None:
-            self._inbox.ready = _nothing  # it may already have been rung for
+            self._inbox.ready = _nothing  # it may already be rung
         self._news = _nothing
         super().close()
         self._is_wanted = False
 
 
 class _KeepingSender(_Declared):
-    """An advanced publisher: it keeps what it sends for late joiners."""
+    """An advanced publisher, which keeps messages for late subscribers."""
 
     is_wanted = True
 
@@ -135,7 +135,7 @@ class _ZenohRequest:
     def size(self) -> int:
         try:
             payload = self._query.payload
-        except zenoh.ZError:  # it has been answered meanwhile, as another thread looks at what waits
+        except zenoh.ZError:  # it was answered in the meantime, as another thread inspects the waiting queries
             return 0
         return 0 if payload is None else len(payload)
 
@@ -143,12 +143,12 @@ class _ZenohRequest:
     def attachment(self) -> bytes | None:
         try:
             attachment = self._query.attachment
-        except zenoh.ZError:  # likewise
+        except zenoh.ZError:  # it was answered in the meantime
             return None
         return attachment.to_bytes() if attachment is not None else None
 
     def reply(self, payload: Payload, attachment: bytes) -> None:
-        with self._query as query:  # whether the answer may be dropped is what the query says of itself
+        with self._query as query:  # the query itself determines whether the reply may be dropped
             query.reply(self._key, payload, attachment=attachment)
 
     def reply_error(self, payload: bytes) -> None:
@@ -167,7 +167,7 @@ class _ZenohCaller(_Declared):
         listener = querier.declare_matching_listener(at_once(inbox.put))
         super().__init__(session, listener, querier)
         self._querier, self._bell = querier, session.bell
-        # What the listener reports comes later than this, and in order.
+        # The listener reports after this, and in order.
         self.has_server: bool = querier.matching_status.matching  # type: ignore[attr-defined]
 
     def call(
@@ -207,14 +207,14 @@ def _answer(reply: zenoh.Reply) -> Answer:
 
 
 class ZenohSession:
-    """A node process's session: a peer on loopback that finds the others through the rendezvous.
+    """A node process's session: a peer on loopback that discovers the others through the rendezvous.
 
     Args:
-        loop: The loop that everything is delivered on.
+        loop: The loop for all deliveries.
         mode: `peer`, or `client` to pass all traffic through the rendezvous.
 
     Raises:
-        TransportError: Zenoh refused.
+        TransportError: Zenoh failed.
     """
 
     def __init__(self, loop: AbstractEventLoop, mode: str = "peer") -> None:
@@ -225,15 +225,15 @@ class ZenohSession:
         self.bell = Bell(loop)
         self.loop = loop
         self.left: list[tuple[Any, ...]] | None = None
-        """Declarations that the session's end will withdraw; kept, since Zenoh withdraws one that nobody refers to."""
+        """Declarations that closing the session will withdraw; referenced, since Zenoh withdraws unreferenced ones."""
         self._proof = -1
-        """The file by which others know that this process is on their machine."""
+        """The file that proves to other processes that this one is on their machine."""
 
     def open_sender(
         self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
     ) -> _ZenohSender | _KeepingSender:
         reliable = qos.reliability is Reliability.RELIABLE
-        # DROP even for reliable topics: with BLOCK one stopped receiver holds the sending loop for seconds.
+        # DROP even for reliable topics: with BLOCK one stopped receiver blocks the sending loop for seconds.
         options: dict[str, Any] = {
             "congestion_control": zenoh.CongestionControl.DROP,
             "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
@@ -259,7 +259,7 @@ class ZenohSession:
         origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
             put = _copying(inbox) if isinstance(inbox, DeepInbox) else inbox.put
-            # Answers come directly, and so would overtake what waits for the subscription's own thread.
+            # Replies arrive directly, and would overtake samples that wait for the subscription's own thread.
             handler = at_once(put) if in_order else put
             return _Declared(self, self.raw.declare_subscriber(key, handler, allowed_origin=origin))
         ext = load_ext()
@@ -337,7 +337,7 @@ class ZenohSession:
             for _ in range(min(WATCHED_AT_ONCE, len(inbox.items))):
                 sample = inbox.items.popleft()
                 changed(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
-            if inbox.items:  # a storm of tokens must not hold the loop
+            if inbox.items:  # a storm of tokens must not monopolize the loop
                 self.loop.call_soon(deliver)
 
         inbox = Inbox(self.bell, None, deliver)
@@ -393,7 +393,7 @@ class ZenohSession:
         )
 
     def watch_transports(self, changed: Callable[[str, bool], None]) -> _Declared:
-        """Call `changed(zid, alive)` on the loop whenever a connection to another session begins or ends."""
+        """Call `changed(zid, alive)` on the loop whenever a connection to another session starts or ends."""
 
         def deliver() -> None:
             while inbox.items:
@@ -405,7 +405,7 @@ class ZenohSession:
         return _Declared(self, listener)
 
     def routers(self) -> list[str]:
-        """Ids of the routers this session is connected to."""
+        """Return the ids of the routers that this session is connected to."""
         return [str(zid) for zid in self.raw.info.routers_zid()]
 
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
@@ -426,14 +426,14 @@ class ZenohSession:
 
 
 class _Bytes(bytes):
-    """An attachment that is no longer Zenoh's."""
+    """An attachment copied out of Zenoh's memory."""
 
     def to_bytes(self) -> bytes:
         return self
 
 
 class _Copied:
-    """A sample of which nothing is Zenoh's any more."""
+    """A sample copied out of Zenoh's memory."""
 
     __slots__ = ("_data", "attachment")
 
@@ -453,7 +453,7 @@ class _Copied:
 
 
 def _copying(inbox: Inbox) -> Callable[[zenoh.Sample], None]:
-    """Puts copies into a queue that may hold many: a small sample keeps alive the whole buffer that it arrived in."""
+    """Return a callback that queues copies: a small sample would keep the whole buffer alive that it arrived in."""
 
     def put(sample: zenoh.Sample) -> None:
         payload = sample.payload
@@ -464,4 +464,4 @@ def _copying(inbox: Inbox) -> Callable[[zenoh.Sample], None]:
 
 
 def _nothing() -> None:
-    """Nothing is delivered any more."""
+    """Do nothing: the session is closed."""

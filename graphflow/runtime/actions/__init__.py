@@ -1,1 +1,1 @@
-"""Actions as they run: `server`, `client`, and the reasons of goals that were not reached."""
+"""Actions: servers, clients, and the reasons of rejected and aborted goals."""

@@ -1,4 +1,4 @@
-"""The client's side of actions: goals that are sent, followed, and cancelled when their block is left."""
+"""Action clients: send goals, follow them, and cancel them when their block exits."""
 
 from __future__ import annotations
 
@@ -45,37 +45,37 @@ from graphflow.wire.goal_status import states_in
 from graphflow.wire.liveliness import Kind
 
 CANCEL_TIMEOUT = 2.0
-"""Seconds that leaving a goal's block waits for the goal's end."""
+"""Seconds to wait for a goal's end when its block exits."""
 _STATES = frozenset(state for state in GoalStatus if state >= 0)
-"""The states of ROS 2."""
+"""The goal states that ROS 2 defines."""
 LOST_GRACE = 1.0
-"""Seconds in which a lost server may prove to be alive, and feedback may come after the result."""
+"""Seconds for a lost server to reappear, and for feedback to arrive after the result."""
 RESULT_PATIENCE, RESULT_LONGEST = 10.0, 600.0
-"""Seconds until a result is requested again: at first, and at most."""
+"""Seconds until a result is requested again: the first time, and at most."""
 FEEDBACK_KEPT = 100
-"""Feedback messages kept for a slow reader; the oldest go first."""
+"""Feedback messages buffered for a slow reader; the oldest are dropped."""
 
 
 class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
-    """A goal at its client."""
+    """A goal, as its client sees it."""
 
     def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
         self.request = request
         self.goal_id = os.urandom(16)
         self.status = GoalStatus.UNKNOWN
-        """The goal's status as known here; `LOST` when the server has gone."""
+        """The last known status of the goal; `LOST` when the server has gone."""
         self.latest: Feedback | None = None
-        """The last feedback."""
-        self.is_asked_again = False
+        """The latest feedback; None until one arrives."""
+        self.is_requested_again = False
         self.dropped = 0
-        """Feedback messages that were not read in time."""
+        """Feedback messages dropped because a reader was too slow."""
         loop = client.host.context.loop
         self.ended: Future[Result] = loop.create_future()
         self._client = client
         self._readers: list[tuple[deque[Feedback], list[Future[None]]]] = []
-        """For each iteration of the feedback: what it has not read, and what it waits for."""
+        """For each iteration of the feedback: its unread messages, and the future it waits for."""
         self._unread: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
-        """Feedback that came before any iteration."""
+        """Feedback that arrived before any iteration."""
         self.action = client.name
         self.began_ns = client.host.context.clock.monotonic_ns()
 
@@ -86,8 +86,8 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
         action: Any = self._client.type
         if name in action.Result.__struct_fields__:
             return f"that is the goal; its result is (await goal.result()).{name}"
-        is_told = name in action.Feedback.__struct_fields__
-        return "that is the goal; its feedback is read: async for feedback in goal.feedback():" if is_told else ""
+        is_feedback = name in action.Feedback.__struct_fields__
+        return "that is the goal; its feedback is read: async for feedback in goal.feedback():" if is_feedback else ""
 
     @property
     def done(self) -> bool:
@@ -95,7 +95,7 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
         return self.status.is_terminal
 
     async def feedback(self) -> AsyncIterator[Feedback]:
-        """Every feedback, until the goal ends; the first iteration begins with what has come before it."""
+        """Iterate over the feedback until the goal ends; the first iteration starts with the feedback so far."""
         ledger, loop = self._client.host.context.ledger, self._client.host.context.loop
         queue: deque[Feedback] = deque(self._unread, FEEDBACK_KEPT)
         self._unread.clear()
@@ -114,16 +114,16 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
             self._readers.remove(reader)
 
     async def result(self, *, timeout: float | None = None) -> Result:
-        """Wait for the result of a goal that succeeds.
+        """Wait for the goal to succeed; returns its result.
 
         Args:
-            timeout: Seconds; None to wait as long as it takes.
+            timeout: Seconds; None for no limit.
 
         Raises:
-            GoalAborted, GoalCanceled: The goal ended so; the error's `result` is what the server sent with it.
+            GoalAborted, GoalCanceled: The goal did not succeed; the error's `result` is the server's final result.
             GoalLost: The server has gone.
-            DeadlockError: The goal cannot end: the server waits for the caller, and the graph's policy is `break`.
-            TimeoutError: The goal has not ended in time, and goes on.
+            DeadlockError: The server waits for the caller, and the graph's deadlock policy is `break`.
+            TimeoutError: The goal has not ended in time; it keeps running.
         """
         if timeout is not None:
             async with self._client.host.clock.timeout(timeout):
@@ -132,7 +132,7 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
             return await ended
 
     async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
-        """Ask the server to cancel the goal; returns whether it agrees. The goal ends later, perhaps another way.
+        """Request cancellation; returns whether the server accepts. The goal ends later, and may still succeed.
 
         Raises:
             CallError: The server did not answer.
@@ -140,7 +140,7 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
         return await self._client.cancel(self, timeout=timeout)
 
     def heard(self, feedback: Feedback) -> None:
-        """Feedback has come. Called by the client."""
+        """Receive feedback. Called by the client."""
         self.latest = feedback
         for queue in [queue for queue, _ in self._readers] or [self._unread]:
             self.dropped += len(queue) == FEEDBACK_KEPT
@@ -148,7 +148,7 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
         self._wake()
 
     def end(self, status: GoalStatus, result: Any, error: GoalError | None) -> None:
-        """The goal has ended. Called by the client."""
+        """Record the end of the goal. Called by the client."""
         if self.done:
             return
         self.status = status
@@ -157,7 +157,7 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
                 self.ended.set_result(result)
             else:
                 self.ended.set_exception(error)
-                self.ended.exception()  # a caller that does not ask for the result does not get its error either
+                self.ended.exception()  # a caller that never awaits the result must not get a warning about its error
         self._wake()
 
     def _wake(self) -> None:
@@ -168,7 +168,7 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
 
 
 class Sending(Unentered["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goal, Result, Feedback]):
-    """A goal for the length of a block; see `GoalClient.send`."""
+    """The context manager that `GoalClient.send` returns: a goal for the length of a block."""
 
     def __init__(
         self, client: GoalClient[Goal, Result, Feedback], goal: Goal, timeout: float | None, *, detach: bool
@@ -187,17 +187,17 @@ class Sending(Unentered["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goa
         if not self._detach and not self._sent.done:
             await self._client.leave(self._sent)
 
-    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
+    if not TYPE_CHECKING:  # type checkers must keep reporting unknown attributes
 
         def __getattr__(self, name: str) -> object:
-            """Raise AttributeError: the goal is not sent yet."""
+            """Raise AttributeError: the goal has not been sent yet."""
             self._is_known = True
             text = f"the goal is not sent yet, and has no {name!r}: write `async with client.send(goal) as sent:`"
             raise AttributeError(text, name=name, obj=self)
 
 
 class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
-    """A client of an action, as it runs."""
+    """An action client."""
 
     MAKER = 'create_action_client(Type, "name")'
 
@@ -206,7 +206,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self._goal_class: type[Any] = registry.interface_class(f"{type_.NAME}_Goal")
         self._goals: dict[bytes, ClientGoalHandle[Goal, Result, Feedback]] = {}
         self._running = set[bytes]()
-        """The ids of goals that have not ended, and of some that have since the last status message."""
+        """Ids of goals that have not ended, and of some that ended since the last status message."""
         self._followers: set[asyncio.Task[None]] = set()
         self._unserved = Unserved(host, self._nobody)
         self._send: ServiceClient[Any, Any] = self._service("send_goal", f"{type_.NAME}_SendGoal")
@@ -235,7 +235,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             endpoint.open()
 
     def close(self) -> None:
-        """Withdraw the client. Goals go on at their server; their end is not reported here."""
+        """Close the client. Its goals keep running at the server, but their end is not reported here."""
         for task in self._followers:
             task.cancel()
         for goal in list(self._goals.values()):
@@ -245,15 +245,15 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self.host.forget(self)
 
     def server_is_ready(self) -> bool:
-        """Whether an action server of this name and type is in the graph, with all five of its parts."""
+        """Whether an action server of this name and type is in the graph, with all its five entities."""
         services = (self._send, self._cancel, self._get)
         return all(s.service_is_ready() for s in services) and bool(self._feedback.matched and self._status.matched)
 
     async def wait_ready(self, timeout: float | None = None) -> bool:
-        """Wait until there is a server; returns whether there is one.
+        """Wait for a server; returns whether one is ready.
 
         Args:
-            timeout: Seconds; None to wait as long as it takes.
+            timeout: Seconds; None for no limit.
         """
         return await self._wait_ready(timeout)
 
@@ -275,7 +275,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             await topic.wait_matched()
 
     async def expect_ready(self, timeout: float | None) -> None:
-        """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
+        """Wait for a server as `wait_ready`, but raise ServiceUnavailable if none is ready in time."""
         if not await self._wait_ready(timeout, raises=True):
             alone = await alone_here(self.host.context, self.host.full_name)
             raise ServiceUnavailable(f"{await self._nobody()}{alone}")
@@ -289,7 +289,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def send(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
     ) -> Sending[Goal, Result, Feedback]:
-        """Send a goal for the length of a block: leaving it before the goal has ended cancels the goal.
+        """Send a goal for the length of a block; the goal is cancelled if the block exits before it has ended.
 
             async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal:
                 async for feedback in goal.feedback():
@@ -297,20 +297,20 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 result = await goal.result()
 
         Args:
-            timeout: Seconds until the server must have accepted.
-            detach: Let the goal go on when the block is left.
+            timeout: Seconds for the server to accept the goal.
+            detach: Whether the goal keeps running after the block.
 
         Raises:
-            GoalRejected: The server does not accept the goal.
-            CallError: The server did not answer, or there is none.
-            EncodeError: The goal does not fit its type.
+            GoalRejected: The server rejected the goal.
+            CallError: The server did not answer in time, or there is none.
+            EncodeError: A field does not fit its type.
         """
         return Sending(self, goal, timeout, detach=detach)
 
     async def send_goal(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT
     ) -> ClientGoalHandle[Goal, Result, Feedback]:
-        """Send a goal that goes on whatever becomes of the caller. Arguments and errors as for `send`."""
+        """Send a goal that keeps running after the caller has ended. Arguments and errors as for `send`."""
         if goal.__class__ is not self._goal_class:
             wanted = self._goal_class.__qualname__
             raise EncodeError(f"{self.name} takes {wanted}, not {goal!r}; write {wanted.replace('_', '.')}(...)")
@@ -319,7 +319,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         )
         sent = ClientGoalHandle(self, goal)
         self._running.add(sent.goal_id)
-        self._goals[sent.goal_id] = sent  # before it is sent: news about it may come before the response
+        self._goals[sent.goal_id] = sent  # registered first: its status may arrive before the response
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
         may_be_there = False
         try:
@@ -331,10 +331,10 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             self._forget(sent)
             if may_be_there and self._cancel.is_open:
                 withdrawing = self._in_background(self._withdraw(sent))
-                if isinstance(error, CancelledError):  # a cancelled caller may end the node next
+                if isinstance(error, CancelledError):  # the caller's node may be about to stop
                     await _seen_through(withdrawing)
             raise
-        except BaseException:  # whatever it is, there is no goal to follow
+        except BaseException:  # any failure, cancellation included: no goal is left to follow
             self._forget(sent)
             raise
         if not answer.accepted:
@@ -349,17 +349,17 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     async def cancel(
         self, goal: ClientGoalHandle[Goal, Result, Feedback], *, timeout: float | None = CALL_TIMEOUT
     ) -> bool:
-        """The same as `ClientGoalHandle.cancel`."""
+        """Request cancellation, as `ClientGoalHandle.cancel` does."""
         answer = await self._cancel.call(self._cancel_request(goal), timeout=timeout)
         granted = [bytes(info.goal_id.uuid) for info in answer.goals_canceling]
-        # rclpy's servers answer ERROR_NONE with an empty list when they refuse.
+        # rclpy's servers refuse with ERROR_NONE and an empty list.
         return answer.return_code == CancelCode.NONE and goal.goal_id in granted
 
     def _cancel_request(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
         return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
 
     async def leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        """Cancel a goal whose block is left, and wait a little for its end, even if leaving is cancelled."""
+        """Cancel a goal whose block exits, and briefly wait for its end, even if the caller is cancelled."""
         await _seen_through(self._in_background(self._cancel_and_wait(goal)))
 
     async def _cancel_and_wait(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
@@ -369,20 +369,20 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 if answer.return_code == CancelCode.REJECTED:
                     self.host.log.warning("%s: the server refuses to cancel %r, which goes on", self.name, goal)
                     return
-                with suppress(GoalError):  # only its end is waited for
+                with suppress(GoalError):  # only the goal's end matters here
                     await asyncio.shield(goal.ended)
         except TimeoutError:
             self.host.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
         except (CallError, ClosedError) as error:
-            if not goal.status.is_terminal:  # its end was reported, and its server has gone since
+            if not goal.status.is_terminal:  # the end is known already, and only the server has gone
                 self.host.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
 
     async def _withdraw(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        with suppress(CallError, ClosedError):  # its outcome is not waited for
+        with suppress(CallError, ClosedError):  # the outcome of the cancel request does not matter here
             await self._cancel.call(self._cancel_request(goal), timeout=CANCEL_TIMEOUT)
 
     async def _follow(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        """Wait for a goal's end."""
+        """Wait for a goal to end."""
         context = self.host.context
         try:
             with context.ledger.goal(goal.ended, goal):
@@ -400,19 +400,19 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
 
     async def _take(self, goal: ClientGoalHandle[Goal, Result, Feedback], answer: Any) -> None:
-        """A goal has ended."""
+        """Record the end of a goal from its result response."""
         status = GoalStatus(answer.status)
         self._end(goal, status, answer.result, await self._why(goal) if status is GoalStatus.ABORTED else "")
 
     async def _why(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> str:
-        """Why the server has rejected or aborted a goal; empty if it does not say."""
+        """Return the server's reason for rejecting or aborting a goal; "" if it gives none."""
         for server in list(self._send.matched.values()):
             if reason := await self.host.context.reasons.ask(server.zid, goal.goal_id):
                 return reason
         return "" if self._send.matched else "its server has gone"
 
     async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
-        """The response that reports a goal's end, however long that takes."""
+        """Return the response that reports a goal's end, however long it takes."""
         request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
         patience = RESULT_PATIENCE
         while True:
@@ -420,10 +420,10 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 return await self._get.call(request, timeout=patience)
             except ServerBusy:
                 await self.host.context.clock.sleep(RESULT_PATIENCE)
-            except CallTimeout:  # it takes long, or the network has lost the request or the response
+            except CallTimeout:  # the goal takes long, or the network has lost the request or the response
                 patience = min(2 * patience, RESULT_LONGEST)
             except ServerLost:
-                # Only the connection may have been lost; then the server still knows the goal.
+                # If only the connection was lost, the server still knows the goal.
                 await self._get.expect_ready(LOST_GRACE)
 
     def _forget(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
@@ -440,7 +440,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             error = GoalAborted(f"{self.name} aborted the goal{f': {reason}' if reason else ''}", result)
         elif status is GoalStatus.CANCELED:
             error = GoalCanceled(f"the goal of {self.name} was cancelled", result)
-        elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name does not know it
+        elif status is not GoalStatus.SUCCEEDED:  # a restarted server does not know the goal
             status, error = GoalStatus.LOST, GoalLost(f"{self.name} does not know the goal: its server was replaced")
         goal.end(status, result, error)
 
@@ -462,17 +462,17 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 continue
             state = GoalStatus(number)
             if not state.is_terminal:
-                goal.status = max(goal.status, state)  # an earlier report may come later
-            elif not goal.is_asked_again and self.host.is_running:
-                # The end arrives with the result, which may have been lost.
-                goal.is_asked_again = True
-                self._in_background(self._ask_again(goal))
+                goal.status = max(goal.status, state)  # status messages may arrive out of order
+            elif not goal.is_requested_again and self.host.is_running:
+                # The result reports the end, but its response may have been lost.
+                goal.is_requested_again = True
+                self._in_background(self._request_again(goal))
 
-    async def _ask_again(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        """Request the result of a goal that has ended, if it does not come by itself."""
+    async def _request_again(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+        """Request the result of an ended goal again if no response arrives."""
         await self.host.clock.sleep(LOST_GRACE)
         if not goal.done:
-            with suppress(CallError, ClosedError):  # the task that follows the goal keeps asking
+            with suppress(CallError, ClosedError):  # the following task keeps requesting
                 request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
                 await self._take(goal, await self._get.call(request))
 
@@ -484,13 +484,13 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
 
 async def _seen_through(task: asyncio.Task[None]) -> None:
-    """Wait for a task to end, even if the waiting is cancelled meanwhile."""
+    """Wait for a task to end even if the wait is cancelled."""
     cancelled: CancelledError | None = None
     while not task.done():
         try:
             await asyncio.shield(task)
         except CancelledError as error:
-            if not task.cancelled():  # which happens when the client is closed
+            if not task.cancelled():  # closing the client cancels it
                 cancelled = error
     if cancelled is not None:
         raise cancelled

@@ -1,8 +1,8 @@
-"""Why goals were rejected or aborted: what ROS 2's messages have no room for, asked on a key that it does not know.
+"""Reasons for rejected and aborted goals, which ROS 2's messages cannot carry, on a query key unknown to ROS 2.
 
     @graphflow/<domain>/goals/<server's zid>      a goal's id -> the reason, as text
 
-A client asks when it has been told that its goal is rejected or aborted; a server of another kind does not answer.
+A client queries the key after its goal was rejected or aborted; servers other than graphflow's do not answer.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from graphflow.wire import attachment
 from graphflow.wire.process import GOALS, answer_key
 
 KEPT = 1_000
-"""Reasons that are remembered."""
+"""Reasons kept."""
 LONGEST = 1_000
-"""Characters of a reason that are sent."""
+"""Longest reason sent, in characters."""
 PATIENCE = 0.5
-"""Seconds that a server has to say why."""
+"""Seconds to wait for a server's reason."""
 AT_ONCE = 64
-"""Questions that are answered before others have a turn of the loop."""
+"""Queries answered per iteration of the event loop."""
 _ID_SIZE = 16
-"""Bytes of a goal's id."""
+"""Bytes in a goal's id."""
 
 
 class Reasons:
-    """The reasons of one process's action servers, and the way to ask for those of others."""
+    """The reasons of one process's action servers, and queries for those of other processes."""
 
     def __init__(self, session: Session, domain: int) -> None:
         self._session, self._domain = session, domain
@@ -37,13 +37,13 @@ class Reasons:
         self._server: Closable | None = None
 
     def open(self) -> None:
-        """Answer from now on."""
+        """Start answering queries."""
         if self._server is None:
             key = answer_key(self._domain, GOALS, self._session.zid)
             self._server = self._session.open_server(key, self._inbox, is_paced=True)
 
     def note(self, goal_id: bytes, reason: str) -> None:
-        """Remember why a goal did not come to its end."""
+        """Store the reason why a goal was rejected or aborted."""
         self._by_goal[goal_id] = reason[:LONGEST]
         while len(self._by_goal) > KEPT:
             self._by_goal.popitem(last=False)
@@ -53,11 +53,11 @@ class Reasons:
             request = self._inbox.items.popleft()
             goal_id = bytes(request.payload[:_ID_SIZE])
             request.reply(self._by_goal.get(goal_id, "").encode(), attachment.pack(0, 0, bytes(_ID_SIZE)))
-        if self._inbox.items:  # whoever asks all the time must not hold the loop
+        if self._inbox.items:  # a client that queries without pause must not monopolize the loop
             asyncio.get_running_loop().call_soon(self._asked)
 
     async def ask(self, zid: str, goal_id: bytes) -> str:
-        """Why a goal of another process's server did not come to its end; empty if that says nothing."""
+        """Query another process for a goal's reason; returns "" if it has none."""
         if zid == self._session.zid:
             return self._by_goal.get(goal_id, "")
         told: asyncio.Future[Answer | None] = asyncio.get_running_loop().create_future()
@@ -82,6 +82,6 @@ class Reasons:
         return printable(bytes(answer.payload)[: 4 * LONGEST].decode(errors="replace")[:LONGEST])
 
     def close(self) -> None:
-        """Answer no more."""
+        """Stop answering queries."""
         if self._server is not None:
             self._server.close()

@@ -1,11 +1,10 @@
-"""The server's side of actions: goals that are accepted, run under a group, cancelled and remembered.
+"""Action servers: accept goals, run them in a group, cancel them and keep their results.
 
 On the network an action is five ordinary entities: the services send_goal, cancel_goal and get_result and the topics
-feedback and status. The services are the control lane: they never wait for a group of the user's, so that a goal can
-be cancelled, and asked for, whatever its group is doing. Only the goal's body takes a slot.
+feedback and status. The services never wait for a user's group, so that a goal can be cancelled and its result be
+requested while the group is full. Only the goal's handler takes a slot.
 
-What becomes of a goal is decided by the table in `machines.goal`; `ActionServer` feeds it events and does what
-it says.
+The state machine in `machines.goal` decides; `ActionServer` feeds it events and carries out its effects.
 
 Source: rcl_action, for the wire.
 """
@@ -41,9 +40,9 @@ from graphflow.wire.goal_status import GoalStates
 from graphflow.wire.liveliness import Entity
 
 RESULT_KEPT = 900.0
-"""Seconds that a result can be requested after the goal's end."""
+"""Seconds that a result is kept after the goal's end."""
 STATUS_KEPT = 10.0
-"""Seconds that an ended goal stays in the status list, as in ROS 2."""
+"""Seconds that an ended goal stays in the status array, as in ROS 2."""
 RESULTS_KEPT = 1_000
 _RETURNED_ALL_THE_SAME = (
     "%s: %r was cancelled, and its handler returned a result all the same: the goal succeeds. To end it as cancelled, "
@@ -53,7 +52,7 @@ _WHY = {GoalEvent.NEWER: "a newer goal has come"}
 
 
 class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
-    """A goal at its server: what the action's handler gets."""
+    """A goal, as its server and handler see it."""
 
     def __init__(
         self, server: ActionServer[Goal, Result, Feedback], goal_id: bytes, request: Goal, record: GoalRecord
@@ -62,13 +61,13 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
         self.partial: Result = server.result_class()
         self.record = record
         self.result: Result | None = None
-        """The result with which the goal ended."""
+        """The result of the ended goal."""
         self.reason = ""
-        """Why the goal was aborted."""
+        """The reason why the goal was aborted; "" for none."""
         self.waiters: list[Future[None]] = []
-        """What waits for the goal's end."""
+        """Futures of get_result requests that wait for the goal's end."""
         self.decided = asyncio.Event()
-        """Set when it is decided whether the goal is accepted."""
+        """Set when the goal has been accepted or rejected."""
         self._server, self._id = server, goal_id
 
     def __repr__(self) -> str:
@@ -95,7 +94,7 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
 
     @property
     def is_over(self) -> bool:
-        """Whether the goal has ended, however long ago."""
+        """Whether the goal has ended."""
         return self.record.phase.is_over
 
     def feedback(self, feedback: Feedback) -> None:
@@ -103,12 +102,12 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
 
 
 class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
-    """A running action server.
+    """An action server.
 
     Args:
-        callback: The handler: takes the `ServerGoalHandle`, returns the result.
-        accept: Called with the goal's message before it is accepted; False rejects it, and so does a text that says
-            why. May be `async def`.
+        callback: The handler; takes a `ServerGoalHandle` and returns the result.
+        accept: Called with the goal message; rejects the goal by returning False or the reason as text. May be an
+            `async def`.
         cancellable: Whether cancel requests are granted; or a function of the `ServerGoalHandle` that decides.
     """
 
@@ -136,14 +135,14 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         """Accepted goals, by id."""
         self.runner: Runner | None = None
         self.is_degraded = False
-        """Whether a body has outstayed its cancellation."""
+        """Whether a handler has not ended in time after its cancellation."""
         self._callback, self._label, self._group = callback, label, group
         self._accept, self._cancellable = accept, cancellable
         self._waiting: deque[Any] = deque()
         self._deciding: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
-        """Goals whose acceptance is being decided, by id."""
+        """Goals being accepted or rejected, by id."""
         self._clock: Clock
-        """Used even when the node has stopped and a body has not."""
+        """Kept for handlers that outlive the node's stop."""
         self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
         send: Any = registry.interface_class(f"{type_.NAME}_SendGoal")
@@ -154,7 +153,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self._states = GoalStates()
         self._status = RawPublisher(host, "action_msgs/msg/GoalStatusArray", f"{name}/_action/status", ACTION_STATUS)
         self._feedback: TopicPublisher[Any] = self._topic("feedback", f"{type_.NAME}_FeedbackMessage", Qos())
-        # The last to be seen is the first to be used: a client that can send a goal can do everything else.
+        # The service that clients use first is announced last: a client that can send a goal can also do the rest.
         self._send_service = _GoalService(self, send, "send_goal", self._send_goal)
         self._services = (
             _GoalService(self, get, "get_result", self._get_result),
@@ -182,7 +181,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return (self._status, self._feedback, *self._services)
 
     def statistics(self) -> dict[str, Any]:
-        """Goals begun, failed, active and waiting for their turn."""
+        """Return the numbers of goals started, failed, running and waiting for a slot."""
         runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
         return {"runs": runs, "errors": errors, "active": self.book.active(), "waiting": len(self._waiting)}
 
@@ -195,16 +194,16 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self.runner = self.host.runner(spec, self._waiting, self._group)
         for endpoint in self.endpoints:
             endpoint.open()
-        self._tell_states()
+        self._publish_states()
 
     def begin_to_stop(self) -> Runner | None:
-        """Goals that wait for their turn will not get it."""
+        """Stop starting goals; those that wait for a slot never run."""
         for goal in [*self._deciding.values(), *self.goals.values()]:
             self._step(goal, GoalEvent.STOPPING)
         return self.runner
 
     def pause(self, why: str) -> Runner | None:
-        """Reject goals; those under way are aborted."""
+        """Reject new goals and abort those that run."""
         super().pause(why)
         return self.begin_to_stop()
 
@@ -215,7 +214,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return self.runner
 
     def close(self) -> None:
-        """Withdraw the server; goals under way are cancelled."""
+        """Close the server; running goals are cancelled."""
         self.begin_to_stop()
         if self.runner is not None:
             self.runner.cancel()
@@ -223,11 +222,11 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             endpoint.close()
         self.host.forget(self)
 
-    # what clients ask
+    # requests of clients
 
     async def _send_goal(self, request: Any, client: bytes) -> Any:
         goal_id = bytes(request.goal_id.uuid)
-        if goal_id in self._deciding:  # asked twice, by a client that has not received the response
+        if goal_id in self._deciding:  # a repeated request, from a client that has not received the response
             await self._deciding[goal_id].decided.wait()
         elif goal_id not in self.book.goals:
             reason = self._why_full() or await self._decide(goal_id, request.goal, client)
@@ -240,7 +239,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return self._send_response(accepted=True, stamp=_stamp(known.accepted_ns))
 
     def _why_full(self) -> str:
-        """Why no goal can be taken now; empty if one can."""
+        """Return the reason why no goal can be accepted now; "" if one can."""
         if self.idle_because:
             return self.idle_because
         if self.runner is None or self.runner.closed:
@@ -252,24 +251,24 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return "another goal is under way, and policy='reject' allows one at a time; others: queue, preempt, parallel"
 
     async def _decide(self, goal_id: bytes, request: Goal, client: bytes) -> str:
-        """Find out whether a goal is accepted; returns why not, empty if it is."""
+        """Decide whether to accept a goal; returns the reason for a rejection, "" if accepted."""
         goal = ServedGoal(self, goal_id, request, self.book.ask(goal_id, client))
         self._deciding[goal_id] = goal
         reason = "the server stops"
         try:
-            reason = await self._why_unwanted(request) or self._why_full()
+            reason = await self._reject_reason(request) or self._why_full()
         finally:
             del self._deciding[goal_id]
             self._step(goal, GoalEvent.REFUSED if reason else GoalEvent.ACCEPTED)
             goal.decided.set()
         if not goal.is_over:
             self._forget_old()
-            # Its response goes out first.
+            # The response to send_goal goes out first.
             self.host.context.loop.call_soon(self._step, goal, GoalEvent.ANSWERED)
         return reason
 
-    async def _why_unwanted(self, goal: Goal) -> str:
-        """What `accept` has against a goal; empty for nothing."""
+    async def _reject_reason(self, goal: Goal) -> str:
+        """Call `accept`; returns its reason for a rejection, "" for none."""
         if self._accept is None:
             return ""
         limit = self.rules.accept_limit
@@ -325,18 +324,18 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return self._get_response(status=int(goal.status), result=goal.result)
 
     def client_gone(self, client: bytes) -> None:
-        """A client's token is gone; it may come back."""
+        """Note that a client's token is gone; the client may come back."""
         for goal in [*self._deciding.values(), *self.goals.values()]:
             if goal.record.client == client:
                 self._step(goal, GoalEvent.CLIENT_LOST)
 
-    # what becomes of a goal
+    # life of a goal
 
     def _step(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any = None) -> None:
-        """Do what follows from an event of a goal.
+        """Apply an event to a goal's state machine and carry out the effects.
 
         Args:
-            result: What the goal ends with, if it ends; otherwise what it has so far.
+            result: The final result if the goal ends, else the partial one.
         """
         if goal.is_over:
             return
@@ -349,7 +348,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             goal.result = self._fit_result(goal, event, goal.partial if result is None else result)
         for status in outcome.statuses:
             self._states.put(goal.goal_id, int(status))
-            self._tell_states()
+            self._publish_states()
         for do in outcome.do:
             self._carry_out(do, goal, event)
         if goal.is_over:
@@ -375,7 +374,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             case Do.LIMIT_CLEANUP:
                 self._later(self.rules.cleanup_timeout, partial(self._step, goal, GoalEvent.OUTSTAYED))
             case Do.AWAIT_CLIENT:
-                self._later(self.rules.client_grace, partial(self._look_for_client, goal))
+                self._later(self.rules.client_grace, partial(self._check_client, goal))
             case Do.DEGRADE:
                 self.is_degraded = True
                 self.host.log.error(
@@ -386,8 +385,8 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def _later(self, seconds: float, callback: Callable[[], None]) -> None:
         self._clock.call_at(self._clock.monotonic_ns() + to_ns(seconds), callback)
 
-    def _look_for_client(self, goal: ServedGoal[Goal, Result, Feedback]) -> None:
-        """A goal's client went some time ago: if it has not come back, it counts as lost."""
+    def _check_client(self, goal: ServedGoal[Goal, Result, Feedback]) -> None:
+        """Treat a goal's client as lost unless it has come back by now."""
         clients = self._send_service.matched.values()
         if self._send_service.is_open and not any(e.gid == goal.record.client for e in clients):
             if goal.status.is_cancelable:
@@ -402,7 +401,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self._step(goal, GoalEvent.DROPPED)
 
     def _finished(self, goal: ServedGoal[Goal, Result, Feedback], result: Any, error: BaseException | None) -> None:
-        if goal.is_over:  # it had outstayed its cancellation
+        if goal.is_over:  # its handler outlived the time for cleanup
             return
         if error is None:
             if result is None and not self.result_class.SCHEMA.fields:
@@ -427,7 +426,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             self._step(goal, GoalEvent.FAILED, given if given.__class__ is self.result_class else None)
 
     def _why_no_result(self, returned: Any) -> Exception | None:
-        """Why what the handler has returned cannot be sent as its result."""
+        """Return the error that keeps a handler's return value from being sent as the result; None if it can be."""
         if returned.__class__ is not self.result_class:
             return TypeError(f"it returned {returned!r}, not {name_of(self.result_class)}(...)")
         return self._why_unfit(returned)
@@ -440,7 +439,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return None
 
     def _fit_result(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any) -> Any:
-        """The result that a goal ends with: an empty one where what it has so far cannot be sent."""
+        """Return a goal's final result: an empty one if the partial result cannot be encoded."""
         if event is GoalEvent.RETURNED or (wrong := self._why_unfit(result)) is None:
             return result
         self.host.report_error(f"{self._label}, its partial result", wrong)
@@ -450,20 +449,20 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         for goal_id in self.book.expire(self._clock.monotonic_ns()):
             del self.goals[goal_id]
 
-    # what clients hear
+    # messages to clients
 
     def send_feedback(self, goal_id: bytes, feedback: Any) -> None:
-        """Tell the clients how a goal is progressing.
+        """Publish feedback of a goal.
 
         Raises:
-            TypeError: The message is not a feedback of this action.
+            TypeError: The message is not a Feedback of this action.
         """
         if feedback.__class__ is not self._feedback_class:
             raise TypeError(f"{self.name} sends feedback as {made_as(self._feedback_class)}, not {feedback!r}")
         self._feedback.publish(self._feedback_message(goal_id={"uuid": list(goal_id)}, feedback=feedback))
 
-    def _tell_states(self) -> None:
-        """Publish the goals' states."""
+    def _publish_states(self) -> None:
+        """Publish the status array."""
         for goal_id in self.book.hide(self._clock.monotonic_ns()):
             self._states.remove(goal_id)
         if self._status.is_open:
@@ -471,7 +470,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
 
 class _GoalService(ServiceServer[Any, Any]):
-    """One of an action's services; its callback also gets the client that asks."""
+    """One of an action's services; its callback also takes the client's GID."""
 
     def __init__(self, server: ActionServer[Any, Any, Any], type_: Any, part: str, callback: Any) -> None:
         name = f"{server.name}/_action/{part}"
@@ -491,7 +490,7 @@ class _GoalService(ServiceServer[Any, Any]):
 
 
 def _info(goal: ServedGoal[Any, Any, Any]) -> dict[str, Any]:
-    """The fields of an `action_msgs/msg/GoalInfo`."""
+    """Return the fields of an `action_msgs/msg/GoalInfo`."""
     return {"goal_id": {"uuid": list(goal.goal_id)}, "stamp": _stamp(goal.record.accepted_ns)}
 
 

@@ -1,4 +1,4 @@
-"""The declarations of a node class, merged with its parents' and checked.
+"""Declarations of a node class, merged with its parents' and checked.
 
-Begin with `declare` (what a class holds) and `handlers` (what it does); `binding` applies them to a node.
+Start with `declare` (attributes) and `handlers` (methods); `binding` applies both to a node.
 """

@@ -1,4 +1,4 @@
-"""A class's declarations applied to one node: endpoints made, handlers attached, parameters followed."""
+"""Application of a class's declarations to one node: endpoints, handlers and parameter hooks."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from graphflow.runtime.part import Host
 from graphflow.times import to_ns
 
 CHAIN = 100
-"""Changes in a second, each made by a method that follows the one before, after which no further one is followed."""
+"""Limit of parameter changes in a second that each result from a hook on the change before."""
 
 
 class Creator(Protocol):
-    """The methods of a node that create what is declared."""
+    """The methods of a node that create its endpoints."""
 
     @property
     def create_publisher(self) -> Callable[..., Any]: ...
@@ -51,10 +51,10 @@ class Creator(Protocol):
 
 
 class Binding:
-    """What the declarations of a node's class have become.
+    """The runtime objects of one node's declarations.
 
     Attributes:
-        held: What the node holds, by attribute.
+        held: Endpoints and parameter values, by attribute.
     """
 
     def __init__(self, node: Creator, host: Host, parameters: Parameters) -> None:
@@ -66,7 +66,7 @@ class Binding:
         self._followers: dict[str, _Follower] = {}
 
     def bind_parameters(self) -> None:
-        """Declare the parameters: names and periods of everything else may come from them."""
+        """Declare the parameters; they come first, since the periods of timers may refer to them."""
         for parameter in COMMON_PARAMETERS.values():
             self._parameters.declare(parameter)
         for attribute, item in declared.held(self._class).items():
@@ -76,14 +76,14 @@ class Binding:
         self._parameters.observe(self._changed)
 
     def bind(self) -> None:
-        """Make endpoints, handlers and timers."""
+        """Create the endpoints, handlers and timers."""
         for attribute, item in declared.held(self._class).items():
             if not isinstance(item, Param):
-                self.held[attribute] = self._made(item)
+                self.held[attribute] = self._create(item)
         for attribute, handler in declared.handlers(self._class).items():
             self._bind_handler(getattr(self._node, attribute), handler)
 
-    def _made(self, item: Held) -> Any:
+    def _create(self, item: Held) -> Any:
         node = self._node
         match item:
             case Publisher():
@@ -98,9 +98,9 @@ class Binding:
         raise TypeError(f"{item!r} cannot be made")
 
     def _method(self, fn: Any) -> Any:
-        """A function of the class body, as a method of the node; a child class may have overridden it.
+        """Return a function of the class body as the node's method, which a subclass may have overridden.
 
-        One that the class does not have by its name, such as a lambda, is bound as it is.
+        A function that is not an attribute of the class, such as a lambda, is bound as it is.
         """
         if not inspect.isfunction(fn):
             return fn
@@ -165,17 +165,17 @@ class Binding:
                 self._followers[attribute].follow(change)
 
     def runners(self) -> list[Runner]:
-        """The runners of methods that follow parameters, for the node to end."""
+        """Return the runners of `on_change` methods, which the node stops."""
         return [follower.runner for follower in self._followers.values()]
 
 
 @dataclass(slots=True)
 class _Turn:
-    """A call of a method that follows a parameter.
+    """One call of an `on_change` method.
 
     Attributes:
-        length: How many calls led to it, each by setting a parameter itself.
-        began_ns: When the first of them was due.
+        length: Number of `on_change` calls before it in the chain, each of which set a parameter.
+        began_ns: When the first call of the chain was due.
     """
 
     change: ParameterChange
@@ -185,11 +185,11 @@ class _Turn:
 
 
 _turn: ContextVar[_Turn | None] = ContextVar("turn", default=None)
-"""The call of a method that follows a parameter in which this code runs."""
+"""The `on_change` call that the current code runs in."""
 
 
 class _Follower:
-    """Calls a method with the changes of a parameter, one at a time."""
+    """The calls of one `on_change` method, one at a time."""
 
     def __init__(self, host: Host, method: Callable[[Any, Any], Any], parameter: str) -> None:
         self._host, self._method, self._parameter = host, method, parameter
@@ -201,13 +201,13 @@ class _Follower:
         turn, now = _turn.get(), self._host.clock.monotonic_ns()
         length, began_ns = (0, now) if turn is None or turn.is_over else (turn.length + 1, turn.began_ns)
         if length >= CHAIN and now - began_ns < to_ns(1.0):
-            text = "%s follows %r, and each change of it makes another, %d in a row: no further one is followed; "
+            text = "%s follows %r, and each change causes another, %d in a row: further changes are not followed; "
             text += "set a parameter there only where it differs, as in `if new > 2.0: self.%s = 2.0`"
             self._host.log.error(text, self._method.__name__, self._parameter, CHAIN, self._parameter)
             return
         self._turns.append(_Turn(change, length, began_ns))
         if inspect.iscoroutinefunction(self._method):
-            # Its first step must not run inside the code that set the parameter, which may itself be a handler.
+            # The first step must not run inside the code that set the parameter, which may itself be a handler.
             self._host.context.loop.call_soon(self.runner.wake)
         else:
             self.runner.wake()
@@ -226,6 +226,6 @@ class _Follower:
         await self._method(turn.change.old, turn.change.new)
 
     def _finished(self, turn: _Turn, result: Any, error: BaseException | None) -> None:
-        turn.is_over = True  # what it has started goes on in a context that has the turn, too
+        turn.is_over = True  # tasks it has started inherit the context variable, and start a new chain
         if error is not None:
             self._host.handler_failed(self._method.__name__, error)

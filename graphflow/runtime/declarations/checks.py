@@ -1,4 +1,4 @@
-"""Checks that declarations must pass when they are made; each error names the place and what to write instead.
+"""Checks of declarations at class creation; each error has the place and the correct form.
 
 Every check raises DeclarationError.
 """
@@ -18,11 +18,11 @@ from graphflow.names import expand
 from graphflow.qos import Qos
 
 DEPTH = 10
-"""The depth of a queue when none is given."""
+"""Default depth of a queue."""
 
 
 def check_node(node: object) -> None:
-    """Check that what is to be run is a node."""
+    """Check that an object passed to `run` is a node."""
     if isinstance(node, type):
         raise DeclarationError(f"{node.__name__} is a class; make a node of it: {node.__name__}()")
     if isinstance(node, (list, tuple)):
@@ -34,13 +34,13 @@ def check_node(node: object) -> None:
 def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
     """Check that `type_` is a message, service or action class."""
     if not (isinstance(type_, type) and issubclass(type_, kind)):
-        hint = _of_text(type_) if isinstance(type_, str) else _other_kind(type_, kind)
+        hint = _text_hint(type_) if isinstance(type_, str) else _kind_hint(type_, kind)
         wanted = f"{'an' if kind is base.Action else 'a'} {kind.__name__.lower()} class"
         raise DeclarationError(f"{place}: {what} needs {wanted}, not {type_!r}{hint}")
 
 
-def _of_text(text: str) -> str:
-    """Say how a type is written that was given as text, as `ros2` takes it; or that the text is the name."""
+def _text_hint(text: str) -> str:
+    """Return a hint for a type given as text, as `ros2` takes it, or for swapped arguments."""
     found = re.fullmatch(r"(\w+)[/.](msg|srv|action)[/.](\w+)", text)
     if found is None:
         return "; the type comes first, then the name"
@@ -48,8 +48,8 @@ def _of_text(text: str) -> str:
     return f"; write from graphflow.msgs.{package}.{kind} import {name}, and then {name} without quotes"
 
 
-def _other_kind(type_: Any, kind: type) -> str:
-    """Say which kind of interface a class is that was given in place of another kind."""
+def _kind_hint(type_: Any, kind: type) -> str:
+    """Return a hint for a class of another kind of interface."""
     if not isinstance(type_, type):
         return ""
     whole, _, part = type_.__name__.rpartition("_")
@@ -66,7 +66,7 @@ def _other_kind(type_: Any, kind: type) -> str:
 
 
 def check_text(name: Any, what: str, place: Place) -> None:
-    """Check that what stands in the place of a name is text."""
+    """Check that the argument `name` is text."""
     if not isinstance(name, str):
         raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is not a name")
 
@@ -81,7 +81,7 @@ def check_name(name: Any, what: str, place: Place) -> None:
 
 
 def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
-    """The requested profile, given as either `qos` or `depth`."""
+    """Return the requested profile, from either `qos` or `depth`."""
     if depth is not None and qos != DEPTH:
         raise DeclarationError(f"{place}: give a Qos or a depth, not both: Qos(depth={depth!r}, ...) is both in one")
     asked = qos if depth is None else depth
@@ -97,7 +97,7 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
 
 
 def positional(fn: Any) -> tuple[list[str], int] | None:
-    """The arguments that a function must be given by position, and how many it can be given; None: it does not say."""
+    """Return the required positional arguments' names and the most accepted; None if there is no limit."""
     try:
         parameters = inspect.signature(fn).parameters.values()
     except (TypeError, ValueError):
@@ -109,22 +109,22 @@ def positional(fn: Any) -> tuple[list[str], int] | None:
 
 
 def written_at(fn: Any) -> str:
-    """Where a function is written, as `file:line`; empty for one that is not written in Python."""
+    """Return the place of a function as `file:line`; "" if it is not written in Python."""
     code = getattr(inspect.unwrap(fn), "__code__", None)
     return "" if code is None else str(Place(code.co_filename, code.co_firstlineno))
 
 
 def check_function(fn: Any, what: str, example: str) -> None:
-    """Check that what is to be called can be: it may have been called already, as in `spawn(self.work())`.
+    """Check that `fn` is a function rather than the result of a call, as in `spawn(self.work())`.
 
     Args:
-        example: How the call is written.
+        example: The correct call.
     """
     if callable(fn):
         return
     shown = repr(fn)
     if inspect.iscoroutine(fn):
-        fn.close()  # or Python complains of it as well
+        fn.close()  # or Python warns that it was never awaited, too
         shown = f"what {fn.__qualname__}(...) returns"
     raise DeclarationError(f"{what} takes the function itself and then its arguments: {example}, not {shown}")
 
@@ -139,7 +139,7 @@ def check_plain(fn: Any, what: str) -> None:
 
 
 def check_callback(callback: Any, arguments: range, what: str, place: Place, hint: str = "") -> int:
-    """Check that a handler can be called, with as many arguments as it will be given; returns with how many."""
+    """Check that a handler accepts one of these numbers of arguments; returns the number."""
     if not callable(callback):
         if inspect.iscoroutine(callback):
             callback.close()
@@ -160,12 +160,12 @@ def check_callback(callback: Any, arguments: range, what: str, place: Place, hin
 
 
 def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: Place) -> None:
-    """Check that a function is not written for messages of other types than those that it will be given.
+    """Check that a function's annotations agree with the messages that it receives.
 
     Args:
-        expected: The classes of its arguments, after `self`, by what they are called.
+        expected: The classes of its arguments, after `self`, by their names in error texts.
 
-    An annotation that is no message class is the user's affair.
+    Annotations other than message classes are not checked.
     """
     parameters = list(inspect.signature(fn).parameters.values())[1:]
     for parameter, (called, wanted) in zip(parameters, expected.items(), strict=False):
@@ -178,10 +178,10 @@ def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: P
 
 
 def check_returned(fn: Any, called: str, wanted: type, what: str, place: Place) -> None:
-    """Check that a handler is not annotated to return something else than it must.
+    """Check that a handler's return annotation agrees with the type that it must return.
 
     Args:
-        called: What the wanted class is called.
+        called: The name of the wanted class in error texts.
     """
     annotation = inspect.signature(fn).return_annotation
     found = _annotated(fn, annotation)
@@ -196,7 +196,7 @@ _PLAIN = (str, int, float, bool, bytes, list, dict, tuple)
 
 
 def _annotated(fn: Any, annotation: Any) -> Any:
-    """The class that an annotation names; None for text that is no name known to the function's module."""
+    """Return the class that an annotation names; None for text that the function's module does not define."""
     if not isinstance(annotation, str):
         return annotation
     first, *others = annotation.strip("'\"").split(".")
@@ -217,7 +217,7 @@ def check_on_event(on_event: Any, what: str, place: Place) -> None:
 
 
 def check_hook(hook: Any, word: str, argument: str, what: str, place: Place) -> None:
-    """Check that a method that is called outside of any handler takes what it is given."""
+    """Check that a hook, a method called outside of any handler, accepts its arguments."""
     takes = positional(hook) if inspect.isfunction(hook) else None
     if takes is not None and not len(takes[0]) <= 2 <= takes[1]:
         has = ", ".join(takes[0])
@@ -225,12 +225,12 @@ def check_hook(hook: Any, word: str, argument: str, what: str, place: Place) -> 
 
 
 def check_group(group: Any, kind: type | tuple[type, ...], what: str, place: Place) -> None:
-    """Check that a group is a declared one."""
+    """Check that `group` is a declared group."""
     if group is not None and not isinstance(group, kind):
         raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
 
 
 def check_on_error(on_error: Any, place: Place) -> None:
-    """Check that there is such a rule for errors."""
+    """Check that `on_error` is a known policy."""
     if on_error not in get_args(OnError):
         raise DeclarationError(f"{place}: on_error must be one of {', '.join(get_args(OnError))}, not {on_error!r}")

@@ -1,7 +1,7 @@
-"""What a node class declares that it holds: publishers, clients, parameters, groups. What it does is in `handlers`.
+"""Declarations of a node's attributes: publishers, clients, parameters and groups. Its methods are in `handlers`.
 
-A declaration is checked when the class is made and turned into data (`graphflow.interface`); nothing runs. When a
-node is made, each declaration becomes a call of the `create_*` method that the node could also have called itself.
+A declaration is checked when the class is created and becomes data (`graphflow.interface`); nothing runs. For each node
+of the class, each declaration becomes a call of the `create_*` method that the node could also call itself.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ _NUMBERS = ("int", "float", "list[int]", "list[float]")
 
 
 class _Core(Protocol):
-    """What the declarations of a class have become on one node."""
+    """A node's runtime objects, as its declarations read them."""
 
     @property
     def held(self) -> Mapping[str, Any]:
-        """What the node holds, by attribute."""
+        """Endpoints and parameter values, by attribute."""
 
     @property
     def parameters(self) -> Parameters: ...
@@ -57,13 +57,16 @@ class Bound(Protocol):
 
 
 class Group:
-    """A concurrency group: how many of its handlers' runs there may be at a time. On a node, a `HandlerGroup`.
+    """A concurrency group: limits how many of its handlers run at a time. On a node, a `HandlerGroup`.
 
     Args:
         limit: 1 for mutual exclusion (ROS 2's MutuallyExclusive), None for no limit (Reentrant).
-        when_full: What becomes of work that finds the group full: see `WhenFull`.
-        thread: Run its `def` handlers in threads, where a blocking one holds its slot but not the loop.
-        name: Its name, if not that of the attribute.
+        when_full: The policy for work that arrives while the group is full: see `WhenFull`.
+        thread: Whether `def` handlers run in threads, where a blocking one occupies its slot but not the loop.
+        name: Its name; by default the attribute's.
+
+    Raises:
+        DeclarationError: The limit or the policy is invalid.
     """
 
     @in_our_words
@@ -98,7 +101,7 @@ class Group:
 
 
 class Held(MadeByNodes):
-    """A declaration that is an attribute of the class; on a node it gives what the node holds."""
+    """A declaration as a class attribute; on a node, its runtime object."""
 
     attribute = ""
     place: Place
@@ -108,14 +111,17 @@ class Held(MadeByNodes):
 
 
 class Publisher(Held, Generic[M]):
-    """A topic the node publishes.
+    """A publisher of the node.
 
     Args:
         type: The message class.
         name: The topic: relative, absolute or `~/private`.
         qos: A profile, or a queue depth.
-        depth: The same as a number for `qos`.
+        depth: The queue depth, as an alternative to `qos`.
         on_event: A method defined above it, called with each `QosEvent`.
+
+    Raises:
+        DeclarationError: The type is not a message class, or another argument is invalid.
     """
 
     MAKER = 'create_publisher(Type, "topic", 10), or declare Publisher(Type, "topic") in the class'
@@ -146,10 +152,10 @@ class Publisher(Held, Generic[M]):
 
 
 class Subscription(Held, Generic[M]):
-    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as for `Publisher`.
+    """A subscription that the node iterates: `async for message in self.chatter`. Arguments as for `Publisher`.
 
     Args:
-        ignore_local: Leave out what this process publishes itself.
+        ignore_local: Whether to skip messages that this process publishes.
     """
 
     MAKER = 'create_subscription(Type, "topic", self.heard, 10), or declare @subscription(Type, "topic") on the method'
@@ -185,12 +191,12 @@ class Subscription(Held, Generic[M]):
 
 
 class Client(Held, Generic[Request, Response]):
-    """A service the node calls: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`.
+    """A client of a service: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`.
 
     Args:
-        introspection: What is published of each call on `name`/_service_event.
-        group: Responses wait for a slot of it, as in ROS 2, where that is a way into a deadlock; without a group they
-            need none.
+        introspection: Content of the events on `name`/_service_event: "off", "metadata" or "contents".
+        group: The group in which responses take a slot, as in ROS 2, where this is a common cause of deadlocks; by
+            default they take none.
     """
 
     MAKER = 'create_client(Type, "name"), or declare Client(Type, "name") in the class'
@@ -219,7 +225,7 @@ class Client(Held, Generic[Request, Response]):
 
 
 class ActionClient(Held, Generic[Goal, Result, Feedback]):
-    """An action whose goals the node sends: `async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal`."""
+    """A client of an action: `async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal`."""
 
     MAKER = 'create_action_client(Type, "name"), or declare ActionClient(Type, "name") in the class'
 
@@ -239,17 +245,21 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
 
 
 class Param(Held, Generic[V]):
-    """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` see and set it.
+    """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` read and set it.
 
     Args:
-        default: Its value until it is set; decides the type. A bool, int, float, str, bytes, or a list of one of them.
-        unit: For readers, such as `Hz` or `m/s`.
-        doc: One sentence.
+        default: The value until it is set, which determines the type: bool, int, float, str, bytes, or a non-empty list
+            of bool, int, float or str.
+        unit: The unit, for people, such as `Hz` or `m/s`.
+        doc: A description in one sentence.
         ge, le, gt, lt: Limits: at least, at most, more than, less than.
-        read_only: Whether it can be set only from outside and at the start.
+        read_only: Whether the value is fixed once the node is made.
         step: Distance between allowed values, counted from `ge`, or from 0.
-        choices: The values that are allowed; for a list, those of its elements.
-        name: Its name, if not that of the attribute.
+        choices: The allowed values; for a list, of its elements.
+        name: Its name; by default the attribute's.
+
+    Raises:
+        DeclarationError: The default has no parameter type, or does not fit its limits.
     """
 
     @in_our_words
@@ -291,7 +301,7 @@ class Param(Held, Generic[V]):
             raise DeclarationError(f"{self.place}: {text}") from None
 
     def _choices(self, choices: Sequence[Any]) -> tuple[Any, ...]:
-        """The choices, as the declared type. Raises ParameterError: One is of another type, or they are no list."""
+        """Convert the choices to the declared type. Raises ParameterError if they do not fit it."""
         if not isinstance(choices, (list, tuple)):
             raise ParameterError(f"choices= takes a list of values, not {choices!r}")
         is_list = self.parameter.type.startswith("list[")
@@ -312,13 +322,13 @@ class Param(Held, Generic[V]):
         node._core.parameters.set({self.parameter.name: value}, source="node")
 
     def with_typing(self, *, dynamic: bool) -> Parameter:
-        """The parameter that is declared, which may take values of every type and be deleted."""
+        """Return the declaration; with `dynamic`, its parameter takes values of any type and can be deleted."""
         return replace(self.parameter, dynamic=dynamic)
 
     def check(self, fn: F) -> F:
-        """Call the method with each new value before it is set; a ValueError that it raises refuses the value.
+        """Call the method with each new value before it is set; its ValueError refuses the value.
 
-        rclpy's add_on_set_parameters_callback.
+        rclpy's equivalent: add_on_set_parameters_callback.
         """
         if inspect.iscoroutinefunction(fn):
             raise DeclarationError(f"{here()}: {fn.__name__}: a check must decide at once; make it a `def`")
@@ -327,7 +337,7 @@ class Param(Held, Generic[V]):
     def on_change(self, fn: F) -> F:
         """Call the method, `def` or `async def`, with the old and the new value after each change.
 
-        rclpy's add_post_set_parameters_callback.
+        rclpy's equivalent: add_post_set_parameters_callback.
         """
         return _mark_hook(fn, "on_change", self, ("self", "old", "new"), here())
 
@@ -337,7 +347,7 @@ HookKind = Literal["check", "on_change"]
 
 @dataclass(frozen=True)
 class ParamHook:
-    """A method that follows a parameter."""
+    """The mark on a method that checks or follows a parameter."""
 
     kind: HookKind
     param: Param[Any]

@@ -1,4 +1,4 @@
-"""What a node class and its parents declare together: merged, checked, and as data."""
+"""Declarations of a node class and its parents: merged, checked and converted to data."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from graphflow.runtime.declarations.handlers import MARK, Handler
 
 
 class NodeClass(Protocol):
-    """What a node class says about itself in plain attributes."""
+    """The plain class attributes that configure a node class."""
 
     node_name: ClassVar[str]
     dynamic_names: ClassVar[bool | Sequence[str]]
@@ -36,17 +36,17 @@ class NodeClass(Protocol):
 
 
 def snake_case(class_name: str) -> str:
-    """`TurtleSim` as `turtle_sim`: the name of a node that is given none."""
+    """Convert a class name to a node name: `TurtleSim` to `turtle_sim`."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", class_name).lower()
 
 
 def default_name(cls: type[NodeClass]) -> str:
-    """The name of a node of the class that is given none."""
+    """Return the name of a node of the class made without one."""
     return cls.node_name or snake_case(cls.__name__)
 
 
 def held(cls: type) -> dict[str, Held]:
-    """The declarations of a class and its parents by attribute; a child's replace its parents'."""
+    """Return the declarations of a class and its parents by attribute; a subclass's replace its parents'."""
     found: dict[str, Held] = {}
     for attribute, value in _members(cls):
         if isinstance(value, Held):
@@ -57,9 +57,9 @@ def held(cls: type) -> dict[str, Held]:
 
 
 def handlers(cls: type) -> dict[str, Handler]:
-    """The handlers of a class and its parents by method name.
+    """Return the handlers of a class and its parents by method name.
 
-    A child that overrides a handler's method without decorating it again replaces only the body.
+    A subclass that overrides a handler without decorating it replaces only the body.
     """
     found: dict[str, Handler] = {}
     for attribute, value in _members(cls):
@@ -72,7 +72,7 @@ def handlers(cls: type) -> dict[str, Handler]:
 
 
 def param_hooks(cls: type) -> dict[str, ParamHook]:
-    """The checks and followers of parameters by method name; overriding works as with handlers."""
+    """Return the parameter hooks by method name; overriding works as for handlers."""
     found: dict[str, ParamHook] = {}
     for attribute, value in _members(cls):
         mark = getattr(value, HOOK_MARK, None)
@@ -85,7 +85,7 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
 
 @cache
 def hooks(cls: type) -> frozenset[str]:
-    """The methods that are called outside any handler: by parameters, events, and to decide about goals."""
+    """Return the methods called outside any handler: parameter checks, event callbacks and goal decisions."""
     found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
     called: list[Any] = [getattr(declared, "on_event", None) for declared in held(cls).values()]
     for handler in handlers(cls).values():
@@ -101,27 +101,27 @@ _REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on
     "on_cleanup",
     "on_error",
 }
-"""What subclasses may say anew. A group that is running can also be released by its own name."""
+"""Attributes that subclasses may redefine. A running `group` can also be released by its own name."""
 
 
 def reserved(node: type) -> set[str]:
-    """What users call on a node, which no declaration and no method may hide."""
+    """Return the public attributes of a node, which no declaration and no method may hide."""
     return {name for name in dir(node) if not name.startswith("_")} - _REDEFINED | {"_core", "log", "parameters"}
 
 
 def check_attributes(cls: type, node: type) -> None:
-    """See that nothing in a class hides something that users call on a node, but for methods that call on it.
+    """Check that nothing in a class hides a public attribute of nodes; methods that call `super` may.
 
     Args:
         node: The class `Node` itself.
 
     Raises:
-        DeclarationError: Something does.
+        DeclarationError: An attribute does.
     """
     taken = reserved(node)
     found: dict[str, Any] = {**held(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
-        function = getattr(value, "__func__", value)  # of a classmethod or staticmethod
+        function = getattr(value, "__func__", value)  # unwraps classmethod and staticmethod
         is_override = inspect.isfunction(function) and "super" in function.__code__.co_names
         is_meant = is_override or isinstance(value, property) or not is_users_module(cls.__module__)
         if not attribute.startswith("_") and not is_meant:
@@ -138,13 +138,13 @@ def check_attributes(cls: type, node: type) -> None:
 
 
 def place_of(cls: type) -> Place:
-    """Where a class is written."""
+    """Return the place of a class statement."""
     module = sys.modules.get(cls.__module__)
     return Place(getattr(module, "__file__", None) or cls.__module__, vars(cls).get("__firstlineno__", 0))
 
 
 def groups(cls: type) -> dict[str, Group]:
-    """The groups of a class and its parents by name."""
+    """Return the groups of a class and its parents by name."""
     return {name: value for name, value in _members(cls) if isinstance(value, Group)}
 
 
@@ -154,9 +154,9 @@ def _members(cls: type) -> Iterator[tuple[str, Any]]:
 
 
 def class_line() -> int:
-    """The line of the class statement being executed, for `__init_subclass__` to call.
+    """Return the line of the class statement being executed. To be called by `__init_subclass__`.
 
-    Python 3.13 and later have it as `__firstlineno__`. Looking for it in the source takes milliseconds per class.
+    Python 3.13 and later have `__firstlineno__`; finding the line in the source takes milliseconds per class.
     """
     frame = sys._getframe(1)
     while frame.f_code.co_name == "__init_subclass__" and frame.f_back is not None:
@@ -165,7 +165,7 @@ def class_line() -> int:
 
 
 def interface_of(cls: type[NodeClass]) -> Interface:
-    """Everything a node class declares, as data.
+    """Convert a node class's declarations to data.
 
     Raises:
         DeclarationError: Two declarations contradict each other.
@@ -237,7 +237,7 @@ def interface_of(cls: type[NodeClass]) -> Interface:
 
 
 def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerInfo:
-    # A child may have replaced only the body, with one of the other kind and in another place.
+    # A subclass may have replaced only the body, by an `async def` or a `def` in another place.
     function = inspect.unwrap(getattr(cls, attribute))
     code = getattr(function, "__code__", None)
     place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)

@@ -1,6 +1,6 @@
-"""What a node class declares that it does, by methods: for timers, messages, requests and goals, and as tasks.
+"""Declarations of a node's methods: handlers of timers, messages, requests and goals, and tasks.
 
-A decorator leaves a mark on the method and returns it as it was.
+A decorator sets a mark on the method and returns the method itself.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MARK = "__graphflow__"
 
 @dataclass(frozen=True)
 class Handler:
-    """A decorated method."""
+    """The mark on a decorated method."""
 
     kind: HandlerKind
     place: Place
@@ -59,7 +59,7 @@ class Handler:
 
 @dataclass(frozen=True)
 class ActionOptions:
-    """How an action treats its goals: see `Node.create_action_server`. Functions are methods of the class body."""
+    """An action's policies: see `Node.create_action_server`. Functions are methods of the class body."""
 
     policy: GoalPolicy
     accept: Callable[..., Any] | None
@@ -69,17 +69,17 @@ class ActionOptions:
 
 
 class Rate:
-    """How often a timer runs: a period in seconds or a frequency, perhaps from a parameter."""
+    """The rate of a timer: a period in seconds or a frequency in Hz, either of which may be a parameter."""
 
     def __init__(self, period: float | Param[Any] | None, hz: float | Param[Any] | None) -> None:
         self._sources = (period, hz)
 
     def parameters(self) -> list[str]:
-        """The parameters it is read from."""
+        """Return the names of the parameters that determine the rate."""
         return [source.parameter.name for source in self._sources if isinstance(source, Param)]
 
     def period_ns(self, values: Mapping[str, Any] | None = None) -> int:
-        """The period with these values of its parameters, or with their defaults.
+        """Return the period in nanoseconds, with these parameter values or with the defaults.
 
         Raises:
             ValueError: As for `clock.period_ns`.
@@ -123,13 +123,13 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
         wanted = " or ".join(["self", "self and one argument", "self and two arguments"][n - 1] for n in arguments)
         has = f"({', '.join(p.name for p in positional)})"
         raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}")
-    check_annotations(fn, _given(handler), f"@{handler.kind}", handler.place)
+    check_annotations(fn, _expected(handler), f"@{handler.kind}", handler.place)
     if (part := _RETURNED.get(handler.kind)) is not None:
         called = f"{handler.type.__name__}.{part}"
         check_returned(fn, called, getattr(handler.type, part), f"@{handler.kind}", handler.place)
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
     takes_info = (handler.kind, len(positional)) in (("timer", 2), ("subscription", 3))
-    # A separate record: `every = timer(1.0)` may decorate several methods.
+    # A copy, since the decorator of `every = timer(1.0)` may be applied to several methods.
     setattr(fn, MARK, replace(handler, place=place, takes_info=takes_info))
     return fn
 
@@ -138,8 +138,8 @@ _RETURNED = {"service": "Response", "action": "Result"}
 """The part of an interface that a handler returns."""
 
 
-def _given(handler: Handler) -> dict[str, type]:
-    """The classes of the messages that a handler is given, by their names."""
+def _expected(handler: Handler) -> dict[str, type]:
+    """Return the message classes that a handler receives, by name."""
     parts = {"service": ("Request", "Response"), "action": ("Handle",)}.get(handler.kind, ())
     if handler.kind == "subscription":
         return {handler.type.__name__: handler.type}
@@ -159,14 +159,23 @@ def subscription(
     on_event: Callable[..., Any] | None = None,
     on_error: OnError = "budget",
 ) -> Callable[[F], F]:
-    """Call the method with each message of a topic: `async def heard(self, msg: String) -> None`.
+    """Call the method with each message on a topic: `async def heard(self, msg: String) -> None`.
 
-    With a third argument, `info: MessageInfo`, it also gets the sender, the times and the sequence number.
+    With a third argument, `info: MessageInfo`, it also receives the sender, the times and the sequence number.
 
     Args:
-        ignore_local: Leave out what this process publishes itself.
+        type: The message class.
+        name: The topic: relative, absolute or `~/private`.
+        qos: A QoS profile, or a queue depth.
+        depth: The queue depth, as an alternative to `qos`.
+        group: The concurrency group; by default the class's `default_group`.
+        thread: Whether the method, a `def`, runs in a thread.
+        ignore_local: Whether to skip messages that this process publishes.
         on_event: A method defined above it, called with each `QosEvent`.
-        on_error: What an error in it means for the node.
+        on_error: The policy for errors in the method.
+
+    Raises:
+        DeclarationError: An argument is invalid, or the method does not take a message of the type.
     """
     place = here()
     check_on_error(on_error, place)
@@ -189,12 +198,15 @@ def timer(
     thread: bool = False,
     on_error: OnError = "budget",
 ) -> Callable[[F], F]:
-    """Call the method once a period (seconds) or `hz` times a second; either may be a parameter.
+    """Call the method every period (seconds), or `hz` times a second; either may be a parameter.
 
     Missed periods are skipped and the phase is kept. The method may take a `TimerInfo`.
 
     Args:
-        on_error: What an error in it means for the node.
+        on_error: The policy for errors in the method.
+
+    Raises:
+        DeclarationError: The period is not positive, or the method takes other arguments.
     """
     place = here()
     check_on_error(on_error, place)
@@ -219,12 +231,12 @@ def service(
     thread: bool = False,
     introspection: Introspection = "off",
 ) -> Callable[[F], F]:
-    """Answer a service with the method: `async def add(self, request: X.Request) -> X.Response`.
+    """Answer a service's requests with the method: `async def add(self, request: X.Request) -> X.Response`.
 
-    As in ROS 2 it may take a second argument, an empty response to fill in and return.
+    As in ROS 2, it may take a second argument, an empty response to fill in and return.
 
     Args:
-        introspection: What is published of each call on `name`/_service_event.
+        introspection: Content of the events on `name`/_service_event: "off", "metadata" or "contents".
     """
     place = here()
     check_type(type, Service, "@service", place)
@@ -247,18 +259,18 @@ def action(
     on_client_loss: OnClientLoss = "continue",
     cleanup_timeout: float = 10.0,
 ) -> Callable[[F], F]:
-    """Execute goals with the method: `async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result`.
+    """Execute an action's goals with the method: `async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result`.
 
-    Returning a result succeeds, raising `Abort` or any other error aborts. A goal that is cancelled gets
-    `CancelledError` at its next `await`; its client then has what `goal.partial` held.
+    The goal succeeds if the method returns a result, and is aborted if it raises `Abort` or any other error. A
+    cancelled goal raises `CancelledError` at its next `await`; its client then receives `goal.partial`.
 
     Args:
-        policy: What becomes of a goal that arrives while another runs: `reject`, `queue`, `preempt`, `parallel`.
-        accept: A method defined above it, called with each goal's message; False rejects the goal, and so does a text
-            that says why.
+        policy: The policy for a goal that arrives while another runs: `reject`, `queue`, `preempt`, `parallel`.
+        accept: A method defined above it, called with each goal message; rejects the goal by returning False or the
+            reason as text.
         cancellable: Whether cancel requests are granted; or a method, called with the handle, that decides.
-        on_client_loss: What becomes of a goal whose client has gone: `continue` or `cancel`.
-        cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.
+        on_client_loss: The policy for a goal whose client has gone: `continue` or `cancel`.
+        cleanup_timeout: Seconds that a cancelled method has for cleanup before its goal counts as aborted.
     """
     place = here()
     check_type(type, Action, "@action", place)
@@ -280,7 +292,7 @@ def action(
 
 @in_our_words
 def task(fn: F) -> F:
-    """Run the method once the node is up, alongside everything else it does. An error in it ends the node."""
+    """Run the method in the background once the node is up. An error in it ends the node."""
     place = here()
     if not inspect.iscoroutinefunction(fn):
         raise DeclarationError(f"{place}: @task goes on an `async def` method, without parentheses")

@@ -1,4 +1,4 @@
-"""Declarations that Python accepts and nothing reads: under another decorator, in a tuple, outside of the class."""
+"""Misplaced declarations, which have no effect: under another decorator, in a tuple, outside a class."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from graphflow.runtime.declarations.handlers import MARK, Handler
 
 
 def check_misplaced(cls: type) -> None:
-    """See that everything that is declared in the body of a class is found there.
+    """Check that every declaration in a class body takes effect.
 
     Raises:
-        DeclarationError: Something is not; with its line, and how it is written.
+        DeclarationError: One does not; the text has its line and the correct form.
     """
     known = {id(value) for parent in cls.__mro__ for value in vars(parent).values()}
     for attribute, value in vars(cls).items():
-        for inner in _held_by(value):
+        for inner in _wrapped_by(value):
             if id(inner) not in known:
                 _refuse_wrapped(attribute, value, inner)
         if isinstance(value, (tuple, list, set, dict)) and not attribute.startswith("__"):
             _refuse_collected(attribute, value, known)
-    # Before Python 3.14, which makes them when they are asked for, annotations that are no text are objects here.
+    # Up to Python 3.13, annotations are evaluated with the class body; later versions do so on access.
     annotations = vars(cls).get("__annotations__", {})
     for attribute, value in annotations.items() if isinstance(annotations, Mapping) else ():
         if isinstance(value, Held):
@@ -55,8 +55,8 @@ def _declares(annotation: str, space: Mapping[str, Any]) -> bool:
     return isinstance(found, type) and issubclass(found, Held)
 
 
-def _held_by(value: Any) -> Iterator[Any]:
-    """Functions that an attribute of a class holds in place of being one of them."""
+def _wrapped_by(value: Any) -> Iterator[Any]:
+    """Return marked functions that an attribute wraps instead of being one itself."""
     if hasattr(value, MARK) or hasattr(value, HOOK_MARK) or isinstance(value, (Held, type)):
         return
     if isinstance(value, property):
@@ -75,12 +75,12 @@ def _held_by(value: Any) -> Iterator[Any]:
 def _content(cell: Any) -> Any:
     try:
         return cell.cell_contents
-    except ValueError:  # nothing is in it yet
+    except ValueError:  # an empty cell
         return None
 
 
 def _handlers_in(value: Any) -> Iterator[Handler]:
-    """The handler that a decorator such as `timer(1.0)` would mark a function as."""
+    """Return the handlers that a decorator such as `timer(1.0)` would set as marks."""
     for cell in getattr(value, "__closure__", None) or ():
         if isinstance(found := _content(cell), Handler):
             yield found
@@ -114,10 +114,10 @@ def _refuse_collected(attribute: str, value: Any, known: Collection[int]) -> Non
 
 
 def check_made(node: object) -> None:
-    """See that the `__init__` of a node has not declared what belongs into the body of its class.
+    """Check that a node's `__init__` has not assigned declarations, which belong in the class body.
 
     Raises:
-        DeclarationError: It has.
+        DeclarationError: It has assigned one.
     """
     for attribute, value in vars(node).items():
         if isinstance(value, Held) and not value.attribute:
@@ -129,10 +129,10 @@ def check_made(node: object) -> None:
 
 
 def check_hooks(cls: type) -> None:
-    """See that methods that are awaited can be: an `async def`, or one that returns something; `__init__` is not.
+    """Check that awaited hooks are an `async def` or return an awaitable, and that `__init__` is not one.
 
     Raises:
-        DeclarationError: One cannot.
+        DeclarationError: A hook cannot be awaited, or `__init__` would have to be.
     """
     if inspect.iscoroutinefunction(init := vars(cls).get("__init__")):
         place = Place(init.__code__.co_filename, init.__code__.co_firstlineno)
@@ -157,10 +157,10 @@ def _returns_nothing(code: CodeType) -> bool:
 
 
 def check_module(cls: type) -> None:
-    """See that no handler stands beside the class, at the top of its module.
+    """Check that no handler is defined at module level, outside the class.
 
     Raises:
-        DeclarationError: One does.
+        DeclarationError: One is.
     """
     module = sys.modules.get(cls.__module__)
     values = list(vars(module).values()) if module is not None else []

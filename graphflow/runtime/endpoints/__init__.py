@@ -1,1 +1,1 @@
-"""Publishers, subscriptions, services and clients as they run. Begin with `endpoint`, which they share."""
+"""Endpoints: publishers, subscriptions, services and clients. Start with `endpoint`, their common base."""

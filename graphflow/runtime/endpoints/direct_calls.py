@@ -1,16 +1,16 @@
-"""Calls between graphflow processes: a request and a response as two publications, where a query costs three.
+"""Direct calls between graphflow processes: request and response as two publications, where a query costs three.
 
-A query makes Zenoh keep track of every call in each process it passes, and deliver every reply on its own. ROS 2
-knows only queries, so every service answers them; two graphflow processes also open a *line*, on keys that no
-wildcard of ROS matches:
+For a query, Zenoh keeps state of every call in each process on the way and delivers each reply separately. ROS 2 uses
+only queries, so every service answers them; two graphflow processes also open a *line*, on keys that no ROS 2
+wildcard matches:
 
     @graphflow/<domain>/ask/<server's zid>/<server's eid>       requests, from any client
     @graphflow/<domain>/answer/<client's zid>/<client's eid>    responses, from any server
 
-Each carries the same attachment as in ROS; the sequence number of an error is negative. Both ways must work
-before a line is used. The client's process sends sequence number 0 when it knows that its requests have a
-listener, with the key that it hears responses on, and the server's process sends 0 when it knows it is heard there.
-Until then, and with a server of another kind or several servers, calls are queries.
+Each publication carries the same attachment as in ROS 2; the sequence number of an error is negative. A line is used
+only once both directions work. The client's process sends sequence number 0 when its requests have a listener, with the
+key of its responses, and the server's process sends 0 when it has a listener on that key. Until then, and with another
+kind of server or several servers, calls are queries.
 """
 
 from __future__ import annotations
@@ -44,36 +44,37 @@ logger = logging.getLogger("graphflow")
 _HELLO = 0
 """The sequence number that opens a line."""
 EARLY_BOUND = 256
-"""Hellos that are remembered until the client's token comes."""
+"""Hellos kept until the client's token arrives."""
 _NO_ROOM = RemoteError(ServerBusy.__name__, "too much waited for a process that did not attend to it").to_payload()
-"""The answer where there was no room."""
+"""The response to a refused request."""
 _DEPTH = {"ask": REQUESTS_BOUND, "answer": 10 * REQUESTS_BOUND}
-"""Of answers there are no more than calls, which have been let begin."""
+"""Queue lengths. There are no more responses than calls under way, which are limited already."""
 _NAMES = {"ask": "requests of other processes", "answer": "answers of other processes"}
 _WHERE_BOUND = 80
-"""Bytes of a hello: a session's id and an endpoint's."""
+"""Longest hello, in bytes: a session's id and an endpoint's."""
 
 Heard = Callable[[bytes | None, bytes, int, bytes], None]
-"""Called with what arrives: payload, attachment, and of that the sequence number and the GID. No payload: refused."""
+"""Called with an arrival: payload, attachment, and the attachment's sequence number and GID. The payload is None if the
+queue was full."""
 
 
 class _Refused(NamedTuple):
-    """The rest of an arrival for which there was no room, so that it can be answered."""
+    """The attachment of a request refused by a full queue, kept for the error response."""
 
     key: str
     attachment: bytes | None
 
 
 class _Listener(NamedTuple):
-    """An endpoint of this process that hears something."""
+    """An endpoint of this process that receives on lines."""
 
     heard: Heard
     runner: Runner | None
-    """What requests queue for."""
+    """The runner that requests queue for."""
 
 
 class Switchboard:
-    """A process's ends of all lines: what hears what arrives. One per `Context`."""
+    """A process's ends of all lines: dispatches arrivals to listeners. One per `Context`."""
 
     def __init__(self, session: Session, domain: int, loop: AbstractEventLoop) -> None:
         self._session, self._domain, self._loop = session, domain, loop
@@ -83,7 +84,7 @@ class Switchboard:
         self._inboxes: dict[str, Inbox] = {}
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
-        """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""
+        """Return the requests that the loop has not processed yet: (runner, client GID, sequence number) each."""
         found: list[tuple[Runner, bytes, int]] = []
         session = self._session
         for arrival in list(self._inboxes["ask"].items) if "ask" in self._inboxes else ():
@@ -102,10 +103,10 @@ class Switchboard:
         return f"@graphflow/{self._domain}/{what}/{zid}/{eid}"
 
     def listen(self, what: str, entity: Entity, heard: Heard, runner: Runner | None = None) -> None:
-        """Call `heard` with what comes for an endpoint of this process."""
+        """Call `heard` with the arrivals for an endpoint of this process."""
         self._listeners[what, str(entity.eid)] = _Listener(heard, runner)
         if what not in self._receivers:
-            # One for the process: Zenoh starts a thread for each.
+            # One subscriber per process, since Zenoh starts a thread for each.
             session = self._session
             inbox: RequestInbox
 
@@ -135,7 +136,7 @@ class Switchboard:
                     logger.debug("%s: %s", key, error)
                     continue
                 listener.heard(payload, beside or b"", sequence, gid)
-        if inbox.items:  # callers that are faster than the handlers must not hold the loop
+        if inbox.items:  # callers that are faster than the handlers must not monopolize the loop
             self._loop.call_soon(self._deliver, what, inbox)
 
     def forget(self, what: str, entity: Entity) -> None:
@@ -146,7 +147,7 @@ class Switchboard:
 
 
 def warn_of_refused(inbox: RequestInbox, what: str) -> None:
-    """Tell of requests for which there was no room."""
+    """Warn of requests refused by a full queue."""
     logger.warning(
         "%s: %d were refused so far, since %d of them, or %d MB, waited: the event loop is blocked, or they come "
         "faster than it takes them; graphflow waits says where it is",
@@ -158,11 +159,11 @@ def warn_of_refused(inbox: RequestInbox, what: str) -> None:
 
 
 def unanswered(request: Any) -> None:
-    """Let go of a request that came as a query: the network tells its client at once that no answer comes."""
+    """Drop a query's request: Zenoh reports to its client at once that no reply will come."""
 
 
 class DirectRequest:
-    """A request that came over a line; see `transport.base.Request`. Its attachment may end with a chain."""
+    """A request received over a line; see `transport.base.Request`. Its attachment may end with a call chain."""
 
     __slots__ = ("_answer", "attachment", "payload", "size")
 
@@ -182,7 +183,7 @@ class ServerLines:
     """A server's ends of the lines to its clients.
 
     Args:
-        runner: What requests queue for.
+        runner: The runner that requests queue for.
         asked: Called with each request.
     """
 
@@ -193,15 +194,15 @@ class ServerLines:
         self._senders: dict[bytes, Sender] = {}
         """Senders to the clients, by GID."""
         self._clients: dict[bytes, str] = {}
-        """Where announced clients hear responses, by GID."""
+        """Ids of announced clients' sessions and endpoints, by GID."""
         self._early: OrderedDict[bytes, str] = OrderedDict()
-        """Hellos of clients that have not been announced yet, likewise."""
+        """The same from hellos of clients whose tokens have not arrived, by GID."""
         self._is_listening = False
         self._is_closing = False
         self._unanswered = 0
 
     def client_came(self, client: Entity) -> None:
-        """A client has come, which may be graphflow's."""
+        """Note a new client, possibly graphflow's."""
         self._clients[client.gid] = where = f"{client.zid}/{client.eid}"
         if not self._is_listening:
             self._is_listening = True
@@ -225,14 +226,14 @@ class ServerLines:
 
     def _answer(self, payload: Payload, beside: bytes) -> None:
         sender = self._senders.get(beside[attachment.SIZE - 16 : attachment.SIZE])
-        if sender is not None:  # else the client has gone meanwhile
+        if sender is not None:  # the client may have gone in the meantime
             sender.put(payload, attachment=beside)
         self._unanswered -= 1
         if self._is_closing:
             self.close()
 
     def _greet(self, where: bytes, gid: bytes) -> None:
-        """A client says where it hears responses: where its token says so too, which may come after this."""
+        """Accept a client's hello if its token confirms the response key; the token may arrive later."""
         text = where[:_WHERE_BOUND].decode("ascii", "replace")
         if gid in self._clients:
             if text == self._clients[gid] and gid not in self._senders:
@@ -243,7 +244,7 @@ class ServerLines:
             self._early.popitem(last=False)
 
     def _open(self, gid: bytes, where: str) -> None:
-        """Open the way back to a client."""
+        """Open the response direction to a client."""
         zid, _, eid = where.partition("/")
 
         def changed() -> None:
@@ -254,7 +255,7 @@ class ServerLines:
         changed()
 
     def close(self) -> None:
-        """Take no more requests; those under way are still answered."""
+        """Accept no more requests; those under way are still answered."""
         self._is_closing = True
         self._switchboard.forget("ask", self._entity)
         if not self._unanswered:
@@ -267,14 +268,14 @@ class ClientLine:
     """A client's end of the line to one server.
 
     Args:
-        client, server: The client's own entity and the server's.
+        client, server: The entities of the client and the server.
     """
 
     def __init__(self, switchboard: Switchboard, client: Entity, server: Entity) -> None:
         self.server = server
         self._switchboard, self._client = switchboard, client
         self.is_open = False
-        """Whether both ways are known to work."""
+        """Whether both directions are known to work."""
         self._pending: dict[int, Callable[[Answer | None], None]] = {}
         switchboard.listen("answer", client, self._heard)
         self._sender = switchboard.open_sender("ask", server.zid, str(server.eid), self._changed)
@@ -282,7 +283,7 @@ class ClientLine:
 
     @property
     def is_heard(self) -> bool:
-        """Whether the server listens, which only graphflow's do: it is sure before the line is open."""
+        """Whether the server has a listener for direct requests, as graphflow's do; true before the line is open."""
         return self._sender.is_wanted
 
     def _changed(self) -> None:
@@ -295,7 +296,7 @@ class ClientLine:
     def call(
         self, sequence: int, payload: Payload, beside: bytes, answered: Callable[[Answer | None], None]
     ) -> Callable[[], None]:
-        """As `transport.base.Caller.call`; there is one response, or None when the server has gone."""
+        """Send a request as `transport.base.Caller.call`; one response arrives, or None when the server goes."""
         self._pending[sequence] = answered
         self._sender.put(payload, attachment=beside)
         return lambda: self._give_up(sequence)
@@ -312,7 +313,7 @@ class ClientLine:
             answered(Answer(_NO_ROOM, beside, True) if payload is None else Answer(payload, beside, sequence < 0))
 
     def close(self) -> None:
-        """Hang up. Calls that still wait learn that the server has gone."""
+        """Close the line. Pending calls end as if the server had gone."""
         self.is_open = False
         self._switchboard.forget("answer", self._client)
         self._sender.close()

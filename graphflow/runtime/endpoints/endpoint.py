@@ -1,4 +1,4 @@
-"""What all endpoints of a node have in common: a full name, a token in the graph, counterparts, and a life."""
+"""The base class of endpoints: a full name, a liveliness token, counterparts, and an open/close life cycle."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from graphflow.transport.base import Closable
 from graphflow.wire.liveliness import Entity, Kind
 
 COMPLAIN_EVERY = 10.0
-"""Seconds after which the same complaint about a counterpart is told again."""
+"""Seconds before the same complaint about a counterpart is logged again."""
 COMPLAINTS = 100
-"""Complaints that are remembered."""
+"""Complaints kept for suppression."""
 
 
 class Endpoint(Part):
-    """What a node holds on the network under one name, from `open` to `close`.
+    """An endpoint of a node under one name, from `open` to `close`.
 
     Args:
-        on_event: Called with each `QosEvent`, one after the other; a `def` or an `async def`.
-        type_hash: RIHS01 of the type, where its definition is not known here.
+        on_event: Called with each `QosEvent`, one at a time; a `def` or an `async def`.
+        type_hash: The type's RIHS01 hash, if its definition is not known here.
     """
 
     kind: Kind
@@ -48,14 +48,14 @@ class Endpoint(Part):
         self.host = host
         self.type_name = type_name
         self.name = name
-        """The full, remapped name."""
+        """The full name after remapping."""
         self.qos = qos
         self.entity: Entity | None = None
-        """How the endpoint is announced; None until the node runs."""
+        """The announced entity; None until the node runs."""
         self.matched: dict[str, Entity] = {}
-        """The counterparts in the graph that this endpoint reaches, by token."""
+        """The matched counterparts in the graph, by token."""
         self._awaited: set[Future[None]] = set()
-        """Futures of those that wait for counterparts; done when one comes or goes."""
+        """Futures of waits for counterparts; done when one appears or leaves."""
         self._type_hash = type_hash
         self._declared: list[Closable] = []
         self._on_event = on_event
@@ -64,9 +64,9 @@ class Endpoint(Part):
         self._event_totals: Counter[QosEventKind] = Counter()
         self._stop_listening: Callable[[], None] = _nothing
         self.malformed = 0
-        """Payloads that were not a message of the type and were dropped."""
+        """Payloads that were not a valid message of the type and were dropped."""
         self._complained: dict[str, int] = {}
-        """Until when a complaint is not told again, in nanoseconds."""
+        """For each complaint: the end of its silence, in nanoseconds."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name} [{self.type_name}]>"
@@ -82,7 +82,7 @@ class Endpoint(Part):
         }
 
     def count_malformed(self, error: DecodeError) -> None:
-        """A payload was not a message of the type."""
+        """Count a payload that is not a valid message of the type."""
         self.malformed += 1
         if self.malformed == 1 or self.malformed % 1000 == 0:
             self.host.log.warning("%s: dropped a malformed message (%d so far): %s", self.name, self.malformed, error)
@@ -96,7 +96,7 @@ class Endpoint(Part):
         return self.entity is not None
 
     def open(self) -> None:
-        """Declare the endpoint on the network and announce it. Called by the node."""
+        """Declare the endpoint on the network, then announce it. Called by the node."""
         context, host = self.host.context, self.host
         there = context.cache.named(self.name)
         self.qos = self.qos.adapted(e.qos for e in there if {e.kind, self.kind} == {Kind.PUBLISHER, Kind.SUBSCRIPTION})
@@ -117,7 +117,7 @@ class Endpoint(Part):
             spec = RunnerSpec(f"events of {self.name}", self._on_event, self._event_handled, host.full_name)
             self._event_runner = host.runner(spec, self._events)
         self._open(self.entity.data_key)
-        # After the declaration, so that a process that sees the token can reach what it announces.
+        # Announced last, so that a process that sees the token can already reach the endpoint.
         self._declared.append(context.session.announce(self.entity.token))
         self._stop_listening = context.on_name(self.name, self._counterpart)
         for entity in there:
@@ -145,10 +145,10 @@ class Endpoint(Part):
         self.host.forget(self)
 
     async def wait_matched(self, count: int = 1) -> None:
-        """Wait until `count` counterparts are reached: for a publisher, that many subscriptions.
+        """Wait until `count` counterparts are matched: for a publisher, that many subscriptions.
 
         Raises:
-            ClosedError: The node is not running, or stopped meanwhile.
+            ClosedError: The node is not running, or stops during the wait.
         """
         self._announced()
         while len(self.matched) < count:
@@ -159,12 +159,12 @@ class Endpoint(Part):
                 self._awaited.discard(change)
 
     def event_total(self, kind: QosEventKind) -> int:
-        """How often a kind of event has happened since the start."""
+        """Return the number of events of a kind since the start."""
         return self._event_totals[kind]
 
     def _counterpart(self, change: GraphChange) -> None:
-        """Something of the same name came or went."""
-        if not self.host.is_running:  # it has stopped and leaves the network with its context
+        """Handle the appearance or departure of an endpoint of the same name."""
+        if not self.host.is_running:  # a stopped node leaves the network with its context
             return
         other = change.entity
         own = self._announced()
@@ -184,7 +184,7 @@ class Endpoint(Part):
             self._matched(other, change.alive)
         if change.alive and judged.complaint:
             is_own = (other.zid, other.nid) == (own.zid, own.nid)
-            if not is_own or own.kind in (Kind.SUBSCRIPTION, Kind.CLIENT):  # of two ends of a node one tells
+            if not is_own or own.kind in (Kind.SUBSCRIPTION, Kind.CLIENT):  # of two ends of a node, one complains
                 self._complain(judged.complaint)
             if judged.reaches:
                 self._tell("incompatible_qos", detail=", ".join(judged.policies))
@@ -192,7 +192,7 @@ class Endpoint(Part):
                 self._tell("incompatible_type", detail=other.node_name)
 
     def _complain(self, text: str) -> None:
-        """Log what is wrong with a counterpart, but not each time that it comes and goes."""
+        """Log a problem with a counterpart, but not each time that the counterpart comes and goes."""
         now_ns = self.host.context.clock.monotonic_ns()
         if now_ns >= self._complained.get(text, 0):
             if len(self._complained) >= COMPLAINTS:
@@ -201,7 +201,7 @@ class Endpoint(Part):
             self.host.log.warning("%s", text)
 
     def _matched(self, other: Entity, alive: bool) -> None:
-        """A counterpart that is reached came or went."""
+        """Handle the arrival or departure of a matched counterpart."""
 
     def _tell(
         self, kind: QosEventKind, more: int = 1, change: int | None = None, current: int = 0, detail: str = ""
@@ -226,4 +226,4 @@ class Endpoint(Part):
 
 
 def _nothing() -> None:
-    """Nothing is listened to."""
+    """Do nothing: there is no listener."""

@@ -1,4 +1,4 @@
-"""What an endpoint notices about the other end: what came and went, what does not fit, what is late, lost or silent.
+"""QoS events of an endpoint: counterparts, incompatible policies, missed deadlines, lost messages and liveliness.
 
 Source: rmw's event types; DDS 1.4, 2.2.4.1 (statuses).
 """
@@ -22,26 +22,26 @@ QosEventKind = Literal[
 
 
 class QosEvent(NamedTuple):
-    """One thing an endpoint noticed."""
+    """An event that an endpoint detected."""
 
     kind: QosEventKind
     total: int
-    """How often the event has happened to this endpoint; for `message_lost`, the number of messages."""
+    """Number of occurrences at this endpoint; for `message_lost`, of messages."""
     change: int = 1
-    """By how much `total` has grown with this event; for `matched` and `liveliness_changed`, `current`: may be -1."""
+    """Increase of `total` by this event; for `matched` and `liveliness_changed`, of `current`, where it may be -1."""
     current: int = 0
-    """For `matched`: current counterparts. For `liveliness_changed`: publishers that are alive."""
+    """For `matched`: the current counterparts. For `liveliness_changed`: the alive publishers."""
     detail: str = ""
-    """The counterpart's node, or the policies that do not fit."""
+    """The counterpart's node, or the incompatible policies."""
 
 
 OnEvent = Callable[[QosEvent], Any]
 
 
 class SilenceTimer:
-    """Calls `silent` once a period for as long as `touch` is not called.
+    """A timer that calls `silent` once per period without a `touch`.
 
-    A touch costs one look at the clock: the pending alarm finds out how long it has been.
+    A touch only reads the clock; the pending alarm computes the time since then.
     """
 
     __slots__ = ("_alarm", "_clock", "_last_ns", "_period_ns", "_silent")
@@ -56,23 +56,23 @@ class SilenceTimer:
         return self._alarm is not None
 
     def start(self) -> None:
-        """Begin a period. Starting twice is harmless."""
+        """Start a period. Starting twice is harmless."""
         if self._alarm is None:
             self.touch()
             self._arm()
 
     def touch(self) -> None:
-        """Something was heard."""
+        """Note a sign of life."""
         self._last_ns = self._clock.monotonic_ns()
 
     def stop(self) -> None:
-        """Stop watching, until the next `start`."""
+        """Stop until the next `start`."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
 
     def move(self, clock: Clock) -> None:
-        """Switch to another clock; a period under way begins again."""
+        """Switch to another clock and restart a pending period."""
         was_running = self.is_running
         self.stop()
         self._clock = clock

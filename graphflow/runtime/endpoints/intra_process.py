@@ -1,7 +1,7 @@
-"""Messages between nodes of one process: handed over, without CDR and without the network.
+"""Intra-process delivery: messages between nodes of one process, without CDR and without the network.
 
-A publisher gives what it publishes to the subscriptions of its own process on the same key, and the network only to
-others. Where both are TRANSIENT_LOCAL the network keeps what a late subscription gets, so such pairs use it.
+A publisher passes messages directly to its own process's subscriptions on the same key, and to others over the network.
+Pairs of TRANSIENT_LOCAL endpoints use the network, which keeps the messages for late subscriptions.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from graphflow.qos import Durability, Qos
 
 
 class Handed:
-    """A message on its way to subscriptions of the same process.
+    """A message in transit to subscriptions of the same process.
 
     Args:
-        message: A copy that nobody else has.
-        fields: What an attachment would say: sequence number, time, GID.
-        receivers: How many subscriptions it is for.
+        message: A private copy.
+        fields: The attachment's fields: sequence number, time in nanoseconds, GID.
+        receivers: The number of subscriptions.
     """
 
     __slots__ = ("_clone", "_left", "_message", "fields")
@@ -31,18 +31,18 @@ class Handed:
 
     @property
     def payload(self) -> Sized:
-        """Stands for the bytes that a network would carry: the longest field of the message, which is not encoded."""
+        """An object with the approximate size of the payload: the longest field of the unencoded message."""
         fields = (_sized(getattr(self._message, field.name)) for field in self._message.SCHEMA.fields)
         return max(fields, key=len, default=b"")
 
     def take(self) -> Any:
-        """The message for one receiver, which may change it: the last one gets the copy itself."""
+        """Return the message for one receiver, which may modify it: a copy, or the original for the last receiver."""
         self._left -= 1
         return self._message if not self._left else self._clone(self._message)
 
 
 def _sized(value: Any) -> Sized:
-    if getattr(value, "nbytes", 0):  # an array, whose own length is that of its first dimension
+    if getattr(value, "nbytes", 0):  # the length of a multi-dimensional array is that of its first dimension
         return memoryview(value).cast("B")
     return value if isinstance(value, Sized) else b""
 
@@ -56,7 +56,7 @@ class Receiver(Protocol):
 
 
 class IntraProcess:
-    """The subscriptions of a process that are handed messages, by key. One per `Context`."""
+    """The subscriptions of a process with intra-process delivery, by key. One per `Context`."""
 
     def __init__(self) -> None:
         self._receivers: dict[str, list[Receiver]] = {}
@@ -72,7 +72,7 @@ class IntraProcess:
             self._update(key)
 
     def receivers(self, key: str, durability: Durability) -> list[Receiver]:
-        """The receivers for a publisher; the list goes on being up to date."""
+        """Return the receivers for a publisher, as a list that is kept up to date."""
         if (key, durability) not in self._lists:
             self._lists[key, durability] = []
             self._update(key)

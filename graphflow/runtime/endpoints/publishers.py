@@ -1,4 +1,4 @@
-"""Publishers."""
+"""Publishers: encode and send messages, by way of the network, shared memory or intra-process delivery."""
 
 from __future__ import annotations
 
@@ -29,27 +29,27 @@ _pack = attachment.LAYOUT.pack
 
 
 class _Order:
-    """Lets messages leave in the order of their numbers, whichever thread publishes them.
+    """Sends messages in the order of their sequence numbers, whichever thread publishes them.
 
-    A lock costs as much as encoding a small message, so the first thread that publishes takes it only once another
-    does, too.
+    A lock costs as much as encoding a small message. So the first thread that publishes does without it until another
+    thread publishes, too.
     """
 
     __slots__ = ("is_sending", "is_shared", "lock", "number", "thread")
 
     def __init__(self) -> None:
         self.number = 0
-        """The last message's."""
+        """The last sequence number."""
         self.lock = threading.RLock()
         self.thread = 0
-        """The first thread that has published."""
+        """The id of the first thread that has published."""
         self.is_shared = False
-        """Whether others have."""
+        """Whether other threads have published."""
         self.is_sending = False
-        """Whether the first is sending a message without the lock."""
+        """Whether the first thread is sending a message without the lock."""
 
     def look_who_publishes(self) -> None:
-        """Called in a thread that is not known to be the first, before it publishes."""
+        """Switch to the lock, in a thread that may not be the first, before it publishes."""
         if self.is_shared:
             return
         with self.lock:
@@ -57,12 +57,12 @@ class _Order:
                 self.thread = get_ident()
                 return
             self.is_shared = True
-            while self.is_sending:  # the first thread sees with its next message that it must take the lock
+            while self.is_sending:  # from its next message on, the first thread takes the lock
                 sleep(0)
 
 
 class TopicPublisher(Endpoint, Generic[M]):
-    """A publisher as it runs."""
+    """A publisher."""
 
     kind = Kind.PUBLISHER
 
@@ -74,21 +74,21 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._sender: Sender = _NOT_OPEN
         self._put: Callable[..., None] = _NOT_OPEN.put
         self._large: LargeSender | None = None
-        """Takes the place of the sender's `put` for types whose messages may be large."""
+        """The sender that replaces the sender's `put` for types whose messages may be large."""
         self._gid = bytes(16)
         self._now_ns: Callable[[], int] = int
         self._deadline: SilenceTimer | None = None
         self._lease: SilenceTimer | None = None
         self._alive: Sender | None = None
         self._here: Sequence[Receiver] = ()
-        """The subscriptions of this process that are handed what it publishes."""
+        """The subscriptions of this process with intra-process delivery."""
         self._unfollow: Callable[[], None] = _nothing
         self._paused: tuple[Sender, Sequence[Receiver]] | None = None
-        """What it reaches when it is not paused; None while it is not."""
+        """The sender and receivers of a paused publisher; None while it is not paused."""
 
     @property
     def published(self) -> int:
-        """Messages sent since the start; also the last sequence number."""
+        """Messages sent since the start, which is also the last sequence number."""
         return self._order.number
 
     def _open(self, key: str) -> None:
@@ -109,8 +109,9 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._shorten()
 
     def _shorten(self) -> None:
-        """Let `publish` be the usual case of itself, written out: the first thread sends a message of the type to other
-        processes, and nothing else has to be done. Whatever is unusual goes the general way.
+        """Install a fast `publish` for the usual case.
+
+        That is: the first thread, a message of the right type, and subscriptions only in other processes.
         """
         if self._large is not None or self._deadline is not None or self._lease is not None:
             return
@@ -139,7 +140,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         self.publish = publish  # type: ignore[method-assign]
 
     def _lengthen(self) -> None:
-        """Let `publish` look at everything again."""
+        """Restore the general `publish`."""
         self.__dict__.pop("publish", None)
 
     def _share_memory(self, key: str) -> None:
@@ -166,15 +167,15 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a message published now would reach a subscription or be kept: check before you build a large one."""
+        """Whether a message published now would reach a subscription or be kept; check before building a large one."""
         return self._sender.is_wanted or bool(self._here)
 
     def publish(self, message: M) -> None:
-        """Send a message, from any thread. Never waits: a subscriber that cannot keep up loses messages.
+        """Send a message, from any thread. Never waits: a slow subscriber loses messages.
 
         Raises:
-            EncodeError: A field does not fit its type, or the message is of another type. A message without
-                listeners is not encoded, and its fields are not looked at.
+            EncodeError: A field does not fit its type, or the message is of another type. The fields of a message
+                without subscriptions are not checked.
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
@@ -214,7 +215,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._lease.touch()
 
     def _with_name(self, value: object) -> str:
-        """The end of a sentence on a value in the place of a message that has nothing else."""
+        """Return a hint for a value published in place of a message with a single field."""
         fields = self.type.SCHEMA.fields
         is_one = len(fields) == 1 and isinstance(value, (str, int, float))
         return f"; write {self.type.__name__}({fields[0].name}={value!r})" if is_one else ""
@@ -224,8 +225,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
 
     def _hand_over(self, message: M, sender: Sender) -> None:
-        """Give a copy to the subscriptions of this process, and send it if others want it."""
-        clone, receivers = self._codec.clone, tuple(self._here)  # which may change: this may be another thread
+        """Give a copy to the subscriptions of this process, and send the message if others want it."""
+        clone, receivers = self._codec.clone, tuple(self._here)  # a copy, since another thread may change it
         copy = clone(message)
         encode: Callable[[M], Any] = self._codec.encode if self._large is None else self._codec.encode_parts
         payload = encode(copy) if sender.is_wanted else None
@@ -245,17 +246,17 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     @contextmanager
     def loan(self, **lengths: int) -> Iterator[M]:
-        """Fill a message in place, which is published at the end of the block: `with pub.loan(data=1000) as image:`.
+        """Fill a message in place and publish it at the end of the block: `with pub.loan(data=1000) as image:`.
 
-        The longest of its arrays lies where subscriptions of other processes read it, if that can be, and is not
-        copied any more. Write into it (`image.data[:] = ...`) and do not replace it; it cannot be written afterwards.
-        A block that raises publishes nothing. One loan at a time; a second one is an ordinary message.
+        The longest of its arrays is in shared memory, if possible, where subscriptions of other processes read it
+        without a copy. Write into it (`image.data[:] = ...`) rather than replace it; after the block it is read-only.
+        A block that raises publishes nothing. One loan at a time uses shared memory; others are ordinary messages.
 
         Args:
-            lengths: The number of elements of its arrays of numbers, by field.
+            lengths: Number of elements of its arrays of numbers, by field.
 
         Raises:
-            EncodeError: The message has no such array.
+            EncodeError: The message has no such array of numbers.
             ClosedError: The node is not running.
         """
         self._announced()
@@ -289,11 +290,11 @@ class TopicPublisher(Endpoint, Generic[M]):
         return zeros(field.type.base, count)
 
     def _not_sent(self, error: Exception) -> Exception:
-        """The error to raise for one of the transport's, which is to be expected where another thread ends the node."""
+        """Convert the transport's error, which is expected if another thread stops the node."""
         return error if self.host.is_running else ClosedError(f"{self.name}: node {self.host.full_name} has ended")
 
     def assert_liveliness(self) -> None:
-        """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
+        """Assert liveliness without publishing, for MANUAL_BY_TOPIC liveliness.
 
         Raises:
             ClosedError: The node is not running.
@@ -309,18 +310,18 @@ class TopicPublisher(Endpoint, Generic[M]):
                 timer.move(self.host.clock)
 
     def statistics(self) -> dict[str, Any]:
-        """Messages published; of those with arrays also how many went through shared memory, and its bytes."""
+        """Return counters of messages; for types with arrays, also those of messages sent by shared memory."""
         large = self._large
         shared = {} if large is None else {"in_memory": large.in_memory, "memory": large.memory}
         return {"published": self.published, **shared, **super().statistics()}
 
     def get_subscription_count(self) -> int:
-        """Number of subscriptions in the graph that get these messages."""
+        """Return the number of matched subscriptions."""
         self._announced()
         return len(self.matched)
 
     def pause(self, why: str) -> Runner | None:
-        """Send nothing; what is published meanwhile is not sent later."""
+        """Discard published messages until `resume`."""
         self._lengthen()
         if self._paused is None:
             self._paused = (self._sender, self._here)
@@ -344,24 +345,24 @@ class TopicPublisher(Endpoint, Generic[M]):
 
 
 class _NotOpen:
-    """What a publisher sends with before and after it is on the network."""
+    """The sender of a publisher that is not on the network."""
 
     is_wanted = False
 
     def put(self, payload: Payload, *, attachment: bytes) -> None:
-        """Nothing is sent."""
+        """Discard the payload."""
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: there are no resources."""
 
 
 _NOT_OPEN = _NotOpen()
 
 
 def _nothing() -> None:
-    """No readers are followed."""
+    """Do nothing: no readers are tracked."""
 
 
 def alive_key(publisher: Entity) -> str:
-    """Where a publisher with manual liveliness asserts that it is alive. rmw_zenoh has no equivalent."""
+    """Return the key of a publisher's manual liveliness assertions. rmw_zenoh has no equivalent."""
     return f"@graphflow/{publisher.domain}/alive/{publisher.gid.hex()}"

@@ -1,6 +1,6 @@
-"""Publishers and subscriptions of serialized messages: of any type, also one whose definition is not known here.
+"""Publishers and subscriptions of serialized messages of any type, even without its definition.
 
-Recorders, players and meters use them: nothing is decoded.
+Bag recording, bag playback and topic statistics use them: nothing is decoded.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ def subscribe(
     type_hash: str = "",
     on_event: OnEvent | None = None,
 ) -> RawSubscription:
-    """A subscription of serialized messages.
+    """Create a subscription of serialized messages.
 
     Args:
         type_name: `package/msg/Name`.
-        topic: Its full name; it is not remapped.
-        callback: Called on the loop with each message, and not in a group: it must not wait.
-        type_hash: RIHS01 of the type, where its definition is not known here.
+        topic: The full name, which is not remapped.
+        callback: Called on the loop with each message, outside any group: it must not block.
+        type_hash: The type's RIHS01 hash, if its definition is not known here.
         on_event: Called with each `QosEvent`.
 
     Raises:
-        UnknownInterface: The type's name is none.
-        InvalidName: The topic's is none.
+        UnknownInterface: `type_name` is not the name of a type.
+        InvalidName: `topic` is not a legal name.
     """
     core = _checked(node, type_name, topic)
     return core.add(RawSubscription(core, type_name, topic, qos, callback, type_hash, on_event))
@@ -44,13 +44,13 @@ def subscribe(
 def advertise(
     node: Node, type_name: str, topic: str, qos: Qos, *, type_hash: str = "", on_event: OnEvent | None = None
 ) -> RawPublisher:
-    """A publisher of serialized messages. Arguments and errors as for `subscribe`."""
+    """Create a publisher of serialized messages. Arguments and errors as for `subscribe`."""
     core = _checked(node, type_name, topic)
     return core.add(RawPublisher(core, type_name, topic, qos, type_hash, on_event))
 
 
 def _checked(node: Node, type_name: str, topic: str) -> NodeCore:
-    """The node's core, if topic and type may be the names of some: others announce what they like."""
+    """Return the node's core after checking both names, which may come from other participants."""
     check_full_name(topic)
     if len(type_name.split("/")) != 3:
         raise UnknownInterface(f"{printable(type_name)!r} is not an interface name")

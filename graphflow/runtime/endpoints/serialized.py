@@ -1,4 +1,4 @@
-"""Endpoints of serialized messages: nothing is decoded, so the type may be one whose definition is not known here."""
+"""Endpoints of serialized messages, whose type's definition need not be known."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
 AT_ONCE = 64
-"""Messages that are handed on before others have a turn of the loop."""
+"""Messages delivered per iteration of the event loop."""
 UNKNOWN = MessageInfo(0, 0, bytes(16))
-"""Stands for what a message without a readable attachment does not say."""
+"""The `MessageInfo` of a message without a readable attachment."""
 
 Callback = Callable[[bytes, MessageInfo], object]
-"""Takes a serialized message (CDR, with its header of four bytes), and what came beside it."""
+"""Takes a serialized message (CDR, with its 4-byte header) and its `MessageInfo`."""
 
 
 class RawSubscription(Endpoint):
-    """A subscription that hands on messages as they came. `raw.subscribe` makes one."""
+    """A subscription that delivers serialized messages. Made by `raw.subscribe`."""
 
     kind = Kind.SUBSCRIPTION
 
@@ -45,7 +45,7 @@ class RawSubscription(Endpoint):
     ) -> None:
         super().__init__(host, type_name, name, qos, on_event, type_hash)
         self.received = 0
-        """Messages handed on."""
+        """Messages delivered."""
         self._callback = callback
         self._inbox: Inbox | None = None
         self._read: Callable[[Any], tuple[bytes, bytes | None]] = unreadable
@@ -53,19 +53,19 @@ class RawSubscription(Endpoint):
 
     @property
     def type_hash(self) -> str:
-        """RIHS01 of the type."""
+        """The type's RIHS01 hash."""
         return self._type_hash or registry.hash_of(self.type_name)
 
     @property
     def dropped(self) -> int:
-        """Messages lost because the queue (`qos.depth`) was full."""
+        """Messages lost to a full queue (`qos.depth`)."""
         return self._inbox.dropped if self._inbox is not None else 0
 
     def _open(self, key: str) -> None:
         context = self.host.context
         self._read = context.session.read
         self._inbox = open_inbox(self.qos, context.session.bell, self._arrived)
-        # What nodes of this process publish comes by hand, as for other subscriptions.
+        # Publishers of this process deliver by `hand`, as to other subscriptions.
         is_volatile = self.qos.durability is Durability.VOLATILE
         options = {"ignore_local": is_volatile, "in_order": is_volatile}
         self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, **options))
@@ -79,7 +79,7 @@ class RawSubscription(Endpoint):
             self._rings.forget_ended()
 
     def hand(self, handed: Handed) -> None:
-        """Take a message of a publisher of this process."""
+        """Receive a message of a publisher of this process."""
         if self._inbox is not None:
             self._inbox.put(handed)
 
@@ -97,7 +97,7 @@ class RawSubscription(Endpoint):
             payload, beside = self._read(arrival)
             try:
                 info = MessageInfo._make(attachment.fields(beside or b""))
-            except DecodeError:  # peers that send none, or one of another layout, are heard anyway
+            except DecodeError:  # accept peers whose attachment is missing or has another layout
                 info = UNKNOWN
             self._callback(bytes(payload), info)
         if items:
@@ -113,7 +113,7 @@ class RawSubscription(Endpoint):
 
 
 class RawPublisher(Endpoint):
-    """A publisher of messages that are serialized already. `raw.advertise` makes one."""
+    """A publisher of serialized messages. Made by `raw.advertise`."""
 
     kind = Kind.PUBLISHER
 
@@ -128,7 +128,7 @@ class RawPublisher(Endpoint):
     ) -> None:
         super().__init__(host, type_name, name, qos, on_event, type_hash)
         self.published = 0
-        """Messages sent since the start; also the last sequence number."""
+        """Messages sent since the start, which is also the last sequence number."""
         self._sender: Sender | None = None
         self._here: Sequence[Receiver] = ()
 
@@ -141,11 +141,10 @@ class RawPublisher(Endpoint):
         """Send a serialized message. Never waits.
 
         Args:
-            payload: CDR, with its header of four bytes. Nothing looks at it, unless subscriptions of this process
-                are to get it.
+            payload: CDR with its 4-byte header. It is checked only if subscriptions of this process receive it.
 
         Raises:
-            DecodeError: Subscriptions of this process are to get it, and it is no message of the type.
+            DecodeError: Subscriptions of this process would receive it, and it is not a message of the type.
             ClosedError: The node is not running.
         """
         fields = (self.published + 1, self.host.context.clock.time_ns(), self._announced().gid)

@@ -1,4 +1,4 @@
-"""Service clients: calls with a deadline, whose failures have names."""
+"""Service clients: calls with a deadline and specific errors."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
 DISCOVERY_GRACE = 1.0
-"""Seconds a call waits for a server that has not been announced yet."""
+"""Seconds that a call waits for a server to be announced."""
 
 
 def nobody_serves(cache: GraphCache, name: str, type_name: str, *, is_own: bool = False) -> str:
-    """Say that no node offers a service of a name and type, and what there is instead.
+    """Return a sentence on a service that no node offers, with similar ones on offer.
 
     Args:
-        is_own: Whether the node that asks declares it, and is not ready yet.
+        is_own: Whether the calling node itself declares the service but is not ready yet.
     """
     offered = [e.type for e in cache.endpoints(Kind.SERVICE, name)]
     if offered and type_name not in offered:
@@ -73,10 +73,10 @@ class _Reply(NamedTuple):
 
 
 class ServiceClient(Endpoint, Generic[Request, Response]):
-    """A client of a service, as it runs.
+    """A client of a service.
 
     Args:
-        group: The group whose slots responses take, as in ROS 2; None delivers them at once.
+        group: The group in which responses take a slot, as in ROS 2; None delivers them at once.
     """
 
     kind = Kind.CLIENT
@@ -94,7 +94,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._group = group
         self._replies: deque[_Reply] = deque()
         self.runner: Runner | None = None
-        """Delivers responses that wait for a slot of the client's group."""
+        """Runs the deliveries of responses that wait for a slot of the client's group."""
         service = registry.service_schema(type_.NAME)
         self._request: type[Any] = registry.interface_class(service.request.name)
         self._requests, self._responses = registry.codec(service.request.name), registry.codec(service.response.name)
@@ -102,7 +102,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._service_events = ServiceEvents(host, type_, name)
         self._caller: Caller | None = None
         self._line: ClientLine | None = None
-        """The line to the server, while there is only one."""
+        """The line to the server, while there is exactly one."""
         self._pending: set[Future[Answer]] = set()
         self._deadlines: Deadlines | None = None
         self._waiting: set[Future[None]] = set()
@@ -118,23 +118,23 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._service_events.open()
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
-        """The same as `ServiceServer.configure_introspection`."""
+        """Publish service events as `ServiceServer.configure_introspection` does."""
         self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
 
     def service_is_ready(self) -> bool:
-        """Whether a server of this name and type is in the graph and can be reached."""
+        """Whether a server of this name and type is in the graph and reachable."""
         self._announced()
-        # A token may come before what it announces: only both together make the first call safe.
+        # A token may arrive before its endpoint is reachable; the first call is safe only with both.
         return bool(self.matched) and self._caller is not None and self._caller.has_server
 
     async def wait_ready(self, timeout: float | None = None) -> bool:
-        """Wait until there is a server; returns whether there is one.
+        """Wait for a server; returns whether one is ready.
 
         Args:
-            timeout: Seconds; None to wait as long as it takes.
+            timeout: Seconds; None for no limit.
 
         Raises:
-            ClosedError: The node is not running, or stopped meanwhile.
+            ClosedError: The node is not running, or stops during the wait.
         """
         return await self._wait_ready(timeout)
 
@@ -155,7 +155,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return True
 
     async def expect_ready(self, timeout: float | None) -> None:
-        """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
+        """Wait for a server as `wait_ready`, but raise ServiceUnavailable if none is ready in time."""
         if not await self._wait_ready(timeout, raises=True):
             is_own = self.host.serves(self.name)
             alone = "" if is_own else await alone_here(self.host.context, self.host.full_name)
@@ -177,7 +177,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._look_ready()
 
     async def nobody(self) -> str:
-        """Why there is no server to be reached."""
+        """Return the reason why no server is reachable."""
         cache = self.host.context.cache
         same = [e for e in cache.endpoints(Kind.SERVICE, self.name) if e.type == self.type_name]
         if same:
@@ -185,7 +185,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return nobody_serves(cache, self.name, self.type_name, is_own=self.host.serves(self.name))
 
     async def _nobody_else(self) -> str:
-        """As `nobody`; empty for services of an action, and for those whose waits the search for deadlocks tells."""
+        """Return `nobody`'s reason; "" for an action's services, and for waits that the deadlock search reports."""
         return "" if is_hidden(self.name) or self.host.serves(self.name) else await self.nobody()
 
     async def call(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
@@ -193,11 +193,11 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
 
         Args:
             request: An instance of the service's `Request`.
-            timeout: Seconds until the call gives up; None waits for ever; left out, as long as the graph says (10 s).
+            timeout: Seconds; None for no limit; by default the graph's `call_timeout` (10 s).
 
         Raises:
-            ServiceUnavailable: There is no server, and none came within `DISCOVERY_GRACE`.
-            ServerLost: The server stopped or went away while the call waited.
+            ServiceUnavailable: No server appeared within `DISCOVERY_GRACE`.
+            ServerLost: The server stopped or disappeared during the call.
             CallTimeout: The deadline passed.
             RemoteError: The handler raised.
             EncodeError: The request does not fit its type.
@@ -283,23 +283,23 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
     def _send(
         self, sequence: int, payload: bytes, beside: bytes, chain: bytes, arrived: Callable[[Answer | None], None]
     ) -> Callable[[], None]:
-        """Send a request; returns a function that gives up the response."""
+        """Send a request; returns a function that abandons the response."""
         line = self._line if len(self.matched) == 1 else None
         if line is not None and line.is_open:
             return line.call(sequence, payload, beside + chain, arrived)
         assert self._caller is not None
-        # Servers other than graphflow's may not understand what follows the attachment.
+        # Other servers may not accept an attachment with a call chain at its end.
         is_understood = self._is_own() or (line is not None and line.is_heard)
         return self._caller.call(payload, beside + chain if is_understood else beside, arrived)
 
     def _queued(self, answered: Callable[[Answer | None], None], call: str) -> Callable[[Answer | None], None]:
-        """Make responses wait for a slot of the client's group."""
+        """Return a callback that queues responses for a slot of the client's group."""
         runner = self.runner
         assert runner is not None
 
         def queue(answer: Answer | None) -> None:
             if answer is not None and answer.is_error and isinstance(error_of(answer.payload, ""), DeadlockError):
-                answered(answer)  # it would wait for its own caller
+                answered(answer)  # the deadlock's own error must not wait for a slot
             elif answer is not None:
                 self._replies.append(_Reply(call, lambda: answered(answer)))
                 runner.wake()
@@ -309,13 +309,13 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return queue
 
     def call_sync(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
-        """Call from a thread, and block it until the response is there. For `def` handlers with `thread=True`.
+        """Call from a thread and block it until the response arrives. For `def` handlers with `thread=True`.
 
         Arguments and errors as for `call`.
 
         Raises:
-            LoopBlockedError: This is the event loop's thread, where nothing could ever be received. With the deadlock
-                policy `report`, which is for teaching, it blocks anyway.
+            LoopBlockedError: This is the event loop's thread, which could not receive the response. With the deadlock
+                policy `report`, which is for teaching, the call blocks anyway.
         """
         context = self.host.context
         if (thread := threading.get_ident()) != context.ledger.thread:
@@ -335,14 +335,14 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             return await self.call(request, timeout=timeout)
 
     def _block(self, request: Request, timeout: float | None) -> Response:
-        """Send a request and wait for its response where it cannot arrive."""
+        """Send a request and block the event loop, where no response can arrive."""
         asking = self.call(request, timeout=timeout)
         with closing(asking), self.host.context.ledger.blocked_by(asking.send(None)):
             threading.Event().wait(timeout)
         raise CallTimeout(f"no response from {self.name} could arrive within {timeout:g} s: the event loop was blocked")
 
     def _is_own(self) -> bool:
-        """Whether the service's only server is in this process."""
+        """Whether the only server of the service is in this process."""
         servers = self.matched.values()
         return len(servers) == 1 and all(server.zid == self.host.context.session.zid for server in servers)
 
@@ -350,7 +350,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return self.runner
 
     def close(self) -> None:
-        """Withdraw the client. Calls that are waiting end with ClosedError."""
+        """Close the client. Pending calls end with ClosedError."""
         self._service_events.close()
         waiting: list[Future[Any]] = [*self._pending, *self._waiting]
         for future in waiting:
@@ -367,15 +367,15 @@ def _deliver(reply: _Reply) -> None:
 
 
 def _delivered(*_: Any) -> None:
-    """Nothing: the call's future already has its outcome."""
+    """Do nothing: the call's future already has its outcome."""
 
 
 def _nothing() -> None:
-    """Nothing: there is nothing to give up yet."""
+    """Do nothing: there is no response to abandon yet."""
 
 
 def error_of(payload: bytes, service: str) -> CallError:
-    """What an error reply means to the caller."""
+    """Convert an error response to the caller's exception."""
     error = RemoteError.from_payload(payload, service)
     if error.type == STOPPING.type:
         return ServerLost(f"the server of {service} stopped before it answered")
@@ -384,7 +384,7 @@ def error_of(payload: bytes, service: str) -> CallError:
 
 
 def sequence_of(answer: Answer) -> int | None:
-    """The number of the call that an answer is for; None if it does not say."""
+    """Return the sequence number of a response's call; None if it has none."""
     try:
         return attachment.unpack((answer.attachment or b"")[: attachment.SIZE]).sequence
     except DecodeError:

@@ -1,4 +1,4 @@
-"""Service introspection: what passes between a client and a server, published for anyone who wants to look.
+"""Service introspection: events of calls, published for observers.
 
 Source: service_msgs/msg/ServiceEventInfo; rcl service_introspection.
 """
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from graphflow.msgs.base import Message, Service
 
 Introspection = Literal["off", "metadata", "contents"]
-"""What is published of a call: nothing, who called when, or request and response as well."""
+"""Content of the events of a call: nothing, metadata (the caller and the times), or the messages as well."""
 
 
 class ServiceEvent(IntEnum):
-    """ServiceEventInfo.event_type."""
+    """The constants of ServiceEventInfo.event_type."""
 
     REQUEST_SENT = 0
     REQUEST_RECEIVED = 1
@@ -33,7 +33,7 @@ def _event_class(type_: type[Service[Any, Any]]) -> Any:
 
 
 class ServiceEvents:
-    """The topic `<service>/_service_event` of one client or server, while introspection is on."""
+    """The topic `<service>/_service_event` of one client or server."""
 
     def __init__(self, host: Host, type_: type[Service[Any, Any]], name: str) -> None:
         self._host, self._event, self._name = host, _event_class(type_), name
@@ -47,13 +47,13 @@ class ServiceEvents:
         return self._level != "off"
 
     def configure(self, level: Introspection, qos: Qos, *, is_open: bool) -> None:
-        """Publish this much from now on.
+        """Set the content of future events.
 
         Args:
             is_open: Whether the client or server is on the network.
 
         Raises:
-            ValueError: There is no such level.
+            ValueError: The level is unknown.
         """
         if level not in ("off", "metadata", "contents"):
             raise ValueError(f"introspection must be off, metadata or contents, not {level!r}")
@@ -80,11 +80,11 @@ class ServiceEvents:
         request: Message | None = None,
         response: Message | None = None,
     ) -> None:
-        """Publish one event.
+        """Publish an event.
 
         Args:
-            gid: The client's.
-            sequence: The client's number of the call.
+            gid: The client's GID.
+            sequence: The call's sequence number at the client.
         """
         if self._publisher is None or not self._publisher.is_wanted:
             return

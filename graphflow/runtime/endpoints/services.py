@@ -1,4 +1,4 @@
-"""Service servers."""
+"""Service servers: queue requests, run the handler and send the responses."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
 REQUEST_QUEUE = 64
-"""Requests that may wait for a service; any more are refused with ServerBusy."""
+"""Longest queue of requests; further ones are refused with ServerBusy."""
 
 OFFERED_TWICE = "%s is offered twice by this node, by %s (%s) and %s (%s): each call reaches both; keep one"
 STOPPING = RemoteError("Cancelled", "the server is stopping")
-"""What a stopping server answers; no exception class has that name."""
+"""The response of a stopping server; no exception class has that name."""
 
 
 class ServiceServer(Endpoint, Generic[Request, Response]):
-    """A server of a service, as it runs.
+    """A server of a service.
 
     Args:
-        label: The handler's name, for messages.
+        label: The handler's name in messages.
         is_inner: Whether the service is one that every node has, or part of an action.
-        takes_response: Whether the handler is given an empty response to fill in.
-        place: Where the handler is written.
+        takes_response: Whether the handler also takes an empty response to fill in.
+        place: The handler's place in the source.
     """
 
     kind = Kind.SERVICE
@@ -75,7 +75,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._response: type[Any] = registry.interface_class(service.response.name)
         self.runner: Runner | None = None
         self.refused = 0
-        """Requests answered with ServerBusy because too many were waiting."""
+        """Requests refused with ServerBusy by a full queue."""
         self._inbox: RequestInbox | None = None
         self._lines: ServerLines | None = None
         self._service_events = ServiceEvents(host, type_, name)
@@ -85,7 +85,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return title_of("service", self._label)
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
-        """Publish what passes on `<service>/_service_event`: nothing, its metadata, or its contents as well."""
+        """Publish events of calls on `<service>/_service_event`: none, metadata, or the messages as well."""
         self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
 
     def _open(self, key: str) -> None:
@@ -126,7 +126,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         items = self._inbox.items
         while len(items) > REQUEST_QUEUE:
             self._refuse(items.pop(), f"has {REQUEST_QUEUE} requests waiting")
-        # As few as may wait exceed the bound only where one of them is larger than its share.
+        # REQUEST_QUEUE requests exceed the byte limit only if one is larger than its share: sum up only then.
         while len(items) > 1 and request_size(items[-1]) > BYTES_BOUND // REQUEST_QUEUE:
             if sum(map(request_size, tuple(items))) <= BYTES_BOUND:
                 break
@@ -137,7 +137,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         warn_of_refused(self._inbox, f"{self.name} of {self.host.full_name}: requests")
 
     def _fail_hopeless(self) -> None:
-        """End calls that wait, directly or through others, for runs that wait for them."""
+        """End waiting calls that depend, directly or through others, on runs that wait for them."""
         assert self._inbox is not None
         assert self.runner is not None
         search = self.host.context.search
@@ -159,7 +159,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return self._callback(message, self._response()) if self._takes_response else self._callback(message)
 
     def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
-        if not self.host.is_running:  # stopping did not wait for this run, and its clients know that it has gone
+        if not self.host.is_running:  # the run outlived the stop, and its clients have seen the server go
             return
         if error is None:
             try:
@@ -185,7 +185,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
 
     def _told(self, error: BaseException) -> str:
-        """What a client is told of an error in the handler; a deadlock was explained here, and once is enough."""
+        """Return the error text for the client; a deadlock's full explanation is logged only here."""
         explain(error)
         head, _, rest = str(error).partition("\n")
         if not rest or not isinstance(error, DeadlockError):
@@ -193,7 +193,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return f"{head}; explained in the log of {self.host.full_name}"
 
     def statistics(self) -> dict[str, Any]:
-        """Requests answered or under way, failed, waiting and refused."""
+        """Return counters: requests answered or under way, failed, waiting and refused."""
         runner, waiting = self.runner, 0 if self._inbox is None else len(self._inbox.items)
         runs, errors = (0, 0) if runner is None else (runner.runs, runner.errors)
         refused = self.refused + (0 if self._inbox is None else self._inbox.dropped)
@@ -204,7 +204,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return self.runner
 
     def pause(self, why: str) -> Runner | None:
-        """Answer requests with an error that says why."""
+        """Answer requests with an error that has the reason."""
         super().pause(why)
         self._answer_no_more()
         return self.runner

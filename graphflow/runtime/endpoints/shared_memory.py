@@ -1,8 +1,8 @@
-"""Who reads large messages from the memory of their publisher: processes of the same user on the same machine.
+"""Shared-memory delivery: subscriptions in other processes that read large messages from the publisher's memory.
 
-A subscription that does so announces it beside its own token. A publisher uses its memory while that is so of every
-subscription that it reaches in other processes, and sends ordinary messages otherwise: ROS 2's nodes, those of other
-machines and of other users understand nothing else.
+Such a subscription, of the same user on the same machine, is announced by a second token. A publisher uses shared
+memory while all its subscriptions in other processes are of that kind, and sends ordinary messages otherwise: nodes of
+ROS 2, of other machines and of other users cannot read it.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from graphflow.wire.liveliness import Entity
 from graphflow.wire.shared_memory import Reader, parse_reader, reader_token, readers_key, ring_key
 
 READERS_BOUND = 10_000
-"""Subscriptions that are kept track of: anybody announces as many as they like."""
+"""Subscriptions tracked; the limit protects against arbitrary announcements."""
 
 
 class RingReading:
-    """What lets a subscription read rings, until closed."""
+    """A subscription's access to rings, until closed."""
 
     def __init__(self, receiver: RingReceiver, token: Closable) -> None:
         self._receiver, self._token = receiver, token
 
     def forget_ended(self) -> None:
-        """Give back the memory of publishers that have gone."""
+        """Release the memory of publishers that have gone."""
         self._receiver.forget_ended()
 
     def close(self) -> None:
@@ -43,7 +43,7 @@ class Readers:
         self._listeners: set[Callable[[], None]] = set()
 
     def read(self, entity: Entity, inbox: Inbox) -> RingReading | None:
-        """Have a subscription of this process read rings, and announce it; None where memory cannot be shared."""
+        """Let a subscription read rings, and announce it; returns None if memory cannot be shared."""
         receiver = self._session.open_ring_receiver(ring_key(self._domain, entity.data_key), entity.eid, inbox)
         if receiver is None:
             return None
@@ -51,14 +51,14 @@ class Readers:
         return RingReading(receiver, self._session.announce(token))
 
     def follow(self, changed: Callable[[], None]) -> Callable[[], None]:
-        """Call `changed` whenever a reader comes or goes; returns a function that stops this."""
+        """Call `changed` whenever a reader appears or leaves; returns a function that stops this."""
         if self._watch is None:
             self._watch = self._session.watch(readers_key(self._domain), self._token)
         self._listeners.add(changed)
         return lambda: self._listeners.discard(changed)
 
     def of(self, subscriptions: Iterable[Entity]) -> dict[tuple[str, int], int] | None:
-        """The depths of these subscriptions' queues; None unless all of them read rings."""
+        """Return the queue depths of these subscriptions; None unless all of them read rings."""
         found = {}
         for entity in subscriptions:
             who = (entity.zid, entity.eid)

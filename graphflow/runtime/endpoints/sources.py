@@ -1,4 +1,4 @@
-"""The publishers of a topic, as a subscription keeps track of them."""
+"""A subscription's records of its publishers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from graphflow.transport.base import Closable
 
 
 class Source:
-    """One publisher as a subscription knows it."""
+    """One publisher, as a subscription knows it."""
 
     __slots__ = ("alive", "lease", "lifespan_ns", "needs_care", "sequence")
 
@@ -19,7 +19,7 @@ class Source:
         self.expects(lifespan_ns)
 
     def expects(self, lifespan_ns: int, lease: SilenceTimer | None = None) -> None:
-        """Set for how long its messages count, and the timer of its signs of life."""
+        """Set the lifespan of its messages, in nanoseconds, and its liveliness timer."""
         self.lifespan_ns = lifespan_ns
         self.lease = lease or self.lease
         self.needs_care = lifespan_ns != INFINITE_NS or self.lease is not None

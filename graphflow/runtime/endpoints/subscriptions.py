@@ -1,4 +1,4 @@
-"""Subscriptions."""
+"""Subscriptions: decode messages, and pass them to a callback or an iteration."""
 
 from __future__ import annotations
 
@@ -32,26 +32,26 @@ from graphflow.wire.liveliness import Entity, Kind
 M = TypeVar("M", bound=Message)
 
 LOSS_TOLD = 100
-"""Messages dropped from the queue from which on the loss of most is told."""
+"""Messages dropped from a full queue before a warning that most are lost."""
 SOURCES_BOUND = 4096
-"""Publishers that a subscription keeps track of."""
+"""Publishers tracked by a subscription."""
 
 
 _NO_INFO = (0, 0, bytes(16))
-"""Stands in for a missing attachment, or for one of another layout."""
+"""The fields of a missing attachment, or of one with another layout."""
 
 
 class TopicSubscription(Endpoint, Generic[M]):
-    """A subscription as it runs: with a callback, or to be iterated: `async for message in subscription`.
+    """A subscription with a callback, or to be iterated: `async for message in subscription`.
 
     Args:
-        takes_info: Whether the callback is called with the message and its `MessageInfo`.
-        ignore_local: Leave out what this process publishes.
+        takes_info: Whether the callback also takes the message's `MessageInfo`.
+        ignore_local: Whether to skip messages that this process publishes.
     """
 
     kind = Kind.SUBSCRIPTION
     in_order = False
-    """Whether answers that are sent after a message must not overtake it."""
+    """Whether responses sent after a message must not overtake it."""
 
     def __init__(
         self,
@@ -71,7 +71,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
         self.expired = 0
-        """Messages dropped because they were older than the publisher's lifespan, or the subscription's."""
+        """Messages dropped because they exceeded the publisher's lifespan or the subscription's."""
         self._callback = callback
         self._takes_info = takes_info
         self._ignore_local = ignore_local
@@ -91,7 +91,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._echo: Echo | None = None
         self._rings: RingReading | None = None
         self._wake: Callable[[], None] = _nothing
-        """What a message has called when the subscription is not paused."""
+        """The function that an arrival calls while the subscription is not paused."""
 
     @property
     def handler_title(self) -> str:
@@ -124,7 +124,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._inbox.tell_losses(self._warn_of_losses, 1 if isinstance(self._inbox, DeepInbox) else LOSS_TOLD)
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)
-        # What nodes of this process publish comes by hand, unless it is wanted not at all.
+        # Publishers of this process deliver by `hand`, unless `ignore_local` excludes them.
         ignore_local = self._ignore_local or self.qos.durability is Durability.VOLATILE
         is_large = self.qos.durability is Durability.VOLATILE and registry.has_number_lists(self.type_name)
         options = {"ignore_local": ignore_local, "in_order": self.in_order or is_large}
@@ -136,16 +136,16 @@ class TopicSubscription(Endpoint, Generic[M]):
             context.intra_process.join(key, self)
 
     def _new_inbox(self) -> Inbox:
-        """Where messages wait for those who iterate."""
+        """Return the queue for messages to be iterated."""
         return open_inbox(self.qos, self.host.context.session.bell, self._arrived)
 
     def hand(self, handed: Handed) -> None:
-        """Take a message of a publisher of this process."""
+        """Receive a message of a publisher of this process."""
         if self._inbox is not None:
             self._inbox.put(handed)
 
     def _watch_deadline(self, inbox: Inbox) -> None:
-        """Count a missed deadline for every period without a message, while there is a publisher to meet it."""
+        """Count a missed deadline for every period without a message, while there is a publisher."""
         timer = SilenceTimer(self.host.clock, self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
         ready = inbox.ready
 
@@ -165,16 +165,16 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     @property
     def dropped(self) -> int:
-        """Messages lost because the queue (`qos.depth`) was full."""
+        """Messages lost to a full queue (`qos.depth`)."""
         return self._inbox.dropped if self._inbox is not None else 0
 
     @property
     def lost(self) -> int:
-        """Messages that never arrived, counted by gaps in the publishers' sequence numbers."""
+        """Messages that never arrived, by gaps in the publishers' sequence numbers."""
         return self.event_total("message_lost")
 
     def statistics(self) -> dict[str, Any]:
-        """Messages received, waiting, dropped, malformed and expired; runs and failed runs of the callback."""
+        """Return counters of messages (received, waiting, dropped, malformed, expired) and of callback runs."""
         waiting = 0 if self._inbox is None else len(self._inbox.items)
         counts = {"received": self.received, "waiting": waiting, "dropped": self.dropped}
         counts |= {"malformed": self.malformed, "expired": self.expired}
@@ -189,11 +189,11 @@ class TopicSubscription(Endpoint, Generic[M]):
                 timer.move(self.host.clock)
 
     def get_publisher_count(self) -> int:
-        """Number of publishers in the graph whose messages arrive here."""
+        """Return the number of matched publishers."""
         self._announced()
         return len(self.matched)
 
-    # its publishers
+    # publishers
 
     def _matched(self, other: Entity, alive: bool) -> None:
         if not alive:
@@ -215,7 +215,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._follow_echo()
 
     def _follow_echo(self) -> None:
-        """Watch for a loop where the node's own publishers are the only ones."""
+        """Watch for a feedback loop while the node's own publishers are the only ones."""
         own = self._announced()
         is_alone = bool(self.matched) and all((e.zid, e.nid) == (own.zid, own.nid) for e in self.matched.values())
         if self._echo is None and is_alone and not self._ignore_local:
@@ -250,7 +250,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         source.alive = session.open_receiver(alive_key(other), DEFAULT, inbox)
 
     def _revive(self, gid: bytes) -> None:
-        """A publisher with manual liveliness was heard."""
+        """Note a liveliness assertion of a publisher."""
         source = self._sources.get(gid)
         if source is None or source.lease is None:
             return
@@ -269,10 +269,10 @@ class TopicSubscription(Endpoint, Generic[M]):
             source.lease.stop()
             source.alive.close()
 
-    # taking messages
+    # messages
 
     def _take(self, arrival: Any) -> tuple[M, tuple[int, int, bytes]] | None:
-        """The arrived message and the fields of its `MessageInfo`; None when it is too old or malformed."""
+        """Return a message and the fields of its `MessageInfo`; None if it is expired or malformed."""
         if arrival.__class__ is Handed:
             if self._is_fresh(*arrival.fields):
                 return arrival.take(), arrival.fields
@@ -281,7 +281,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         payload, beside = self._read(arrival)
         try:
             fields = attachment.fields(beside or b"")
-        except DecodeError:  # peers that send none, or one of another layout, are heard anyway
+        except DecodeError:  # accept peers whose attachment is missing or has another layout
             fields = _NO_INFO
         else:
             if not self._is_fresh(*fields):
@@ -294,10 +294,10 @@ class TopicSubscription(Endpoint, Generic[M]):
             return None
 
     def _is_fresh(self, sequence: int, source_ns: int, gid: bytes) -> bool:
-        """Note where a message stands among its publisher's; False when it has outlived its lifespan."""
+        """Record a message's sequence number and time; returns False if it has exceeded its lifespan."""
         source = self._sources.get(gid)
         if source is None:
-            if len(self._sources) >= SOURCES_BOUND:  # invented senders must not fill the memory
+            if len(self._sources) >= SOURCES_BOUND:  # forged senders must not exhaust the memory
                 return True
             source = self._sources[gid] = Source(self.qos.lifespan_ns)
         missing = sequence - source.sequence - 1
@@ -311,7 +311,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         return self.host.context.clock.time_ns() - source_ns <= source.lifespan_ns
 
     def _count_missing(self, missing: int) -> None:
-        """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
+        """Count messages lost in transit, excluding those that the full queue dropped: both leave gaps."""
         self._gaps += missing
         dropped = self.dropped
         self._warn_of_losses()
@@ -320,7 +320,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._tell("message_lost", lost)
 
     def _warn_of_losses(self) -> None:
-        """Tell once that a deep queue was full, and that most messages are lost."""
+        """Warn once that a deep queue overflowed, or that most messages are lost."""
         dropped = self.dropped
         if self._callback is None and not (self._taken or self._waiters):
             if not self._has_told_loss and (dropped >= LOSS_TOLD or isinstance(self._inbox, DeepInbox)):
@@ -354,9 +354,9 @@ class TopicSubscription(Endpoint, Generic[M]):
             )
 
     def _invoker(self) -> Callable[[Any], Any]:
-        """`_invoke`, with the usual case written out in one function: the next message of a publisher that is known.
+        """Return `_invoke`, with a fast path for the next message of a known publisher.
 
-        Whatever is unusual about an arrival goes the general way.
+        All other arrivals take the general path.
         """
         general, callback, takes_info = self._invoke, self._callback, self._takes_info
         read, decode, sources = self._read, self._codec.decode, self._sources
@@ -416,13 +416,13 @@ class TopicSubscription(Endpoint, Generic[M]):
         return (await self.next_with_info())[0]
 
     async def next_with_info(self) -> tuple[M, MessageInfo]:
-        """The next message and its `MessageInfo`. Ends the iteration when the subscription is closed."""
+        """Return the next message and its `MessageInfo`. Raises StopAsyncIteration when the subscription is closed."""
         while True:
             if self._inbox is None or self.entity is None:
                 raise StopAsyncIteration
             while self._inbox.items:
                 if self._taken % BURST == BURST - 1:
-                    await asyncio.sleep(0)  # a sender that is faster than the reader must not hold the loop
+                    await asyncio.sleep(0)  # a sender faster than the reader must not monopolize the loop
                     if not self._inbox.items:
                         break
                 self._taken += 1
@@ -441,7 +441,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         return self.runner
 
     def pause(self, why: str) -> Runner | None:
-        """Leave out what arrives."""
+        """Drop arrivals until `resume`."""
         if self._inbox is not None and not self.idle_because:
             self._wake, self._inbox.ready = self._inbox.ready, self._leave_out
             self._leave_out()
@@ -461,7 +461,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         assert self._inbox is not None
         self._inbox.items.clear()
         if self._deadline is not None:
-            self._deadline.touch()  # the publisher has met it
+            self._deadline.touch()  # the publisher has met the deadline
 
     def close(self) -> None:
         if self.runner is not None:
@@ -480,7 +480,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
 
 def _gid_of(arrival: Any, read: Callable[[Any], tuple[bytes, bytes | None]]) -> bytes:
-    """The sender of what has arrived; empty if it is not told."""
+    """Return an arrival's sender GID; b"" if unknown."""
     if isinstance(arrival, Handed):
         return arrival.fields[2]
     beside = read(arrival)[1]
@@ -492,4 +492,4 @@ def unreadable(arrival: Any) -> tuple[bytes, bytes | None]:
 
 
 def _nothing() -> None:
-    """Nothing waits yet."""
+    """Do nothing: no reader is waiting."""

@@ -1,8 +1,8 @@
-"""Endpoints for threads: what they send may come from any thread, and what arrives waits until a thread takes it.
+"""Endpoints for threads: any thread may send, and arrivals queue until a thread takes them.
 
-Messages pass as CDR, with its header of four bytes: whoever takes them has classes of its own. Arrivals do not come by
-way of the loop: they ring a bell that is given, so that one change of threads lies between the network and the handler.
-Opening and closing are for the loop, as with all endpoints.
+Messages are CDR with the 4-byte header, since rclpy has its own message classes. Arrivals bypass the loop and ring the
+bell passed to the endpoint, so that there is one thread switch between the network and the handler. Opening and closing
+happen on the loop, as for all endpoints.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ class ThreadedPublisher(TopicPublisher[Any]):
     """A publisher of serialized messages, for any thread."""
 
     unheard = 0
-    """The messages published so far that no subscription was there to get."""
+    """Messages published while there was no subscription."""
 
     def put(self, payload: bytes) -> None:
         """Send a message. Never waits.
 
         Raises:
-            DecodeError: Subscriptions of this process are to get it, and it is no message of the type.
+            DecodeError: Subscriptions of this process would receive it, and it is not a message of the type.
             ClosedError: The node is not running.
         """
         with self._order.lock:
@@ -76,7 +76,7 @@ class ThreadedPublisher(TopicPublisher[Any]):
 
 
 class Taken(NamedTuple):
-    """A message that was taken from a subscription."""
+    """A message taken from a subscription."""
 
     payload: bytes
     info: MessageInfo
@@ -87,7 +87,7 @@ class ThreadedSubscription(TopicSubscription[Any]):
 
     Args:
         bell: Rung when a message has arrived.
-        ready: Called by whom the bell wakes.
+        ready: Called by the thread that the bell wakes.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class ThreadedSubscription(TopicSubscription[Any]):
         return 0 if self._inbox is None else len(self._inbox.items)
 
     def take(self) -> Taken | None:
-        """The oldest message that waits; None if there is none. Those that are too old are left out."""
+        """Take the oldest message; None if there is none. Expired messages are skipped."""
         inbox = self._inbox
         while inbox is not None and self.entity is not None:
             try:
@@ -139,7 +139,7 @@ class ThreadedSubscription(TopicSubscription[Any]):
 
 
 class _AsItIs:
-    """Stands for a codec where messages pass as they came."""
+    """The identity codec, for messages that stay serialized."""
 
     @staticmethod
     def decode(payload: bytes) -> bytes:
@@ -150,7 +150,7 @@ _AS_IT_IS: Any = _AsItIs()
 
 
 class Asked(NamedTuple):
-    """A request that was taken from a service."""
+    """A request taken from a service."""
 
     payload: bytes
     sequence: int
@@ -160,7 +160,7 @@ class Asked(NamedTuple):
 
     @property
     def call(self) -> str:
-        """The id of the call in the wait-for graphs of all processes."""
+        """The call's id in the wait-for graphs of all processes."""
         return call_id(self.gid, self.sequence)
 
 
@@ -168,9 +168,9 @@ class ThreadedService(Endpoint):
     """A service whose requests threads take and answer.
 
     Args:
-        type_: A class with `NAME`; its `Event` is one of graphflow's.
+        type_: A class with `NAME`; its `Event` is a message class of graphflow's.
         bell: Rung when a request has arrived.
-        ready: Called by whom the bell wakes.
+        ready: Called by the thread that the bell wakes.
     """
 
     kind = Kind.SERVICE
@@ -182,7 +182,7 @@ class ThreadedService(Endpoint):
         self._service_events = ServiceEvents(host, type_, name)
 
     def configure_introspection(self, level: Introspection, qos: Qos = DEFAULT) -> None:
-        """The same as `ServiceServer.configure_introspection`."""
+        """Publish service events as `ServiceServer.configure_introspection` does."""
         self._service_events.configure(level, qos, is_open=self.is_open)
 
     def _open(self, key: str) -> None:
@@ -190,7 +190,7 @@ class ThreadedService(Endpoint):
         self._service_events.open()
 
     def take(self) -> Asked | None:
-        """The oldest request that waits; None if there is none."""
+        """Take the oldest request; None if there is none."""
         while True:
             try:
                 request = self.inbox.items.popleft()
@@ -206,7 +206,7 @@ class ThreadedService(Endpoint):
         asked.request.reply(payload, attachment.pack(asked.sequence, now_ns, asked.gid))
 
     def tell(self, event: ServiceEvent, asked: Asked, payload: bytes) -> None:
-        """Publish an event of a call, with the request or response that it is about, if introspection is on."""
+        """Publish an event of a call with its request or response, if introspection is on."""
         if self._service_events.is_on:
             tell_event(self.host, self._service_events, event, (asked.gid, asked.sequence), self.type_name, payload)
 
@@ -218,10 +218,10 @@ class ThreadedService(Endpoint):
 def tell_event(
     host: Host, events: ServiceEvents, event: ServiceEvent, call: tuple[bytes, int], service: str, payload: bytes
 ) -> None:
-    """Have an event of a call published, from any thread.
+    """Publish an event of a call, from any thread.
 
     Args:
-        call: The client's GID, and its number of the call.
+        call: The client's GID and the call's sequence number.
         payload: The request or response as CDR.
     """
     schema = registry.service_schema(service)
@@ -233,7 +233,7 @@ def tell_event(
 
 
 def read_request(request: Request) -> Asked | None:
-    """A request that has arrived; None if it does not say whose it is."""
+    """Read an arrived request; None if its attachment does not identify the client."""
     try:
         sequence, source_ns, gid = attachment.fields((request.attachment or b"")[: attachment.SIZE])
     except DecodeError:
@@ -242,7 +242,7 @@ def read_request(request: Request) -> Asked | None:
 
 
 class Answered(NamedTuple):
-    """The end of a call."""
+    """The outcome of a call."""
 
     sequence: int
     payload: bytes = b""
@@ -250,12 +250,12 @@ class Answered(NamedTuple):
 
 
 class ThreadedClient(Endpoint):
-    """A client whose calls and answers are threads' business.
+    """A client whose calls and responses threads handle.
 
     Args:
         type_: As for `ThreadedService`.
-        bell: Rung when an answer has arrived.
-        ready: Called by whom the bell wakes.
+        bell: Rung when a response has arrived.
+        ready: Called by the thread that the bell wakes.
         changed: Called on the loop when servers have come or gone.
     """
 
@@ -277,12 +277,12 @@ class ThreadedClient(Endpoint):
         self._caller: Caller | None = None
         self._changed = changed
         self.lost = 0
-        """Calls that no server answers any more: there was none, or it went away."""
+        """Calls whose server was missing or went away."""
         self._sequence = 0
         self._lock = threading.Lock()
 
     def configure_introspection(self, level: Introspection, qos: Qos = DEFAULT) -> None:
-        """The same as `ServiceServer.configure_introspection`."""
+        """Publish service events as `ServiceServer.configure_introspection` does."""
         self._service_events.configure(level, qos, is_open=self.is_open)
 
     def _open(self, key: str) -> None:
@@ -295,11 +295,11 @@ class ThreadedClient(Endpoint):
 
     @property
     def has_server(self) -> bool:
-        """Whether there is a server, and can be reached."""
+        """Whether there is a reachable server."""
         return bool(self.matched) and self._caller is not None and self._caller.has_server
 
     def send(self, payload: bytes) -> int:
-        """Send a request; returns its number, under which the answer comes.
+        """Send a request; returns its sequence number, which identifies the response.
 
         Raises:
             ClosedError: The node is not running.
@@ -315,17 +315,17 @@ class ThreadedClient(Endpoint):
 
         def arrived(answer: Answer | None) -> None:
             nonlocal is_over
-            is_over = is_over or self._arrived(sequence, answer)  # the end of the call comes after its answer
+            is_over = is_over or self._arrived(sequence, answer)  # the end of the call follows its response
 
         caller.call(payload, beside, arrived)
         return sequence
 
     def call_id(self, sequence: int) -> str:
-        """The id of a call in the wait-for graphs of all processes."""
+        """Return a call's id in the wait-for graphs of all processes."""
         return call_id(self._announced().gid, sequence)
 
     def _arrived(self, sequence: int, answer: Answer | None) -> bool:
-        """Whether that is what the call has waited for."""
+        """Queue a response; returns whether its call was pending."""
         if answer is None:
             self.lost += 1
             self.inbox.put(Answered(sequence, error=ServerLost(f"the server of {self.name} did not answer")))
@@ -338,13 +338,13 @@ class ThreadedClient(Endpoint):
         return True
 
     def tell(self, event: ServiceEvent, sequence: int, payload: bytes) -> None:
-        """The same as `ThreadedService.tell`."""
+        """Publish an event of a call as `ThreadedService.tell` does."""
         if self._service_events.is_on and self.entity is not None:
             call = (self.entity.gid, sequence)
             tell_event(self.host, self._service_events, event, call, self.type_name, payload)
 
     def take(self) -> Answered | None:
-        """The oldest answer that waits; None if there is none."""
+        """Take the oldest response; None if there is none."""
         try:
             answered: Answered = self.inbox.items.popleft()
         except IndexError:

@@ -1,4 +1,4 @@
-"""Timers."""
+"""Timers: periodic runs of a handler that skip missed periods and keep the phase."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from graphflow.runtime.part import Host, Part
 
 
 class TimerInfo(NamedTuple):
-    """When a timer's run was due and when it began, in nanoseconds of the clock, and how many runs were missed."""
+    """Due time and actual start of a timer's run, in nanoseconds of the clock, and the number of runs missed."""
 
     expected_ns: int
     actual_ns: int
@@ -24,7 +24,7 @@ class TimerInfo(NamedTuple):
 
 
 class Timer(Part):
-    """A timer as it runs: skips missed periods, keeps phase, and has one run at a time.
+    """A timer: skips missed periods, keeps its phase, and has at most one run at a time.
 
     Source: rcl timer.c.
     """
@@ -72,7 +72,7 @@ class Timer(Part):
         return f"timer {self._label}"
 
     def statistics(self) -> dict[str, Any]:
-        """Runs, failed runs and skipped periods since the start."""
+        """Return the numbers of runs, failed runs and skipped periods since the start."""
         runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
         return {"runs": runs, "errors": errors, "skipped": self.skipped}
 
@@ -81,7 +81,7 @@ class Timer(Part):
 
     @property
     def period(self) -> float:
-        """Seconds between runs. Setting it re-arms the timer, one new period from now.
+        """Seconds between runs. Setting it restarts the timer: the next run is one new period away.
 
         Raises:
             ValueError: The new value is not a positive number.
@@ -95,7 +95,7 @@ class Timer(Part):
             self.reset()
 
     def open(self) -> None:
-        """Start. Done by the node."""
+        """Start the timer. Called by the node."""
         tell = (self._invoke, self._finished, self.host.full_name)
         self.runner = self.host.runner(
             RunnerSpec(self._label, *tell, "timer", self._refused, wants_results=False), self._due, self._group
@@ -103,11 +103,11 @@ class Timer(Part):
         self.reset()
 
     def reset(self) -> None:
-        """Start over: the next run is one period from now."""
+        """Restart the timer: the next run is one period from now."""
         self._arm(self.host.clock.monotonic_ns() + self._period_ns)
 
     def clock_changed(self) -> None:
-        """The node has switched to another clock: start over on it, if the timer runs."""
+        """Restart a running timer on the node's new clock."""
         if self._handle is not None:
             self.reset()
 
@@ -131,7 +131,7 @@ class Timer(Part):
             self.skipped += 1
             self._missed += 1
             if not self._due:
-                self.runner.stalled()  # its own run is in the way
+                self.runner.stalled()  # its own previous run is still in progress
                 self._outlasted += 1
                 self._overruns.in_the_way(self.runner.active, self._outlasted, now, self._period_ns)
             return
@@ -152,7 +152,7 @@ class Timer(Part):
         self._missed += 1
 
     def cancel(self) -> None:
-        """Stop the timer; `reset` starts it again."""
+        """Stop the timer; `reset` restarts it."""
         if self._handle is not None:
             self.host.context.refuse_other_threads(f"{self.title}: cancel")
             self._handle.cancel()
@@ -168,7 +168,7 @@ class Timer(Part):
         return self.begin_to_stop()
 
     def resume(self) -> Runner | None:
-        """Begin a new period, unless the timer had been cancelled."""
+        """Start a new period, unless the timer was cancelled."""
         super().resume()
         if self.runner is not None:
             self.runner.reopen()
@@ -177,7 +177,7 @@ class Timer(Part):
         return self.runner
 
     def close(self) -> None:
-        """Stop for good and cancel a run under way."""
+        """Stop for good and cancel a run in progress."""
         self.cancel()
         if self.runner is not None:
             self.runner.cancel()

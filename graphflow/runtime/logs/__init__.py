@@ -1,1 +1,1 @@
-"""A node's log: Python's logger with ROS 2's words, the console's line format, and /rosout."""
+"""A node's logging: Python's logger with ROS 2's options, the console's line format, and /rosout."""

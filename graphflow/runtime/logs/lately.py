@@ -1,4 +1,4 @@
-"""How often something has happened in the last moment, for those who ask once."""
+"""Rates of recent events, computed on demand."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ import time
 from collections import deque
 
 WINDOW = 0.5
-"""Seconds that are looked back on."""
+"""Seconds covered by the rate."""
 MOST = 500
-"""Times that are remembered."""
+"""Times kept."""
 
 
 class Lately:
-    """The times at which something has happened. Free of locks: a deque's methods are atomic."""
+    """The times of recent events. Lock-free: a deque's methods are atomic."""
 
     def __init__(self) -> None:
         self._times: deque[float] = deque(maxlen=MOST)
 
     def note(self) -> None:
-        """It happens now."""
+        """Record an event."""
         self._times.append(time.monotonic())
 
     @property
     def rate(self) -> float:
-        """How often a second it has happened, up to `MOST / WINDOW`."""
+        """Return the recent events per second, at most `MOST / WINDOW`."""
         since = time.monotonic() - WINDOW
         return sum(at > since for at in tuple(self._times)) / WINDOW

@@ -1,4 +1,4 @@
-"""A node's logger: Python's, with ROS 2's `throttle` and `once`; a wrong call costs one line, floods are gathered."""
+"""A node's logger: Python's, with ROS 2's `throttle` and `once`, one-line format errors, and flood control."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from graphflow.runtime.logs.lately import Lately
 
 ROOT = "graphflow.node"
 FREE = 10
-"""Warnings and errors that one line of code may log in a second before they are gathered."""
+"""Warnings and errors that one line of code may log in a second without aggregation."""
 WINDOW = 1.0
-"""Seconds between two of those that are gathered."""
+"""Seconds between two aggregated records."""
 PLACES = 1000
-"""Lines of code that are remembered."""
+"""Lines of code tracked."""
 
 _HERE = str(Path(__file__).parents[1])
 _Site = tuple[CodeType, int]
 
 
 class _Flow:
-    """What one line of code logs."""
+    """The recent records of one line of code."""
 
     __slots__ = ("count", "is_flood", "level", "since", "unsaid")
 
@@ -35,15 +35,15 @@ class _Flow:
 
 
 class OwnLogger(logging.Logger):
-    """A logger of graphflow's, which survives the logging of libraries.
+    """A logger of graphflow that stays enabled when libraries configure logging.
 
-    `logging.config` disables the loggers that a configuration does not name, unless it says otherwise; that counts for
-    nothing here. What graphflow's console has shown is not shown again by a handler that `basicConfig` has made.
+    `logging.config` disables the loggers that a configuration does not name, unless told otherwise; here it does
+    not. Records on graphflow's console are not repeated by a handler that `basicConfig` has installed.
     """
 
     @property
     def disabled(self) -> bool:
-        """Whether the program has switched it off."""
+        """Whether the program has disabled the logger."""
         return bool(self.__dict__.get("_is_disabled"))
 
     @disabled.setter
@@ -65,13 +65,13 @@ class OwnLogger(logging.Logger):
 
 
 def _is_terminal(handler: logging.Handler) -> bool:
-    """Whether a handler writes to the streams of the process."""
+    """Whether a handler writes to the process's standard streams."""
     streams = (sys.stderr, sys.stdout, sys.__stderr__, sys.__stdout__)
     return isinstance(handler, logging.StreamHandler) and handler.stream in streams
 
 
 def keep_loggers() -> None:
-    """Have the loggers of graphflow that there are survive the logging of libraries."""
+    """Turn graphflow's existing loggers into `OwnLogger`s."""
     for name, logger in list(logging.Logger.manager.loggerDict.items()):
         if type(logger) is logging.Logger and f"{name}.".startswith("graphflow."):
             logger.__class__ = OwnLogger
@@ -81,8 +81,8 @@ class NodeLogger(OwnLogger):
     """The logger of one node.
 
     `throttle=1.0` logs a line at most once a second, `once=True` once, `skip_first=True` from the second time on.
-    Warnings and errors of one line of code that come faster than `FREE` a second are gathered: one a second, and how
-    many more.
+    Warnings and errors from one line of code beyond `FREE` a second are aggregated: one a second is logged, with the
+    number of those left out.
     """
 
     def __init__(self, name: str, level: int = logging.NOTSET) -> None:
@@ -91,10 +91,10 @@ class NodeLogger(OwnLogger):
         self._flows: dict[_Site, _Flow] = {}
         self._lock = threading.Lock()
         self.gathered = 0
-        """Lines that were only counted."""
+        """Records that were counted instead of logged."""
         self.gathered_lately = Lately()
 
-    if TYPE_CHECKING:  # what Python's own methods hand on to `_log`
+    if TYPE_CHECKING:  # the keywords that Python's own methods pass on to `_log`
 
         def debug(
             self,
@@ -131,7 +131,7 @@ class NodeLogger(OwnLogger):
         site = (frame.f_code, frame.f_lineno)
         if (throttle or once or skip_first) and not self._is_due(site, throttle, once=once, skip_first=skip_first):
             return
-        is_users = not frame.f_code.co_filename.startswith(_HERE)  # what the runtime says is counted there
+        is_users = not frame.f_code.co_filename.startswith(_HERE)  # records of the runtime count for the runtime's line
         more = self._gathered(site, level) if level >= logging.WARNING and is_users else ""
         if more is None:
             return
@@ -155,7 +155,7 @@ class NodeLogger(OwnLogger):
             return last != float("inf")
 
     def _gathered(self, site: _Site, level: int) -> str | None:
-        """What is added to a line that is logged, or None for one that is only counted."""
+        """Return the suffix of a record to log, or None for one that is only counted."""
         now = time.monotonic()
         with self._lock:
             flow = self._flows.get(site)
@@ -177,8 +177,8 @@ class NodeLogger(OwnLogger):
                 return None
             return ""
 
-    def say_gathered(self) -> None:
-        """Log how many lines have been counted and not yet told."""
+    def log_suppressed(self) -> None:
+        """Log the number of records counted since the last report."""
         with self._lock:
             flows = [(site, flow.unsaid, flow.level) for site, flow in self._flows.items() if flow.unsaid]
             for flow in self._flows.values():
@@ -188,7 +188,7 @@ class NodeLogger(OwnLogger):
 
 
 def _fitted(msg: object, args: Any, site: _Site) -> tuple[object, Any]:
-    """A text and its values; where they do not fit, one line that says so in place of a traceback."""
+    """Return a text and its values; where they do not match, one line that reports it in place of a traceback."""
     try:
         str(msg) % args
     except (TypeError, ValueError, KeyError) as error:
@@ -200,7 +200,7 @@ def _fitted(msg: object, args: Any, site: _Site) -> tuple[object, Any]:
 
 
 def node_logger(full_name: str) -> NodeLogger:
-    """The logger of the node `full_name`: `/turtle1/follower` logs as `turtle1.follower`."""
+    """Return the logger of the node `full_name`: `/turtle1/follower` logs as `turtle1.follower`."""
     name = f"{ROOT}.{full_name[1:].replace('/', '.')}"
     manager = logging.Logger.manager
     former, manager.loggerClass = manager.loggerClass, NodeLogger

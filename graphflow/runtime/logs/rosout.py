@@ -1,4 +1,4 @@
-"""Python's logging as ROS 2's: the console's line format and every record published on /rosout.
+"""Python's logging in ROS 2's form: the console's line format, and records on /rosout.
 
 Source: rcutils' default console format; rcl_interfaces/msg/Log.
 """
@@ -28,7 +28,7 @@ _WORDS = {logging.DEBUG: "DEBUG", logging.INFO: "INFO", logging.WARNING: "WARN",
 
 
 class ConsoleFormatter(logging.Formatter):
-    """ROS 2's line: `[INFO] [1700000000.123456789] [talker]: text`."""
+    """A formatter with ROS 2's line format: `[INFO] [1700000000.123456789] [talker]: text`."""
 
     def format(self, record: logging.LogRecord) -> str:
         name = record.name.removeprefix(f"{ROOT}.")
@@ -40,10 +40,10 @@ class ConsoleFormatter(logging.Formatter):
 
 
 def log_level(word: str) -> int:
-    """A logging level by ROS 2's word: debug, info, warn, error or fatal.
+    """Convert ROS 2's name of a log level (debug, info, warn, error, fatal) to Python's number.
 
     Raises:
-        GraphflowError: The word is none of these.
+        GraphflowError: The name is not one of these.
     """
     words = {"debug": 10, "info": 20, "warn": 30, "warning": 30, "error": 40, "fatal": 50}
     if word.lower() not in words:
@@ -52,10 +52,10 @@ def log_level(word: str) -> int:
 
 
 class Console(logging.Handler):
-    """Writes records to stderr in ROS 2's format, wherever stderr leads at that moment: in a notebook, to the cell.
+    """A handler that writes ROS 2's lines to the current stderr; in a notebook, that is the cell's.
 
-    Until `is_wanted`, it is the handler of last resort: it writes warnings and errors that no other handler gets.
-    Python's own would not, since it takes `Rosout` for a handler that shows them.
+    Until `is_wanted`, it is the handler of last resort: it writes warnings and errors that no other handler receives.
+    Python's own does not, since it counts `Rosout` as a handler.
     """
 
     def __init__(self) -> None:
@@ -65,7 +65,7 @@ class Console(logging.Handler):
 
     @classmethod
     def installed(cls) -> Console:
-        """The one of this process, made when it is first asked for."""
+        """Return the process's console; created on first use."""
         logger = logging.getLogger("graphflow")
         keep_loggers()
         for handler in logger.handlers:
@@ -81,12 +81,12 @@ class Console(logging.Handler):
         try:
             sys.stderr.write(f"{self.format(record)}\n")
             sys.stderr.flush()
-        except Exception:  # as in every handler of Python's: logging must not fail its caller
+        except Exception:  # as in Python's own handlers: logging must not fail its caller
             self.handleError(record)
 
 
 def _is_shown(record: logging.LogRecord) -> bool:
-    """Whether the program has a handler of its own for a record."""
+    """Whether the program has installed a handler that shows a record."""
     logger: logging.Logger | None = logging.getLogger(record.name)
     while logger is not None:
         if not all(isinstance(handler, Console | _RosoutHandler) for handler in logger.handlers):
@@ -96,12 +96,12 @@ def _is_shown(record: logging.LogRecord) -> bool:
 
 
 def setup_console(level: int = logging.INFO, *, is_quiet: bool = False) -> None:
-    """Write graphflow's log records to stderr in ROS 2's format, and what Python warns of forgotten awaits with them.
+    """Write graphflow's log records and Python's warnings of forgotten awaits to stderr in ROS 2's format.
 
-    Calling it again only changes the level.
+    Later calls only change the level.
 
     Args:
-        is_quiet: Whether only what is wrong with the program itself is written.
+        is_quiet: Whether to write only problems of the program itself.
     """
     logging.getLogger("graphflow").setLevel(level)
     unawaited.watch()
@@ -111,7 +111,7 @@ def setup_console(level: int = logging.INFO, *, is_quiet: bool = False) -> None:
 
 
 class _RosoutHandler(logging.Handler):
-    """Hands records to `Rosout`. `logging.config` closes every handler that it knows, which must not end the other."""
+    """A handler that passes records to `Rosout`; `logging.config` may close it without closing the publisher."""
 
     def __init__(self, rosout: Rosout) -> None:
         super().__init__()
@@ -120,12 +120,12 @@ class _RosoutHandler(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         try:
             self._rosout.take(record)
-        except Exception:  # as in every handler of Python's: logging must not fail its caller
+        except Exception:  # as in Python's own handlers: logging must not fail its caller
             self.handleError(record)
 
 
 class Rosout(Part):
-    """Publishes a node's log records on /rosout while the node runs."""
+    """The publisher of a node's log records on /rosout while the node runs."""
 
     def __init__(self, host: Host) -> None:
         from graphflow.msgs.rcl_interfaces.msg import Log
@@ -140,7 +140,7 @@ class Rosout(Part):
         return "log"
 
     def statistics(self) -> dict[str, Any]:
-        """Lines that the node has logged, those that were gathered into others, and both a second, lately."""
+        """Return the numbers of records logged and aggregated, and the recent rates of both per second."""
         log = self._host.log
         gathered, lately = getattr(log, "gathered", 0), getattr(log, "gathered_lately", None)
         rate = self._lately.rate + (0.0 if lately is None else lately.rate)
@@ -153,7 +153,7 @@ class Rosout(Part):
         self._host.log.addHandler(self._handler)
 
     def detach(self) -> None:
-        """Stop listening to the node's logger."""
+        """Stop receiving the logger's records."""
         self._host.log.removeHandler(self._handler)
 
     def close(self) -> None:
@@ -162,7 +162,7 @@ class Rosout(Part):
         self._host.forget(self)
 
     def take(self, record: logging.LogRecord) -> None:
-        """Publish a record if it is this node's, on the loop; from any thread."""
+        """Publish a record, if it is this node's, on the loop; from any thread."""
         if not self._host.is_running or not self._is_ours(record):
             return
         self._lines += 1
@@ -174,7 +174,7 @@ class Rosout(Part):
             loop.call_soon_threadsafe(self._publish, record)
 
     def _is_ours(self, record: logging.LogRecord) -> bool:
-        """Whether this is the nearest node above the record: those of /arm/hand reach the logger of /arm too."""
+        """Whether this node's logger is the nearest: /arm's logger also receives /arm/hand's records."""
         logger: logging.Logger | None = logging.getLogger(record.name)
         while logger is not None and not any(isinstance(h, _RosoutHandler) for h in logger.handlers):
             logger = logger.parent
@@ -184,12 +184,12 @@ class Rosout(Part):
         if self._host.is_running:
             try:
                 self._publisher.publish(to_log(record))
-            except Exception:  # as in every handler of Python's: logging must not fail its caller
+            except Exception:  # as in Python's own handlers: logging must not fail its caller
                 self._handler.handleError(record)
 
 
 def to_log(record: logging.LogRecord) -> Log:
-    """A record as rcl_interfaces/msg/Log."""
+    """Convert a record to a rcl_interfaces/msg/Log."""
     from graphflow.msgs.rcl_interfaces.msg import Log
 
     return Log(

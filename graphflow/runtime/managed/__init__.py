@@ -1,1 +1,1 @@
-"""Managed (lifecycle) nodes: the class that users derive from, and its workings."""
+"""Lifecycle nodes: the class that users derive from, and its implementation."""

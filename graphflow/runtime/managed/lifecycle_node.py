@@ -1,4 +1,4 @@
-"""Managed nodes: what users subclass, a facade over its `ManagedCore`."""
+"""The lifecycle node class that users derive from, a facade over its `ManagedCore`."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ HOOKS = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_shutd
 
 
 class LifecycleNode(Node):
-    """A node with ROS 2's life cycle: set up by `configure`, at work from `activate` to `deactivate`.
+    """A node with ROS 2's managed states: set up by `configure`, working from `activate` to `deactivate`.
 
-    Until it is active its handlers do not run: timers rest, messages are left out, requests are answered with an error
-    and goals are rejected; what it publishes is not sent. Everything is on the network all the same, so that activating
-    it takes no time.
+    Handlers run only while the node is active. Otherwise timers pause, messages are dropped, requests are answered
+    with an error, goals are rejected, and published messages are discarded. The endpoints are on the network all the
+    time, so that activation is immediate.
 
     Override the hooks that you need; `super()` is not needed. A hook succeeds by returning. `raise
-    TransitionRefused("no camera")` leads back to where the node was; any other error to `on_error`.
+    TransitionRefused("no camera")` restores the previous state; any other error leads to `on_error`.
 
-    What a step up enters (`self.enter`), makes (`self.create_...`) and starts (`self.spawn`) is undone by the step
-    down, last first, after the hook.
+    Everything that a transition enters (`self.enter`), creates (`self.create_...`) or starts (`self.spawn`) is undone
+    by the reverse transition, last first, after its hook.
 
     Source: ROS 2 design, "Managed nodes"; rclpy.lifecycle, for the names.
     """
@@ -42,44 +42,44 @@ class LifecycleNode(Node):
 
     @property
     def lifecycle_state(self) -> LifecycleState:
-        """Where in its life the node is."""
+        """The node's lifecycle state."""
         return self._core.state
 
     async def on_configure(self) -> None:
-        """For subclasses: set up what the node needs. What is entered here is left by `cleanup`."""
+        """Set up the node; for subclasses. Context managers entered here are exited by `cleanup`."""
 
     async def on_activate(self) -> None:
-        """For subclasses: begin. Publishers send already; handlers and tasks start when it has returned."""
+        """Start working; for subclasses. Publishers already send; handlers and tasks start after it returns."""
 
     async def on_deactivate(self) -> None:
-        """For subclasses: pause. Handlers and tasks have ended; publishers still send."""
+        """Pause; for subclasses. Handlers and tasks have ended; publishers still send."""
 
     async def on_cleanup(self) -> None:
-        """For subclasses: undo what `on_configure` did and did not enter."""
+        """Undo the parts of `on_configure` that were not entered as context managers; for subclasses."""
 
     async def on_shutdown(self) -> None:
-        """For subclasses: finish, from any state. Runs once, when the node is shut down or stops."""
+        """Clean up, from any state; for subclasses. Runs once, when the node is shut down or stops."""
 
     async def on_error(self) -> None:
-        """For subclasses: put things right after an error in another hook.
+        """Recover from an error in another hook; for subclasses.
 
-        When it returns the node is unconfigured; an error in it ends the node's life in `finalized`.
+        If it returns, the node is unconfigured; if it raises, the node is finalized.
         """
 
     async def trigger_configure(self) -> None:
-        """Set the node up: from unconfigured to inactive.
+        """Set up the node: from unconfigured to inactive.
 
         Raises:
-            TransitionFailed: That is not possible from the present state, was refused, or failed.
+            TransitionFailed: The transition is not possible from the current state, was refused, or failed.
         """
         await self._core.trigger("configure")
 
     async def trigger_activate(self) -> None:
-        """Start the node's work: from inactive to active. Raises TransitionFailed as `trigger_configure` does."""
+        """Start work: from inactive to active. Raises TransitionFailed as `trigger_configure` does."""
         await self._core.trigger("activate")
 
     async def trigger_deactivate(self) -> None:
-        """Pause the node's work: from active to inactive. A handler that calls this is cancelled by it.
+        """Pause work: from active to inactive. A handler that calls this is cancelled by it.
 
         Raises:
             TransitionFailed: As for `trigger_configure`.
@@ -91,7 +91,7 @@ class LifecycleNode(Node):
         await self._core.trigger("cleanup")
 
     async def trigger_shutdown(self) -> None:
-        """End the node's life; the process goes on. Raises TransitionFailed as `trigger_configure` does."""
+        """Finalize the node; the process keeps running. Raises TransitionFailed as `trigger_configure` does."""
         await self._core.trigger("shutdown")
 
 

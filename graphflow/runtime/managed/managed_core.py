@@ -1,4 +1,4 @@
-"""The workings of a managed node: `machines.lifecycle` carried out, with a level of resources for every step up."""
+"""The implementation of a lifecycle node: `machines.lifecycle` with a level of resources per state."""
 
 from __future__ import annotations
 
@@ -30,35 +30,35 @@ from graphflow.runtime.part import Part
 P = TypeVar("P", bound=Part)
 
 LABEL_SHOWN = 40
-"""Characters of a label that is no transition's, in messages: it may come from anybody."""
+"""Longest excerpt of an unknown label in messages, in characters: it may come from any client."""
 
 
 class _Level:
-    """What was entered, made and started on the way up to one state; left on the way down."""
+    """The resources acquired by the transition up to one state, released by the transition down."""
 
     def __init__(self, below: AsyncExitStack) -> None:
         self.below = below
-        """Where things were entered before."""
+        """The exit stack of the level below."""
         self.parts: list[Part] = []
         self.tasks: list[asyncio.Task[Any]] = []
 
 
 class ManagedCore(NodeCore):
-    """The workings of a `LifecycleNode`."""
+    """The implementation behind a `LifecycleNode`."""
 
     state = LifecycleState.UNCONFIGURED
     target: LifecycleState | None = None
-    """The state that the node is brought to when it starts; None to leave that to others."""
+    """The state to reach at the start; None to leave transitions to other nodes."""
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
         self._levels: list[_Level] = []
         self._muted = False
         self._rests = False
-        """Whether handlers do not run."""
+        """Whether handlers are paused."""
         self._event: TopicPublisher[Any] | None = None
         self.on_state: Callable[[LifecycleState], None] = _nothing
-        """Called with each state that the node comes to rest in."""
+        """Called with each primary state that the node reaches."""
 
     def bind(self, **services: bool) -> None:
         event: Any = registry.interface_class("lifecycle_msgs/msg/TransitionEvent")
@@ -106,7 +106,7 @@ class ManagedCore(NodeCore):
         self.entered = AsyncExitStack()
 
     async def _leave_level(self) -> None:
-        """Undo what was done since the level was entered. Raises what leaving something raises."""
+        """Release the resources of the top level. Raises the errors of their release."""
         level = self._levels[-1]
         try:
             await self.end([part.begin_to_stop() for part in level.parts], level.tasks)
@@ -117,7 +117,7 @@ class ManagedCore(NodeCore):
             self._levels.remove(level)
             self.entered = level.below
 
-    # work and rest
+    # activation
 
     def _why(self) -> str:
         steps = path(self.state, LifecycleState.ACTIVE) if self.state.is_primary else []
@@ -128,7 +128,7 @@ class ManagedCore(NodeCore):
         return None if part.is_inner else part.pause(self._why())
 
     async def _rest(self) -> None:
-        """End what runs, and begin nothing."""
+        """End all runs, and start no more."""
         if self._rests:
             return
         self._rests = True
@@ -152,7 +152,7 @@ class ManagedCore(NodeCore):
     # transitions
 
     def warn_unused_remaps(self) -> None:
-        """Wait with that until the node is configured, which may make more names."""
+        """Postpone the warning until the node is configured, since `on_configure` may create endpoints."""
         self.refuses_unused = False
         if self.state is LifecycleState.INACTIVE:
             super().warn_unused_remaps()
@@ -168,17 +168,17 @@ class ManagedCore(NodeCore):
             await self.trigger(label)
 
     async def trigger(self, wanted: int | str) -> None:
-        """Make a transition, named by its label or id.
+        """Carry out a transition, given by its label or id.
 
         Raises:
-            TransitionFailed: It is not possible from the present state, was refused, or failed.
+            TransitionFailed: The transition is not possible from the current state, was refused, or failed.
         """
         transition = asked(self.state, wanted)
         if transition is None:
             ways = ", ".join(t.label for t in available(self.state)) if self.state.is_primary else ""
             now = f"{self.full_name} is {self.state.label}; from there: {ways or 'nothing'}"
             raise TransitionFailed(f"cannot {_verb(wanted)}: {now}")
-        # In a task of its own: who asks may be ended by it, or give up waiting.
+        # In a task of its own: the transition may end the caller, or the caller may stop waiting.
         task = super().spawn(self._make, transition)
         task.set_name(f"{self.full_name}.{transition.goal.hook}")
         failure = await asyncio.shield(task)
@@ -188,7 +188,7 @@ class ManagedCore(NodeCore):
             )
 
     async def _make(self, transition: Transition) -> str:
-        """Make a transition; returns why it failed, empty if it did not."""
+        """Carry out a transition; returns the reason for its failure, "" if it succeeded."""
         start = self.state
         self._arrive(transition)
         try:
@@ -198,7 +198,7 @@ class ManagedCore(NodeCore):
                 outcome, _ = await self._attempt(start)
                 self._arrive(after(self.state, outcome))
                 self.log.warning("after the error the node is %s", self.state.label)
-        except asyncio.CancelledError:  # the node stops
+        except asyncio.CancelledError:  # the node is stopping
             self._arrive(after(self.state, Outcome.FAILURE))
             raise
         if transition.label == "configure":
@@ -208,7 +208,7 @@ class ManagedCore(NodeCore):
         return why
 
     async def _attempt(self, start: LifecycleState) -> tuple[Outcome, str]:
-        """Run the hook of the present state and go to the level that it leads to; returns how it ended, and why."""
+        """Run the hook of the current state and move to the resulting level; returns the outcome and its reason."""
         hook = self.state.hook
         if start is LifecycleState.ACTIVE:
             await self._rest()
@@ -225,7 +225,7 @@ class ManagedCore(NodeCore):
         while len(self._levels) > goal.level:
             try:
                 await self._leave_level()
-            except Exception as error:  # the levels below are left all the same
+            except Exception as error:  # any error of the user's resources: the levels below are released all the same
                 self.report_error(f"leaving what was entered, after {hook}", error)
                 outcome, why = Outcome.ERROR, f"{type(error).__name__}: {error}"
         return outcome, why
@@ -249,7 +249,7 @@ class ManagedCore(NodeCore):
         return Outcome.SUCCESS, ""
 
     def _arrive(self, transition: Transition) -> None:
-        """Be where a transition leads, and tell it."""
+        """Enter a transition's target state and publish it."""
         self.state = transition.goal
         for part in self.parts:
             if part.idle_because:
@@ -270,7 +270,7 @@ class ManagedCore(NodeCore):
                 await self.limited("leaving what was entered", self._leave_level)
         await self.limited("leaving what was entered", self.entered.aclose)
 
-    # what others ask
+    # services
 
     async def _change_state(self, request: Any) -> Any:
         from graphflow.msgs.lifecycle_msgs.srv import ChangeState
@@ -308,7 +308,7 @@ class ManagedCore(NodeCore):
             goal_state=_state(transition.goal),
         )
         now = self.clock.now()
-        if hasattr(event, "stamp"):  # ROS 2 Lyrical's
+        if hasattr(event, "stamp"):  # ROS 2 Lyrical's definition
             event.stamp = now
         else:
             event.timestamp = now.nanoseconds
@@ -316,7 +316,7 @@ class ManagedCore(NodeCore):
 
 
 def _nothing(state: LifecycleState) -> None:
-    """Nobody is told."""
+    """Ignore the state."""
 
 
 def _state(state: LifecycleState) -> Any:
@@ -343,7 +343,7 @@ def _described(transitions: list[Transition]) -> Any:
 
 
 def _verb(wanted: int | str) -> str:
-    """A transition for people, however a request has named it."""
+    """Return a transition's label for people, from a label or an id."""
     if isinstance(wanted, str):
         return wanted if wanted in {t.label for t in TRANSITIONS} else repr(wanted[:LABEL_SHOWN])
     return next(

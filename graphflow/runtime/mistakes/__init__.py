@@ -1,1 +1,1 @@
-"""Mistakes in users' programs that Python or ROS 2 would pass over: each module notices one kind and tells it once."""
+"""Mistakes in user programs that Python or ROS 2 would ignore: each module detects one kind and reports it once."""

@@ -1,4 +1,4 @@
-"""Handlers that a class declares and its code registers once more, so that each is called twice."""
+"""Handlers that a class declares and its code registers again, so that each message is handled twice."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from graphflow.runtime.declarations.handlers import MARK, Handler
 from graphflow.runtime.part import Part
 
 
-def tell_doubled(
+def warn_doubled(
     log: logging.Logger, callback: Callable[..., Any] | None, place: Place, what: str, alike: Iterable[Part]
 ) -> None:
-    """Tell of a method of a node that is registered for what its decorator has registered it for.
+    """Warn of a method that is registered for the same purpose as its decorator has registered it.
 
     Args:
         place: The line that registers it.
-        what: That is, for the sentence.
-        alike: The parts of the node that are for the same.
+        what: The purpose, in words.
+        alike: The node's parts with the same purpose.
     """
     mark = getattr(callback, MARK, None)
     if not isinstance(mark, Handler) or not hasattr(callback, "__self__"):

@@ -1,7 +1,7 @@
-"""A subscription that its own node feeds: a handler that publishes to its own topic never comes to an end.
+"""Feedback loops within one node: a handler that publishes to its own topic.
 
-Nothing is counted for it while messages pass: the subscription's own numbers are compared once a second, for as long as
-the publishers of its topic are all its node's.
+There is no cost per message: the subscription's counters are compared once a second, while all publishers of its topic
+are its own node's.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from graphflow.executor.clock import Alarm, Clock
 from graphflow.times import NANOSECONDS
 
 LOOP = 2000
-"""Messages a second, in two seconds in a row, from which on it is told; slower loops are left to `doctor`."""
+"""Messages per second, in two successive seconds, before a warning; `doctor` reports slower loops."""
 
 
 class Echo:
-    """Watches one subscription until `tell` has been called.
+    """The check of one subscription, until it has warned.
 
     Args:
-        received: The number of messages that it has received.
-        tell: Called once with the messages a second.
+        received: Returns the number of messages received so far.
+        tell: Called once, with the messages per second.
     """
 
     def __init__(self, clock: Clock, received: Callable[[], int], tell: Callable[[int], None]) -> None:
@@ -30,7 +30,7 @@ class Echo:
         self._is_told = self._was_fast = False
 
     def follow(self, *, is_alone: bool) -> None:
-        """A publisher came or went: watch while the node's own is the only one."""
+        """Start the check while the node's own publisher is the only one, or stop it."""
         if not is_alone:
             self.stop()
         elif self._alarm is None and not self._is_told:
@@ -38,7 +38,7 @@ class Echo:
             self._arm()
 
     def stop(self) -> None:
-        """Watch no more, until the next `follow`."""
+        """Stop the check until the next `follow`."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None

@@ -1,4 +1,4 @@
-"""Requests of other threads to a node: to call something on its event loop; and what they must not do to it, told."""
+"""Calls from other threads to a node: `call_soon`, and warnings of calls that are not thread-safe."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from graphflow.errors import ClosedError, Place
 from graphflow.runtime.part import Host
 
 TOLD_BOUND = 100
-"""Lines that are remembered, so that each is told once."""
+"""Lines of code remembered, so that each is reported once."""
 _ASYNCIO = str(PurePath(asyncio.__file__).parent)
 _CALL = re.compile(r"([\w.]+\.(?:put_nowait|get_nowait|set|set_result|set_exception|cancel|notify|release))\((.*)")
 _STARTS = re.compile(r"\b(create_task|ensure_future)\(")
@@ -27,10 +27,10 @@ logger = logging.getLogger("graphflow")
 
 
 def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> None:
-    """Call `fn(*args)` on the event loop of a node, from any thread. An error in it is logged.
+    """Call `fn(*args)` on a node's event loop, from any thread. An error in it is logged.
 
     Raises:
-        ClosedError: The node does not run.
+        ClosedError: The node is not running.
         TypeError: `fn` is a coroutine function.
     """
     name = getattr(fn, "__name__", str(fn))
@@ -49,18 +49,18 @@ def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> N
         raise ClosedError(f"call_soon of {name}: the event loop of node {host.full_name} has ended") from None
 
 
-def tell_strangers(loop: asyncio.AbstractEventLoop) -> None:
-    """Have calls of asyncio's told that another thread has made: `queue.put_nowait`, `future.set_result`."""
+def report_foreign_calls(loop: asyncio.AbstractEventLoop) -> None:
+    """Report asyncio calls that another thread makes, such as `queue.put_nowait` and `future.set_result`."""
     if hasattr(loop, "stranger"):
         told = set[Place]()
         loop.stranger = lambda: _tell(told, sys._getframe(2))
 
 
 def _tell(told: set[Place], frame: FrameType | None) -> None:
-    """Tell of a call, if it is the user's own code that has made it.
+    """Report a call if user code made it.
 
     Args:
-        frame: That which has called the loop.
+        frame: The caller of the loop's method.
     """
     while frame is not None and frame.f_code.co_filename.startswith(_ASYNCIO) and frame.f_code.co_name != "__del__":
         frame = frame.f_back
@@ -78,7 +78,7 @@ def _tell(told: set[Place], frame: FrameType | None) -> None:
 
 
 def _way(line: str) -> str:
-    """What to write in place of a line."""
+    """Return the correct form of a line."""
     if _STARTS.search(line):
         return "self.spawn(fn, ...)"
     found = _CALL.search(line)

@@ -1,4 +1,4 @@
-"""Timers whose own runs take longer than their periods, again and again: most periods are skipped, without an error."""
+"""Timers whose runs keep outlasting their periods, so that most periods are silently skipped."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS
 
 RUNS = 3
-"""Runs in a row that outlast a period before that is told: one or two may be what only the first needs."""
+"""Successive overruns before a warning: the first run or two may only be slow to start."""
 SECONDS = 3.0
-"""Seconds that they have taken together by then."""
+"""Total seconds of these runs before a warning."""
 _WAY = "give it a longer period, or start what takes long by self.spawn(...)"
 
 
 class Overruns:
-    """The runs of one timer that have outlasted its period.
+    """The overruns of one timer.
 
     Args:
         title: The timer's name in messages.
@@ -26,29 +26,29 @@ class Overruns:
     def __init__(self, host: Host, title: str) -> None:
         self._host, self._title = host, title
         self._runs = 0
-        """In a row, up to now."""
+        """Successive overruns so far."""
         self._skipped = 0
-        """Periods since the first of them."""
+        """Periods skipped since the first of them."""
         self._since_ns = 0
         self._text = ""
         self._is_told = False
 
     def begins(self, skipped: int) -> None:
-        """A run begins.
+        """Note the start of a run.
 
         Args:
-            skipped: Periods that the run before it has outlasted.
+            skipped: Periods skipped by the previous run.
         """
         if not skipped:
             self._runs = self._skipped = 0
             self._text = ""
 
     def in_the_way(self, runs: Iterable[Any], skipped: int, now_ns: int, period_ns: int) -> None:
-        """A run goes on that has outlasted a period.
+        """Note that a run has outlasted a period and continues.
 
         Args:
-            runs: That run, while it can be looked at.
-            skipped: Periods that it has outlasted by now.
+            runs: The run, if it can be inspected.
+            skipped: Periods skipped by now.
         """
         if skipped == 1:
             if not self._runs:
@@ -69,5 +69,5 @@ class Overruns:
             self._host.log.warning("%s", self._text)
 
     def complaints(self) -> list[str]:
-        """What is to be said of the timer now."""
+        """Return the warnings about the timer."""
         return [self._text] if self._text else []

@@ -1,6 +1,4 @@
-"""Endpoints and timers that a node makes again and again, such as a publisher in each run of a timer; and handlers that
-are subscribed twice to one topic.
-"""
+"""Repeated endpoints and timers, such as a publisher made in each run of a timer, and duplicate subscriptions."""
 
 from __future__ import annotations
 
@@ -16,11 +14,11 @@ from graphflow.runtime.declarations.handlers import MARK
 from graphflow.runtime.part import Host, Part
 
 MANY = 10
-"""So many of one kind and name, made after the start and not closed, are told."""
+"""Open parts of one kind and name, created after the start, before a warning."""
 
 
 class Repeats:
-    """The parts that one node has made since its start and not closed, by kind and name."""
+    """The parts that one node has created since its start and not closed, by kind and name."""
 
     def __init__(self, host: Host) -> None:
         self._host = host
@@ -29,7 +27,7 @@ class Repeats:
         self._told: set[Hashable] = set()
 
     def made(self, part: Part) -> None:
-        """Count a part, and tell when there are many like it."""
+        """Count a part, and warn if there are many like it."""
         if part.is_inner:
             return
         self._made[part] = key = _key(part)
@@ -43,7 +41,7 @@ class Repeats:
             self._host.log.warning(text, _name(part), alike, place)
 
     def closed(self, part: Part) -> None:
-        """Count it no more."""
+        """Stop counting a part."""
         key = self._made.pop(part, None)
         if key is not None:
             self._alike[key] -= 1
@@ -56,25 +54,25 @@ def _name(part: Part) -> str:
 
 
 def _key(part: Part) -> Hashable:
-    """The key under which parts are alike; lambdas share a name, so that of a timer has its period."""
+    """Return the key of equal parts; timers include the period, since lambdas share a name."""
     return type(part), _name(part), getattr(part, "period", None)
 
 
 def _place() -> Place | None:
-    """The user's line that has led here; None if it was in another thread, as rclpy's are, which tells it itself."""
+    """Return the user's line that led here; None in another thread, such as rclpy's, which reports its own line."""
     frame = users_frame(sys._getframe(1))
     return None if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
 
 
-def tell_same(host: Host, parts: Iterable[Part], made: Part, callback: Callable[..., Any] | None) -> None:
-    """Tell of a handler that is called twice for one message or period, as a node has two parts for it.
+def warn_duplicate(host: Host, parts: Iterable[Part], made: Part, callback: Callable[..., Any] | None) -> None:
+    """Warn of a handler that is called twice for each message, since two of the node's subscriptions call it.
 
     Args:
-        parts: Those that the node has already.
-        made: The one that is about to be added; a subscription, or a timer.
-        callback: What it calls. One that the class declares is told by `doubled`.
+        parts: The node's existing parts.
+        made: The new part: a subscription or a timer.
+        callback: Its callback. `doubled` reports those that the class declares.
     """
-    is_timer = not hasattr(made, "type_name")  # another of them may have been cancelled, or begin at another time
+    is_timer = not hasattr(made, "type_name")  # the other timer may be cancelled
     if callback is None or is_timer or getattr(callback, MARK, None) is not None:
         return
     for other in parts:
@@ -86,5 +84,5 @@ def tell_same(host: Host, parts: Iterable[Part], made: Part, callback: Callable[
 
 
 def _calls(part: Any) -> Hashable:
-    """What a part calls, and when."""
+    """Return the callback of a part and the condition of its calls."""
     return part._callback, getattr(part, "name", None), getattr(part, "_period_ns", None)

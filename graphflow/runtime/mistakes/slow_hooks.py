@@ -1,4 +1,4 @@
-"""Hooks of a node that take long: where they wait is told, and what waits for them."""
+"""Slow hooks of a node: a warning with the line where they wait, and their consequences."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SLOW_INIT = 3.0
 SLOW = 5.0
 """Seconds that a hook may take before it is reported."""
 _BEGINNINGS = ("on_start", "on_configure", "on_activate")
-"""Hooks after which handlers run, sooner or later."""
+"""Hooks before which no handler runs."""
 _NO_HANDLERS = (
     "this node's handlers start when it has: what waits for them, or for nodes that wait for this one, belongs in a "
     "@task"
@@ -34,7 +34,7 @@ _NO_TRANSITION = "until it has, the node can make no other transition"
 
 
 def when_slow(host: Host, hook: str) -> Alarm:
-    """Say where a hook that this task runs waits if it has not returned in a while; the caller cancels that."""
+    """Warn with the line where the current task's hook waits, unless the caller cancels the alarm in time."""
     task, clock = asyncio.current_task(), host.context.clock
     then = _NO_HANDLERS if hook in _BEGINNINGS else _NO_TRANSITION
 
@@ -45,8 +45,8 @@ def when_slow(host: Host, hook: str) -> Alarm:
 
 
 @contextmanager
-def telling_slow_init(cls: type) -> Iterator[None]:
-    """Say where the code of the block, which makes a node, is after a while; on an event loop the watchdog says it."""
+def warn_slow_init(cls: type) -> Iterator[None]:
+    """Warn with the current line if the block, which makes a node, takes long. On an event loop, the watchdog does."""
     thread = threading.get_ident()
 
     def say() -> None:

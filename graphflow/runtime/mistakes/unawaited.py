@@ -1,4 +1,4 @@
-"""A forgotten `await` is told with the line that lacks it, on one line; Python's own warning names the scheduler's."""
+"""Forgotten `await`s, reported in one line with the place of the call; Python's warning has the scheduler's."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ from graphflow.analysis.user_code import innermost, is_users
 logger = logging.getLogger("graphflow")
 
 TOLD_BOUND = 1000
-"""Lines that are remembered, so that each is told once."""
+"""Lines of code remembered, so that each is reported once."""
 _told: set[str] = set()
 
 
 _AWAIT = "write await before it, in an async def"
 _WAYS = {"GoalClient.send_goal": "write send in place of send_goal"}
-"""Advice on an `async with` that begins with such a call."""
+"""Advice on an `async with` that starts with such a call."""
 
 
 def watch() -> None:
     """Report coroutines that end without having been awaited."""
-    # Python's C code looks this function up by its name.
+    # CPython's C code looks up this function by name.
     warnings._warn_unawaited_coroutine = report  # type: ignore[attr-defined]
 
 
 def report(coroutine: Coroutine[Any, Any, Any]) -> None:
-    """Log that a coroutine was never awaited, with the line that made it as far as it can be known."""
+    """Log that a coroutine was never awaited, with the line that called its function, if known."""
     name = getattr(coroutine, "__qualname__", repr(coroutine))
-    frame = inspect.currentframe()  # has no caller where C code ends the coroutine, as at the end of Python
+    frame = inspect.currentframe()  # there is no caller when C code finalizes the coroutine, as at interpreter exit
     place, text = _origin(coroutine, frame.f_back if frame is not None else None)
     if not place:
-        # From here on Python notes where each coroutine is made. It costs 0.15 us for each.
+        # From here on, Python records where each coroutine is created, at 0.15 us each.
         sys.set_coroutine_origin_tracking_depth(1)
     key = place or name
     if key in _told or len(_told) >= TOLD_BOUND:
@@ -59,11 +59,11 @@ def report(coroutine: Coroutine[Any, Any, Any]) -> None:
 
 
 def _origin(coroutine: Any, ended_in: FrameType | None) -> tuple[str, str]:
-    """Where a coroutine was made, as `file:line`, and that line; empty if that is not known."""
+    """Return the place that created a coroutine, as `file:line`, and its source line; "" if unknown."""
     for file, line, _ in coroutine.cr_origin or ():
         if is_users(file):
             return f"{file}:{line}", linecache.getline(file, line).strip()
-    # A call whose result nobody keeps ends on the line on which it was made.
+    # A coroutine that is not stored ends on the line that created it.
     frame = innermost(stack_from(ended_in))
     if frame is None:
         return "", ""

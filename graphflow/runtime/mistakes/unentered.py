@@ -1,4 +1,4 @@
-"""Context managers that do nothing until they are entered: a forgotten `async with` is told with its line."""
+"""Context managers that must be entered: a forgotten `async with` is reported with its line."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ logger = logging.getLogger("graphflow")
 
 
 class Unentered(AbstractAsyncContextManager[T]):
-    """A context manager that has something to lose.
+    """A context manager that has no effect unless entered.
 
     Args:
-        way: How it is written.
+        way: The correct form.
     """
 
     def __init__(self, way: str) -> None:
         self._way = way
         self._place = here()
         self._is_known = False
-        """Whether it has been entered, or was told not to be."""
+        """Whether it was entered, or an error was raised about it."""
 
     def __del__(self) -> None:
-        if not getattr(self, "_is_known", True):  # True where an argument was refused
+        if not getattr(self, "_is_known", True):  # True if the constructor refused its arguments
             logger.error("%s: this does nothing until it is entered; write %s", self._place, self._way)
 
-    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
+    if not TYPE_CHECKING:  # type checkers must keep reporting unknown attributes
 
         def _refuse(self) -> NoReturn:
             self._is_known = True
@@ -39,4 +39,4 @@ class Unentered(AbstractAsyncContextManager[T]):
         __await__ = __enter__ = _refuse
 
         def __exit__(self, *_: object) -> None:
-            """There is nothing to leave: `__enter__` has refused."""
+            """Do nothing: `__enter__` has raised."""

@@ -1,4 +1,4 @@
-"""Words of a command line that nothing reads: neither graphflow, nor the program that runs the nodes."""
+"""Command-line arguments that neither graphflow nor the program reads."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 _READERS = re.compile(
     r"argv|getopt|\b(argparse|optparse|click|typer|tyro|fire|docopt|absl|gflags|hydra|simple_parsing|jsonargparse)\b"
 )
-"""Names that a program mentions if it reads its command line."""
+"""Names that a program contains if it reads its command line."""
 
 _OF_FILES = ("params", "param", "param-file", "params-file", "parameters", "parameters-file", "config", "file", "f")
-"""What an option with a file of parameters is called elsewhere."""
+"""Other tools' options for a parameter file."""
 _OF_ROS = {
     **dict.fromkeys(("--name", "--node-name", "--node_name", "-n"), "-r __node:=VALUE"),
     **dict.fromkeys(("--namespace", "--ns"), "-r __ns:=VALUE"),
@@ -30,17 +30,17 @@ _OF_ROS = {
     **dict.fromkeys(("--quiet", "-q"), "--log-level error"),
     **dict.fromkeys(("--sim-time", "--use-sim-time", "--use_sim_time"), "-p use_sim_time:=true"),
 }
-"""Options of other tools, and the arguments of ROS's that do the same."""
+"""Options of other tools, with the equivalent ROS 2 arguments."""
 _FILE = re.compile(r"\.ya?ml\Z")
 
 
 def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_program: bool) -> str:
-    """Complain of words that are left of a command line; empty if the program may read them.
+    """Return a complaint about unused command-line arguments; "" if the program may read them.
 
     Args:
-        words: Those that are not for ROS.
-        classes: Of the nodes that are to run.
-        is_own_program: Whether the user's program runs them, and not `graphflow run`.
+        words: The arguments that are not ROS 2's.
+        classes: The classes of the nodes.
+        is_own_program: Whether a program of the user's runs them, rather than `graphflow run`.
     """
     if not words or any(_may_read(file) for file in _files(classes, is_own_program)):
         return ""
@@ -60,7 +60,7 @@ def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_progra
 
 
 def _files(classes: Sequence[type[Node]], is_own_program: bool) -> Iterator[str]:
-    """The program's files: the user's own, those of the packages that the nodes are from, and of modules it imports."""
+    """List the program's files: the user's own, those of the nodes' packages, and of modules it imports."""
     packages = {cls.__module__.partition(".")[0] for cls in classes}
     for name, module in list(sys.modules.items()):
         file: str | None = getattr(module, "__file__", None)
@@ -76,7 +76,7 @@ def _files(classes: Sequence[type[Node]], is_own_program: bool) -> Iterator[str]
 
 
 def _imported(module: ModuleType) -> Iterator[str]:
-    """The files of installed modules that a module imports, or from which it imports functions or classes."""
+    """List the files of installed modules from which a module imports."""
     for value in list(vars(module).values()):
         found = value if isinstance(value, ModuleType) else sys.modules.get(str(getattr(value, "__module__", "")))
         file: str | None = getattr(found, "__file__", None)
@@ -85,7 +85,7 @@ def _imported(module: ModuleType) -> Iterator[str]:
 
 
 def _may_read(file: str) -> bool:
-    """Whether a file mentions the command line, or cannot be looked at."""
+    """Whether a file mentions the command line, or is unreadable."""
     try:
         return _READERS.search(found_text(Path(file), "replace")) is not None
     except OSError:

@@ -1,4 +1,4 @@
-"""Programs that end without having run a node: `python talk.py` where nothing in talk.py runs what it defines."""
+"""Programs that end without having run a node: `python talk.py`, where nothing in talk.py runs the class it defines."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from graphflow.analysis.user_code import is_installed, is_ours, place_in
 from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
-"""Words of a program that runs nodes, or looks at them, in a way of its own."""
+"""Names in programs that run or inspect nodes in another way."""
 _classes: list[str] = []
-"""Node classes of the program's own file."""
+"""Node classes defined in the program's own file."""
 _file: str | None = None
 """The program's file, once it is watched."""
 _has_run = False
 
 
 def defined(cls: type) -> None:
-    """A node class was made: see at the end whether one was used."""
+    """Note the definition of a node class; an unused one is reported at exit."""
     if cls.__module__ == "__main__":
         _classes.append(cls.__name__)
     watch()
 
 
 def watch() -> None:
-    """See at the end of the program whether it has run anything."""
+    """Check at exit whether the program has run a node."""
     global _file
-    file = getattr(sys.modules.get("__main__"), "__file__", None)  # which is gone at the end
+    file = getattr(sys.modules.get("__main__"), "__file__", None)  # the attribute is gone at exit
     if file and _file is None and not (_has_run or sys.flags.interactive or is_ours(file) or is_installed(file)):
         _file = file
         atexit.register(_tell)
 
 
 def made() -> None:
-    """A node was made, or rclpy begun."""
+    """Note that a node was made, or rclpy initialized."""
     global _has_run
     _has_run = True
 
@@ -45,20 +45,20 @@ def made() -> None:
 def _tell() -> None:
     error = getattr(sys, "last_value", None)
     if isinstance(error, AttributeError) and error.name is not None and (better := better_text(error)):
-        sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has written the error itself
-    if _file is not None and not hasattr(sys, "last_value"):  # it has ended by itself, and not by an error
+        sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has printed the error itself
+    if _file is not None and not hasattr(sys, "last_value"):  # the program ended normally, without an error
         tell(Path(_file))
 
 
 def tell(file: Path) -> None:
-    """Say why a program that has ended has run nothing, unless it has; once."""
+    """Report once that a program has ended without running its nodes."""
     if not _has_run:
         made()
         sys.stderr.write(advice(file, _classes))
 
 
 def advice(file: Path, classes: list[str]) -> str:
-    """The remark on a file that has run to its end without a node; empty if it seems to have had other plans."""
+    """Return a remark on a file that ended without running a node; "" if that seems intended."""
     try:
         source = file.read_text(encoding="utf-8")
     except (OSError, ValueError):

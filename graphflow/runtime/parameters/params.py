@@ -1,4 +1,4 @@
-"""A node's parameters: typed values with ranges, checked before they change and followed after.
+"""A node's parameters: typed values with limits, checks before each change and observers after it.
 
 Source: rclpy's rules for declared parameters.
 """
@@ -15,7 +15,7 @@ from graphflow.runtime.node_arguments import instead_of
 
 
 class ParameterChange(NamedTuple):
-    """A parameter's value before and after a change; None where there was or is no parameter."""
+    """A change of a parameter; `old` or `new` is None where the parameter did not exist or was deleted."""
 
     old: Any
     new: Any
@@ -26,10 +26,10 @@ Observer = Callable[[Mapping[str, ParameterChange]], None]
 
 
 class Parameters:
-    """One node's parameters.
+    """The parameters of one node.
 
     Args:
-        overrides: Values from outside (graph file, command line) by name, each with where it was written.
+        overrides: Values from a graph file or the command line: name to (value, place that gives it).
     """
 
     def __init__(self, overrides: Mapping[str, tuple[Any, str]] | None = None) -> None:
@@ -41,7 +41,7 @@ class Parameters:
         self._observers: list[Observer] = []
 
     def declare(self, parameter: Parameter) -> Any:
-        """Add a parameter; its value is the override given for it, else its default.
+        """Add a parameter; returns its value: the override if there is one, else the default.
 
         Raises:
             ParameterError: The parameter is already declared, or the override does not fit.
@@ -74,10 +74,10 @@ class Parameters:
         self._tell({name: ParameterChange(value, None)})
 
     def unused_overrides(self, owner: type = object) -> list[str]:
-        """Overrides for which no parameter has been declared, as helpful sentences.
+        """Return a sentence for each override that matches no declared parameter.
 
         Args:
-            owner: The class of the node, whose plain attributes may be meant as parameters.
+            owner: The node's class; the sentence mentions its plain attributes.
         """
 
         def hint(name: str, given: Any, source: str) -> str:
@@ -94,7 +94,7 @@ class Parameters:
         ]
 
     def __getitem__(self, name: str) -> NoReturn:
-        """Raise TypeError, which says how a value is read."""
+        """Raise TypeError with the correct way to read a value."""
         raise TypeError(f'a value is read by parameters.get("{name}"), or self.{name} where the class declares it')
 
     def __iter__(self) -> Iterator[str]:
@@ -107,30 +107,30 @@ class Parameters:
         return sorted(self._declared)
 
     def get(self, name: str) -> Any:
-        """A parameter's value.
+        """Return a parameter's value.
 
         Raises:
-            ParameterError: There is no parameter of that name; the text names the nearest.
+            ParameterError: There is no parameter of that name; the text suggests the nearest one.
         """
         if name not in self._values:
             raise ParameterError(f"there is no parameter {name!r}{did_you_mean(name, self._declared)}")
         return self._values[name]
 
     def source(self, name: str) -> str:
-        """Where the value came from: `default`, a file and line, `command line`, `set`."""
+        """Return the origin of a value: `default`, a file and line, `command line` or `set`."""
         return self._sources[name]
 
     def describe(self, name: str) -> Parameter:
-        """A parameter's declaration. Raises ParameterError like `get`."""
+        """Return a parameter's declaration. Raises ParameterError as `get` does."""
         self.get(name)
         return self._declared[name]
 
     def set(self, values: Mapping[str, Any], source: str = "set") -> None:
-        """Set parameters, all or none. None deletes one, if it was declared with dynamic typing.
+        """Set parameters, all or none. None deletes one that was declared with dynamic typing.
 
         Raises:
-            ParameterError: One is unknown, read-only, of another type, out of range, or refused by a check; nothing
-                was changed.
+            ParameterError: A parameter is unknown or read-only, or a value has another type, is out of range or is
+                refused by a check. Nothing was changed.
         """
         if not isinstance(values, Mapping):
             raise ParameterError(f'several are set at once, by name: parameters.set({{"rate": 2.0}}), not {values!r}')
@@ -155,11 +155,11 @@ class Parameters:
         self._tell(changes)
 
     def check(self, check: Check) -> None:
-        """Call `check(values)` before each change; a ParameterError that it raises refuses them all."""
+        """Call `check(values)` before each change; its ParameterError refuses all the values."""
         self._checks.append(check)
 
     def observe(self, observer: Observer) -> None:
-        """Call `observer(changes)`, changes by name, after each change; also when one is declared or deleted."""
+        """Call `observer(changes)`, changes by name, after each change, declaration or deletion."""
         self._observers.append(observer)
 
     def _tell(self, changes: Mapping[str, ParameterChange]) -> None:

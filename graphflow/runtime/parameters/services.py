@@ -1,7 +1,7 @@
-"""What others see of a node's parameters: ROS 2's six services and the topic /parameter_events.
+"""A node's parameters on the network: ROS 2's six services and the topic /parameter_events.
 
-Source: rcl_interfaces. Unlike rclpy, one unknown name in a `get` does not empty the whole answer: it comes back as
-not set.
+Source: rcl_interfaces. Unlike rclpy, an unknown name in a `get` does not empty the whole response: its
+value is "not set".
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ _INT64 = range(-(2**63), 2**63)
 
 
 def type_number(parameter: Parameter, value: Any) -> int:
-    """The number of rcl_interfaces/msg/ParameterType for a parameter that holds `value`."""
+    """Return the rcl_interfaces/msg/ParameterType number of a parameter with `value`."""
     return type_id(value) if parameter.dynamic else TYPE_IDS[parameter.type]
 
 
 def to_descriptor(parameter: Parameter) -> rcl.ParameterDescriptor:
-    """A declaration as rcl_interfaces/msg/ParameterDescriptor; strict limits go into the additional constraints."""
+    """Convert a declaration to a ParameterDescriptor; exclusive limits go to the additional constraints."""
     from graphflow.msgs.rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 
     descriptor = ParameterDescriptor(
@@ -58,7 +58,7 @@ def to_descriptor(parameter: Parameter) -> rcl.ParameterDescriptor:
 
 
 def _is_listed(name: str, prefixes: Iterable[str], depth: int) -> bool:
-    """Whether `name` is under one of the prefixes, if there are any, at most `depth` levels below it; 0: any depth."""
+    """Whether `name` is under a prefix, if there are any, and at most `depth` levels below it (0: any depth)."""
     for prefix in prefixes or ("",):
         if not prefix or name == prefix or name.startswith(f"{prefix}."):
             below = name.removeprefix(prefix).strip(".")
@@ -68,13 +68,13 @@ def _is_listed(name: str, prefixes: Iterable[str], depth: int) -> bool:
 
 
 class ParameterServices:
-    """The handlers of a node's six parameter services."""
+    """Handlers of a node's six parameter services."""
 
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
 
     def handlers(self) -> Iterable[tuple[str, str, Callable[[Any], Any]]]:
-        """(name under the node, service type in rcl_interfaces, handler)."""
+        """List the services: (name below the node, service type in rcl_interfaces, handler)."""
         yield "get_parameters", "GetParameters", self.get
         yield "get_parameter_types", "GetParameterTypes", self.get_types
         yield "set_parameters", "SetParameters", self.set
@@ -142,7 +142,7 @@ class ParameterServices:
 
 
 class ParameterEvents(Part):
-    """Publishes every change of a node's parameters on /parameter_events; at the start, all of them as new."""
+    """The publisher of a node's parameter changes on /parameter_events; at the start, all count as new."""
 
     def __init__(self, host: Host, parameters: Parameters) -> None:
         from graphflow.msgs.rcl_interfaces.msg import ParameterEvent
@@ -156,7 +156,7 @@ class ParameterEvents(Part):
         self.tell({name: ParameterChange(None, parameters.get(name)) for name in parameters.names()})
 
     def tell(self, changes: Mapping[str, ParameterChange]) -> None:
-        """Publish what has changed, if there are subscriptions."""
+        """Publish changes, if there are subscriptions."""
         if not self._publisher.is_wanted:
             return
         from graphflow.msgs.rcl_interfaces.msg import Parameter as ParameterMessage

@@ -1,4 +1,4 @@
-"""Parameter values as rcl_interfaces/msg/ParameterValue, and back."""
+"""Conversion of parameter values to rcl_interfaces/msg/ParameterValue and back."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ VALUE_FIELDS = (
     "double_array_value",
     "string_array_value",
 )
-"""The field of ParameterValue that each type uses."""
+"""The field of ParameterValue for each type number."""
 
 
 def to_message(value: Any, type_: int) -> rcl.ParameterValue:
-    """A value as a message.
+    """Convert a value to a message.
 
     Args:
-        type_: A number of rcl_interfaces/msg/ParameterType.
+        type_: A type number of rcl_interfaces/msg/ParameterType.
     """
     from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 
@@ -37,10 +37,10 @@ def to_message(value: Any, type_: int) -> rcl.ParameterValue:
 
 
 def from_message(message: rcl.ParameterValue) -> Any:
-    """The Python value of a message; None when it is not set.
+    """Convert a message to a Python value; None if it is not set.
 
     Raises:
-        ParameterError: Its type number is not one of ROS 2's.
+        ParameterError: The type number is not one of ROS 2's.
     """
     if message.type == 0:
         return None
@@ -53,7 +53,7 @@ def from_message(message: rcl.ParameterValue) -> Any:
 
 
 def type_word(type_: int) -> str:
-    """How `param get` begins its line: `Integer value is`, `Double values are`."""
+    """Return the start of `param get`'s output: `Integer value is`, `Double values are`."""
     name = TYPE_NAMES[type_]
     word = name.removesuffix(" array").capitalize()
     return f"{word} values are" if name.endswith("array") else f"{word} value is"

@@ -1,1 +1,1 @@
-"""The event loop that nodes run on, and the threads around it."""
+"""The event loop that nodes run on, and its helper threads."""

@@ -1,8 +1,8 @@
-"""Daemon threads for work that blocks: used again, not waited for at exit, and there even while the interpreter ends.
+"""Daemon threads for blocking work: reused, not joined at exit, and available while the interpreter exits.
 
-A pool of `concurrent.futures` is none of these: its threads keep the interpreter from ending until their work is done,
-and it takes no work from then on. From Python 3.12 on nobody can start a thread after the main thread has ended, so
-some are started before and kept for what must still be closed then.
+A pool of `concurrent.futures` delays the interpreter's exit until its work is done, and accepts no work from then on.
+From Python 3.12 on, no thread can be started after the main thread has ended, so some are started before and reserved
+for closing resources then.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from typing import Any, NamedTuple, TypeVar
 T = TypeVar("T")
 
 IDLE_LIMIT = 8
-"""Idle threads that wait for more work; the others end."""
+"""Idle threads that wait for more work; others end."""
 RESERVE = 4
-"""Threads kept for the end of the interpreter: closing a session takes two at a time."""
+"""Threads reserved for the interpreter's exit: closing a session takes two at a time."""
 
 
 class _Work(NamedTuple):
@@ -30,7 +30,7 @@ class _Work(NamedTuple):
 
 
 class _Worker(threading.Thread):
-    """A thread that does one piece of work after another."""
+    """A thread that executes one function after another."""
 
     def __init__(self, pool: ThreadPool) -> None:
         super().__init__(name="graphflow-idle", daemon=True)
@@ -44,9 +44,9 @@ class _Worker(threading.Thread):
             result, error = None, None
             try:
                 result = fn()
-            except BaseException as raised:  # whoever waits for the work is the one to handle it
+            except BaseException as raised:  # passed to the caller, who handles it
                 error = raised
-            # Idle before its end is told: who asks again at once gets the same thread.
+            # Idle before the result is reported: an immediate next call reuses the thread.
             self.name = "graphflow-idle"
             stays = self._pool.is_kept(self)
             done(result, error)
@@ -54,7 +54,7 @@ class _Worker(threading.Thread):
 
 
 class ThreadPool:
-    """Threads for one process. A forked child begins with none."""
+    """The threads of one process. A forked child starts with none."""
 
     def __init__(self) -> None:
         self._forget()
@@ -67,19 +67,19 @@ class ThreadPool:
         self._reserve: list[_Worker] = []
 
     def reserve(self) -> None:
-        """Start the threads that are kept for the end of the interpreter, if they have not been started."""
+        """Start the reserved threads, once."""
         with self._lock:
             while len(self._reserve) < RESERVE:
                 self._reserve.append(self._started())
 
     def run(self, fn: Callable[[], T], done: Callable[[T | None, BaseException | None], object], name: str) -> _Worker:
-        """Call `fn()` in a thread, and then there `done(result, error)`, which must not raise.
+        """Call `fn()` in a thread, and then `done(result, error)`, which must not raise, in the same thread.
 
         Args:
-            name: What debuggers call the thread meanwhile.
+            name: The thread's name during the call.
 
         Raises:
-            RuntimeError: No thread can be started.
+            RuntimeError: A thread cannot be started.
         """
         with self._lock:
             worker = self._idle.pop() if self._idle else None
@@ -89,7 +89,7 @@ class ThreadPool:
         return worker
 
     def is_kept(self, worker: _Worker) -> bool:
-        """Whether a worker is to wait for more work."""
+        """Whether a worker should wait for more work."""
         with self._lock:
             if len(self._idle) >= IDLE_LIMIT:
                 return False
@@ -116,9 +116,9 @@ THREADS = ThreadPool()
 
 
 class DaemonExecutor(ThreadPoolExecutor):
-    """The executor of `asyncio.to_thread` and `run_in_executor(None, ...)`: asyncio's limit, on threads of this module.
+    """An executor for `asyncio.to_thread` and `run_in_executor(None, ...)` with asyncio's limit, on these threads.
 
-    The end of the loop does not wait for functions that still run, nor does that of the interpreter.
+    Neither closing the loop nor the interpreter's exit waits for running functions.
     """
 
     def __init__(self) -> None:
@@ -135,7 +135,7 @@ class DaemonExecutor(ThreadPoolExecutor):
                 return
             try:
                 result = fn(*args, **kwargs)
-            except BaseException as error:  # whoever waits for the future is the one to handle it
+            except BaseException as error:  # passed to the future, whose consumer handles it
                 future.set_exception(error)
             else:
                 future.set_result(result)
@@ -163,7 +163,7 @@ class DaemonExecutor(ThreadPoolExecutor):
                 _, work = self._waiting.popleft()
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Cancel what has not begun."""
+        """Cancel functions that have not started."""
         with self._order:
             waiting, self._waiting = self._waiting, deque()
         for future, _ in waiting:

@@ -1,8 +1,8 @@
-"""Callbacks on threads that Python has not started: Zenoh's own.
+"""Callbacks on threads that Python has not started, such as Zenoh's.
 
-CPython makes a thread state for each callback on such a thread, and frees it afterwards: 8 us, with two calls into the
-system's memory. A thread that has asked for the GIL once and never given that back keeps its state, and a callback
-costs 1 us. The state goes with the process, as Zenoh's threads do.
+For each callback on such a thread, CPython creates a thread state and frees it afterwards: 8 us, with two system calls
+for memory. A thread with an unmatched PyGILState_Ensure keeps its state, and a callback costs 1 us. The state lasts
+until the process ends, as Zenoh's threads do.
 
 Source: PyGILState_Ensure in Python's C API, whose calls are counted.
 """
@@ -16,13 +16,13 @@ from typing import Any
 from zenoh.handlers import Callback
 
 THREADS_BOUND = 256
-"""Threads whose states are kept; those after them pay for theirs, as without this module."""
+"""Threads whose states are kept; further ones pay the full cost."""
 _kept: set[int] = set()
-"""The threads whose states are kept, and those that need no look any more."""
+"""Threads whose states are kept, and those that need no further check."""
 
 
 def _keep() -> None:
-    """Keep the state of the thread that calls this."""
+    """Keep the state of the calling thread."""
     if len(_kept) >= THREADS_BOUND:
         return
     _kept.add(threading.get_ident())
@@ -30,16 +30,16 @@ def _keep() -> None:
         import ctypes
 
         ctypes.pythonapi.PyGILState_Ensure()
-    except (ImportError, AttributeError):  # a Python without ctypes, or one that is not CPython
+    except (ImportError, AttributeError):  # a Python without ctypes, or not CPython
         return
 
 
 def at_once(put: Callable[[Any], None], drop: Callable[[], None] | None = None) -> Callback[Any]:
-    """A callback that Zenoh calls where something arrives, without a queue and a thread of its own in between.
+    """Return a callback that Zenoh calls on the arriving thread, without a queue and a thread in between.
 
     Args:
-        put: Must return at once: Zenoh's thread has other work.
-        drop: Called when nothing more will come.
+        put: Receives each arrival; must not block, since Zenoh's thread has other work.
+        drop: Called after the last arrival.
     """
     ident, kept = threading.get_ident, _kept
 

@@ -1,4 +1,4 @@
-"""The event loop that nodes run on: uvloop's where the extra `fast` is installed, else asyncio's."""
+"""The event loop that nodes run on: uvloop's if the extra `fast` is installed, else asyncio's."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from graphflow.transport.malloc import keep_freed_memory
 T = TypeVar("T")
 
 LOOP_VARIABLE = "GRAPHFLOW_LOOP"
-"""`asyncio` or `uvloop`, to choose one."""
+"""Environment variable that selects `asyncio` or `uvloop`."""
 
 
 def new_event_loop() -> asyncio.AbstractEventLoop:
-    """An event loop of the best kind available. Its end does not wait for `asyncio.to_thread`."""
+    """Return an event loop of the best kind available. Closing it does not wait for `asyncio.to_thread`."""
     loop = _loop_of_the_best_kind()
     loop.set_default_executor(DaemonExecutor())
     return loop
@@ -46,7 +46,7 @@ def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
 
 
 def run(main: Coroutine[Any, Any, T]) -> T:
-    """`asyncio.run` on a loop of the best kind available, in a process set up for large messages."""
+    """Run a coroutine as `asyncio.run`, on the best loop available, in a process tuned for large messages."""
     keep_freed_memory()
     collect_normally()
     with closing(main), asyncio.Runner(loop_factory=new_event_loop) as runner:
@@ -54,12 +54,12 @@ def run(main: Coroutine[Any, Any, T]) -> T:
 
 
 async def in_thread(fn: Callable[[], object]) -> None:
-    """Run `fn()` in a thread of its own and wait for its end; also while the interpreter ends, when no pool works."""
+    """Run `fn()` in a thread and wait for its end, even during the interpreter's exit, when pools do not work."""
     loop = asyncio.get_running_loop()
     ended: asyncio.Future[None] = loop.create_future()
 
     def done(_: object, error: BaseException | None) -> None:
-        with suppress(RuntimeError):  # the loop has been closed meanwhile
+        with suppress(RuntimeError):  # the loop has been closed in the meantime
             loop.call_soon_threadsafe(_settle, ended, error)
 
     THREADS.run(fn, done, f"graphflow-{getattr(fn, '__name__', 'thread')}")

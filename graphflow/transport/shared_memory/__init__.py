@@ -1,1 +1,1 @@
-"""Large messages between processes of one user on one machine. Begin with `ring`."""
+"""Large messages between processes of one user on one machine. Start with `ring`."""

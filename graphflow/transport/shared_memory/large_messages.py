@@ -1,8 +1,8 @@
-"""Large messages over Zenoh between processes of one user on one machine: what travels is where they lie in memory.
+"""Large messages over Zenoh between processes of one user on one machine: only their memory location is sent.
 
-A descriptor goes by a key of its own, which ROS 2 does not know, and only while every receiver that is known reads it;
-all else is sent as an ordinary message, which anybody understands. On the receivers' side both come directly, on
-Zenoh's thread, and so in the order in which they were sent.
+A descriptor is sent on a key of its own, unknown to ROS 2, and only while every known receiver reads it; otherwise an
+ordinary message is sent, which every receiver understands. Receivers get both directly on Zenoh's thread, and so in the
+order of sending.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ from graphflow.wire.shared_memory import unpack
 __all__ = ["FROM", "RingReceiver", "RingSender", "can_share", "receive"]
 
 FROM = 64 << 10
-"""Bytes from which on a message goes through memory; for a smaller one a copy more costs less than the ring."""
+"""Smallest message in bytes to send through memory; for smaller ones a copy costs less than the ring."""
 DEEPEST = 10
-"""Messages that wait in memory, as in the default queue; readers with longer queues copy what arrives."""
+"""Longest queue in memory, the default depth; readers with longer queues copy arrivals."""
 
 
 class RingSender:
-    """A publication whose large messages go through a ring: `base.LargeSender`.
+    """A publisher whose large messages go through a ring: `base.LargeSender`.
 
     Args:
-        sender: For all others, and for receivers that do not read rings.
-        describe: Sends a descriptor and an attachment to those that do.
+        sender: Sends small messages, and all messages to receivers that do not read rings.
+        describe: Sends a descriptor and an attachment to receivers that do.
     """
 
     def __init__(self, sender: Sender, describe: Callable[[bytes, bytes], None]) -> None:
         self._put, self._describe = sender.put, describe
         self._readers: dict[int, int] | None = None
-        """The depths of the readers' queues, by their numbers, while all receivers are readers."""
+        """The readers' queue depths by number, while all receivers are readers; else None."""
         self._ring: Ring | None = None
         self._is_introduced = self._is_open = False
         self.in_memory = 0
@@ -75,15 +75,15 @@ class RingSender:
             self.in_memory += 1
 
     def _ring_for(self, size: int) -> Ring | None:
-        """A ring for a message of this size that all readers have open; None if it has to be sent."""
+        """Return a ring for a message of this size that all readers have open; None if it must be sent."""
         readers, ring = self._readers, self._ring
         if not readers:
             return None
         depths = [min(depth, DEEPEST) for depth in readers.values()]
         if ring is None or not ring.fits(depths, size):
-            if ring is not None and ring.is_lent:  # what is being filled lies there
+            if ring is not None and ring.is_lent:  # the array being filled is in this ring
                 return None
-            ring = self._new_ring(depths, size + size // 8)  # a cloud's size varies
+            ring = self._new_ring(depths, size + size // 8)  # the size of point clouds varies
         if ring is None or self._is_open:
             return ring
         if not self._is_introduced:
@@ -123,7 +123,7 @@ class RingSender:
 
 
 class _InRing:
-    """A message that lies in its sender's memory, as Zenoh's samples are seen."""
+    """A message in its sender's memory, with the interface of Zenoh's samples."""
 
     __slots__ = ("_payload", "attachment")
 
@@ -142,7 +142,7 @@ class _InRing:
 
 
 class RingReceiver:
-    """Where descriptors arrive: `base.RingReceiver`."""
+    """A receiver of descriptors: `base.RingReceiver`."""
 
     def __init__(self, proof: tuple[int, int], reader: RingReader, declared: Closable) -> None:
         self.reader = proof
@@ -156,7 +156,7 @@ class RingReceiver:
 
 
 def receive(reader: RingReader, inbox: Inbox) -> Any:
-    """The handler of descriptors: it claims or copies what they describe, and counts what is not there any more."""
+    """Return a handler of descriptors that claims or copies the messages, and counts those already overwritten."""
 
     def arrived(sample: zenoh.Sample) -> None:
         descriptor = unpack(sample.payload.to_bytes())

@@ -1,22 +1,22 @@
-"""A ring of slots in shared memory: one process writes large messages, others of its user read them where they lie.
+"""A ring of slots in shared memory: one process writes large messages, and others of its user read them in place.
 
-The memory is an anonymous file (`memfd_create`), which other processes open at `/proc/<pid>/fd/<fd>`: nothing has a
-name that could be left behind, and the system frees it with the last process that uses it, however that ends. Its size
-is sealed, so that nobody can be made to read beyond its end.
+The memory is an anonymous file (`memfd_create`), which other processes open at `/proc/<pid>/fd/<fd>`: there is no name
+that could be left behind, and the system frees it with the last process that uses it, however that process ends. Its
+size is sealed, so that no reader can be made to read beyond its end.
 
     0       magic number, number of the ring, number of slots, bytes of a slot
     64      a generation for each slot: odd while it is written, another even number for each message
     1024    the readers, by number: the writer gives each a column
-    1536    how many slots each reader may claim
+    1536    the number of slots that each reader may claim
     1600    a byte for each column, 1 once that reader has the ring open
     2048    a row for each slot: a byte for each column, 1 while that reader claims the slot
     4096    the slots
 
-A reader claims a slot for as long as anybody uses the message, and the writer passes over claimed slots. Each first
-writes its own mark and then looks at the other's, so that they cannot both believe that the slot is theirs. When a
-reader may claim no more, it copies. So the writer waits for nobody: readers that are slow, stopped or dead keep their
-share of the slots, and what has been overwritten before its descriptor was read is lost to that reader alone.
-A ring is used when all its readers have it open: what is in it then reaches them even if the writer ends at once.
+A reader claims a slot for as long as the message is in use, and the writer skips claimed slots. Each first writes its
+own mark and then reads the other's, so that they cannot both own the slot. A reader without further claims copies. So
+the writer never waits: slow, stopped or dead readers keep their share of the slots, and a message that is overwritten
+before its descriptor was read is lost to that reader alone. A ring is used once all its readers have it open: its
+messages then reach them even if the writer ends at once.
 
 Source: Dekker's mutual exclusion for two; sequence locks as in Linux's `seqlock.h`; `memfd_create(2)`, `fcntl(2)`.
 """
@@ -37,16 +37,16 @@ from graphflow.wire.shared_memory import Descriptor
 
 SHARED_MEMORY_VARIABLE = "GRAPHFLOW_SHARED_MEMORY"
 RING_BOUND = 96 << 20
-"""Bytes of a ring's slots."""
+"""Largest size of a ring's slots, in bytes."""
 LEAST_SLOTS = 3
-"""Slots below which a ring is not worth its memory: one being written, and two that are read."""
+"""Fewest slots of a useful ring: one being written, and two being read."""
 SPARE = 2
-"""Slots that nobody may claim: one being written, and one whose descriptor is on its way."""
+"""Slots that cannot be claimed: one being written, and one whose descriptor is in transit."""
 MOST_SLOTS, MOST_READERS = 64, 32
 MAPPED_BOUND = 64
-"""Rings that a subscription has open: those of so many publishers."""
+"""Rings that a subscription has open, one or two per publisher."""
 LEAD = 4096
-"""Bytes of a slot before the place of an array that is filled there: for what comes before it in the message."""
+"""Bytes of a slot before an array that is filled in place, for the message's fields before it."""
 
 _HEAD = struct.Struct("<QQQQ")
 _MAGIC = int.from_bytes(b"gflring1", "little")
@@ -59,20 +59,20 @@ _lock = Lock()
 
 
 def _fence() -> None:
-    """Have everything written before it be seen before anything is read after it, on every processor."""
-    with _lock:  # what is before the second lock is before its release, and that is before the next acquisition
+    """Order all earlier writes before all later reads, on every processor."""
+    with _lock:  # code before the second lock precedes its release, which precedes the next acquisition
         pass
     with _lock:
         pass
 
 
 def can_share() -> bool:
-    """Whether this process can share memory, and may."""
+    """Whether this process is able and permitted to share memory."""
     return not is_portable() and hasattr(os, "memfd_create") and os.environ.get(SHARED_MEMORY_VARIABLE, "1") != "0"
 
 
 def open_proof(zid: str) -> int:
-    """Open the file by which other processes of this user know that a session is on this machine."""
+    """Open the file that proves to other processes of this user that a session is on this machine."""
     return os.memfd_create(f"{_PROOF_NAME} {zid}", os.MFD_CLOEXEC)
 
 
@@ -80,7 +80,7 @@ def is_proved(zid: str, pid: int, fd: int) -> bool:
     """Whether a session belongs to a process of this user on this machine."""
     path = f"/proc/{pid}/fd/{fd}"
     try:
-        # The link can be read in processes of the same user only, and by root in all: so the owner counts, too.
+        # Only processes of the same user, and root's, can read the link: so the owner is checked, too.
         is_named = os.readlink(path) == f"/memfd:{_PROOF_NAME} {zid} (deleted)"
         return is_named and os.stat(path).st_uid == os.geteuid()
     except OSError:
@@ -88,12 +88,12 @@ def is_proved(zid: str, pid: int, fd: int) -> bool:
 
 
 def number_of(zid: str, eid: int) -> int:
-    """What a subscription is called in a ring; never 0."""
+    """Return a subscription's number in a ring; never 0."""
     return int.from_bytes(blake2b(f"{zid}/{eid}".encode(), digest_size=8).digest(), "little") | 1
 
 
 def slots_for(depths: Collection[int], size: int) -> int:
-    """How many slots of `size` bytes a ring has for readers with queues of these depths."""
+    """Return the number of slots of `size` bytes for readers with queues of these depths."""
     return min(sum(depths) + SPARE, MOST_SLOTS, RING_BOUND // _stride(size))
 
 
@@ -116,19 +116,19 @@ class _Memory:
         self.claims = view[_CLAIMS : _CLAIMS + MOST_READERS * slots]
 
     def at(self, slot: int) -> int:
-        """The position of a slot."""
+        """Return the position of a slot."""
         return _SLOTS + slot * self.slot_size
 
 
 class Ring:
-    """The writer's side. Not for several threads at once.
+    """The writer's side of a ring. Not thread-safe.
 
     Args:
-        slots: How many; `slots_for` says how many there may be.
-        size: The bytes of the longest message.
+        slots: Number of slots, at most `slots_for`'s.
+        size: Bytes of the longest message.
 
     Raises:
-        OSError: There is no memory or no file left.
+        OSError: Memory or file descriptors are exhausted.
     """
 
     def __init__(self, slots: int, size: int) -> None:
@@ -141,7 +141,7 @@ class Ring:
             os.ftruncate(self._fd, self.bytes)
             fcntl.fcntl(self._fd, fcntl.F_ADD_SEALS, _seals())
             self._memory = _Memory(mmap.mmap(self._fd, self.bytes), slots, _stride(size))
-        except BaseException:  # whatever it was, the file is not left open
+        except BaseException:  # any error, interrupts included: the file is not left open
             os.close(self._fd)
             raise
         _HEAD.pack_into(self._memory.map, 0, _MAGIC, self._number, slots, _stride(size))
@@ -151,16 +151,16 @@ class Ring:
         self._lent: tuple[int, Any] | None = None
 
     def fits(self, depths: Collection[int], size: int) -> bool:
-        """Whether messages of this size fit, and there are as many slots as `slots_for` allows to these readers."""
+        """Whether messages of this size fit, and the slots are as many as `slots_for` allows these readers."""
         memory = self._memory
         return LEAD + size <= memory.slot_size and slots_for(depths, memory.slot_size - LEAD) <= memory.slots
 
     def admit(self, readers: Collection[int]) -> bool:
-        """Give a column to each reader, and take it from those that have left.
+        """Give each reader a column, and take back those of readers that have left.
 
         Returns:
-            False if one that has left still claims something. Whether it has ended or only cannot be reached, nobody
-            knows; so this ring must be closed, and its memory is its readers' as long as they use it.
+            False if a reader that has left still has claims. It may have ended, or only be unreachable; so this ring
+            must be closed, and its memory stays with its readers while they use it.
         """
         memory = self._memory
         wanted, left = set(readers), []
@@ -190,15 +190,15 @@ class Ring:
 
     @property
     def introduction(self) -> Descriptor:
-        """What lets readers open it: a place without a message."""
+        """Return a descriptor without a message, by which readers open the ring."""
         return Descriptor(self._pid, self._fd, self._number, 0, 0, 0, 0)
 
     def write(self, parts: Sequence[Any], size: int) -> Descriptor | None:
-        """Put a message into a slot, or around its array where that is lent; None if readers claim all slots.
+        """Write a message to a slot, or around its lent array; returns None if readers claim all slots.
 
         Args:
-            parts: Buffers, one behind the other.
-            size: Their bytes.
+            parts: Consecutive buffers.
+            size: Their total size in bytes.
         """
         placed = self._placed(parts) if self._lent is not None else None
         if placed is None:
@@ -217,11 +217,11 @@ class Ring:
 
     @property
     def is_lent(self) -> bool:
-        """Whether an array in it is being filled."""
+        """Whether one of its arrays is lent."""
         return self._lent is not None
 
     def lend(self, dtype: Any, count: int) -> Any:
-        """An array in a slot of its own, to be filled, and written by `write`; one at a time. None if none is free."""
+        """Lend an array in a slot, to be filled and then written by `write`; one at a time. None if no slot is free."""
         import numpy
 
         slot = self._begin()
@@ -232,22 +232,22 @@ class Ring:
         return array
 
     def take_back(self) -> None:
-        """End the loan: the slot may be written again, and the array may not."""
+        """End the loan: the slot may be written again, and the array becomes read-only."""
         if self._lent is not None:
             slot, array = self._lent
             array.flags.writeable = False
-            if self._memory.marks[slot] % 2:  # nothing was written
+            if self._memory.marks[slot] % 2:  # the loan ended without a message
                 self._end(slot)
             self._lent = None
 
     def close(self) -> None:
-        """Leave the memory to its readers; the system frees it after the last of them."""
+        """Close the writer's side; the system frees the memory with its last reader."""
         fd, self._fd = self._fd, -1
         if fd >= 0:
             os.close(fd)
 
     def _placed(self, parts: Sequence[Any]) -> tuple[int, int, int] | None:
-        """Slot and start of a message whose array is the lent one, and which part that is."""
+        """Return slot and start of a message with the lent array, and the index of that part."""
         assert self._lent is not None
         slot, array = self._lent
         before = 0
@@ -259,19 +259,19 @@ class Ring:
         return None
 
     def _begin(self) -> int | None:
-        """Take the next slot that nobody claims and that is not lent, and mark it as being written."""
+        """Take the next slot that is neither claimed nor lent, and mark it as being written."""
         memory = self._memory
         marks, claims, slots = memory.marks, memory.claims, memory.slots
         for _ in range(slots):
             slot = self._next
             self._next = (slot + 1) % slots
-            if marks[slot] % 2:  # it is lent
+            if marks[slot] % 2:  # the slot is lent
                 continue
             marks[slot] += 1
             _fence()
             if claims[slot * MOST_READERS : (slot + 1) * MOST_READERS] == _UNCLAIMED:
                 return slot
-            marks[slot] -= 1  # its message is as it was
+            marks[slot] -= 1  # its message is unchanged
         return None
 
     def _end(self, slot: int) -> int:
@@ -282,7 +282,7 @@ class Ring:
 
 
 class _Claims:
-    """A ring as one of its readers sees it."""
+    """A ring, as one of its readers sees it."""
 
     __slots__ = ("_column", "_number", "count", "memory", "ring")
 
@@ -294,7 +294,7 @@ class _Claims:
         """Slots claimed now."""
 
     def find_column(self) -> int:
-        """The column that the writer has given this reader; -1 if none."""
+        """Return the column that the writer has given this reader; -1 if none."""
         column, readers = self._column, self.memory.readers
         if column < 0 or readers[column] != self._number:
             numbers = readers.tolist()
@@ -302,7 +302,7 @@ class _Claims:
         return column
 
     def take(self, place: Descriptor) -> bytes | None:
-        """The message: where it lies, if this reader may claim one more slot; else a copy. None if it is gone."""
+        """Return the message in place, or a copy if no claim is left; None if it is overwritten."""
         memory, slot = self.memory, place.slot
         if slot >= memory.slots or place.start + place.size > memory.slot_size:
             return None
@@ -326,7 +326,7 @@ class _Claims:
 
 
 def claimed(at: mmap.mmap, position: int, size: int, claims: _Claims, index: int) -> bytes:
-    """A message in a claimed slot, which is free again when nobody refers to the message or its arrays."""
+    """Return the message in a claimed slot, which is released with the last reference to the message or its arrays."""
     from graphflow.transport.shared_memory.ring_bytes import ring_bytes
 
     return ring_bytes(at, position, size, lambda: claims.release(index))
@@ -336,22 +336,22 @@ class RingReader:
     """The reader's side: the rings of a topic's publishers, as one subscription has them open. From any thread.
 
     Args:
-        number: The subscription's, by `number_of`.
+        number: The subscription's number, from `number_of`.
     """
 
     def __init__(self, number: int) -> None:
         self._number = number
         self._open: dict[str, _Claims] = {}
-        """The rings, by the paths of their files."""
+        """The open rings, by the paths of their files."""
 
     def open(self, introduction: Descriptor) -> None:
-        """Open a ring, and tell its writer so."""
+        """Open a ring, and mark it as open for its writer."""
         claims = self._claims(introduction)
         if claims is not None and (column := claims.find_column()) >= 0:
             claims.memory.opened[column] = 1
 
     def take(self, descriptor: Descriptor) -> bytes | None:
-        """The message, or None if it is not there any more; its arrays are good for as long as they are used."""
+        """Return a message, or None if it is overwritten; its arrays stay valid while in use."""
         claims = self._claims(descriptor)
         return None if claims is None else claims.take(descriptor)
 
@@ -369,7 +369,7 @@ class RingReader:
         return claims
 
     def forget_ended(self) -> None:
-        """Give back the memory of rings whose writers have ended or have made others."""
+        """Release the memory of rings whose writers have ended or have replaced them."""
         for path in list(self._open):
             if not _is_ring(path):
                 self._open.pop(path, None)
@@ -383,8 +383,9 @@ def _is_ring(path: str) -> bool:
 
 
 def _map(path: str, ring: int) -> _Memory | None:
-    """Open a ring. Anybody on the network may have made up the descriptor: it can name files of this user's only, and
-    of these only rings.
+    """Open a ring.
+
+    The descriptor may be forged by anyone on the network: it can only name files of this user, and of these only rings.
     """
     import fcntl
 

@@ -1,4 +1,4 @@
-"""Bytes in shared memory, as a decoder reads them. Loads numpy; only types with arrays of numbers get here."""
+"""Shared memory as a bytes-like object for decoders. Loads numpy; only types with arrays of numbers use it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy import ndarray
 
 
 class _RingBytes(ndarray[Any, Any]):
-    """Read-only memory whose slices are bytes, and which says when nobody uses it any more."""
+    """Read-only memory whose slices are bytes, and which reports its last use."""
 
     release: Callable[[], None] | None = None
 
@@ -28,8 +28,8 @@ class _RingBytes(ndarray[Any, Any]):
 
 
 def ring_bytes(at: mmap.mmap, position: int, size: int, release: Callable[[], None]) -> bytes:
-    """Memory as what a decoder takes for bytes; `release` is called when neither it nor an array over it is left."""
-    # Not by `view`: arrays over it would refer to what is beneath in its place, and leave it alone.
+    """Return memory for a decoder; `release` is called when neither it nor an array over it is left."""
+    # Not by `view`: arrays over it would refer to the underlying buffer instead, and not keep this object alive.
     found = _RingBytes(size, np.uint8, at, position)
     found.flags.writeable = False
     found.release = release

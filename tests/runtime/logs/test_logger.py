@@ -80,7 +80,7 @@ def test_floods_are_gathered(log: NodeLogger, clock: list[float], caplog: pytest
     assert walls[:FREE] == [f"wall {i}" for i in range(FREE)]
     assert walls[FREE:] == ["wall 60 (50 more like this in between)", "wall 120 (59 more like this in between)"]
     assert "DEADLOCK" in caplog.messages
-    log.say_gathered()
+    log.log_suppressed()
     assert caplog.messages[-1].startswith("59 more lines from ")
     clock[0] += 5.0
     caplog.clear()

@@ -12,7 +12,7 @@ import pytest
 from graphflow import ClosedError, MessageInfo, Node, WrongThread, subscription
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Trigger
-from graphflow.runtime.mistakes.other_threads import tell_strangers
+from graphflow.runtime.mistakes.other_threads import report_foreign_calls
 from graphflow.system import is_portable
 from graphflow.testing import Graph
 from graphflow.transport.event_loop.loop import LOOP_VARIABLE, new_event_loop
@@ -116,7 +116,7 @@ def test_what_a_thread_does_to_the_loop(monkeypatch: pytest.MonkeyPatch, caplog:
 
     async def main() -> None:
         loop = asyncio.get_running_loop()
-        tell_strangers(loop)
+        report_foreign_calls(loop)
         queue, future, event = asyncio.Queue[int](), loop.create_future(), asyncio.Event()
         waiting = asyncio.gather(queue.get(), future, event.wait())
         await asyncio.sleep(0)

@@ -71,5 +71,5 @@ def test_an_init_that_does_not_return(monkeypatch: pytest.MonkeyPatch) -> None:
 
 async def test_an_init_on_an_event_loop(graphflow_runner: asyncio.Runner) -> None:
     """It is left to the watch over the loop."""
-    with slow_hooks.telling_slow_init(Node):
+    with slow_hooks.warn_slow_init(Node):
         assert not any(isinstance(thread, threading.Timer) for thread in threading.enumerate())

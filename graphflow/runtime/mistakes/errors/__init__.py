@@ -1,1 +1,1 @@
-"""Errors that are completed, where they are reported, by what to write instead."""
+"""Advice on Python's errors: each module completes the texts of one kind."""

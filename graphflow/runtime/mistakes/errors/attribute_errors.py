@@ -1,6 +1,6 @@
-"""Errors about names that are not there: where one is reported, its text is completed by what could be meant.
+"""Advice on AttributeErrors, added to their texts when they are reported.
 
-A class that answers them itself, by `__getattr__`, reads each of its attributes seven times slower on Python 3.11.
+A `__getattr__` in the classes would make each attribute access seven times slower on Python 3.11.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from graphflow.runtime.mistakes.rclpy_words import SpeaksRos, translation
 
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
-"""Names with dots."""
+"""A dotted name."""
 
 
 def explain(error: BaseException) -> None:
-    """Complete the texts of an error and of those that led to it, in place; texts that are not Python's own stay."""
+    """Complete the texts of an error and of its causes, in place; texts other than Python's own stay."""
     left, seen = [error], set[int]()
     while left:
         found = left.pop()
@@ -31,15 +31,15 @@ def explain(error: BaseException) -> None:
         left += [e for e in (found.__cause__, found.__context__) if e is not None]
         if isinstance(found, BaseExceptionGroup):
             left += found.exceptions
-        # Not a subclass: its text may be made by code of the user's, which must not run here.
+        # Subclasses are excluded: their texts may come from user code, which must not run here.
         if found.__class__ is AttributeError and (text := better_text(found)):
-            found.args, found.name = (text,), None  # Python would add a suggestion of its own for the name
+            found.args, found.name = (text,), None  # otherwise Python would add its own suggestion for the name
         elif found.__class__ is TypeError and (text := constructor_errors.better_text(found)):
             found.args = (text,)
 
 
 def better_text(error: AttributeError) -> str:
-    """A better text for an error; empty where Python's is as good."""
+    """Return a better text for an error; "" if Python's is good enough."""
     thing, name = (error.obj, error.name) if error.name is not None else _written_to(error)
     found = _NO_ATTRIBUTE.fullmatch(str(error))
     if thing is None or name is None or found is None or (found["kind"], found["name"]) != (type(thing).__name__, name):
@@ -55,7 +55,7 @@ def better_text(error: AttributeError) -> str:
 
 
 def _setter(thing: object, name: str) -> str:
-    """The method that sets an attribute and has not run yet; empty where there is none."""
+    """Return a hint with the method that sets an attribute and has not run yet; "" if there is none."""
     for cls in type(thing).__mro__:
         for method in vars(cls).values():
             code = getattr(method, "__code__", None)
@@ -68,7 +68,7 @@ def _setter(thing: object, name: str) -> str:
 
 
 def _written_to(error: AttributeError) -> tuple[object, str | None]:
-    """The object whose attribute a line sets, and the name of that, which Python 3.11 tells only where one is read."""
+    """Return the object and the attribute that a line sets; Python 3.11 records them only for reads."""
     found = _NO_ATTRIBUTE.fullmatch(str(error))
     parts = list(parts_of(error.__traceback__))
     if found is None or not parts:
@@ -83,7 +83,7 @@ def _written_to(error: AttributeError) -> tuple[object, str | None]:
 
 
 def _named(path: str, frame: FrameType) -> object:
-    """The object that is called so in a frame, as far as no code has to run to find it; else None."""
+    """Return the object that a dotted name refers to in a frame; None if finding it would run user code."""
     first, *rest = path.split(".")
     thing = {**frame.f_globals, **frame.f_locals}.get(first)
     for part in rest:

@@ -1,6 +1,6 @@
-"""Errors of messages that were given other arguments than their fields: what to write instead.
+"""Advice on TypeErrors of message constructors.
 
-Messages are made in C, whose error does not say of which class: that is read from the line that made it.
+The constructors are written in C, and their errors do not name the class: it is read from the line of the call.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _BY_POSITION = "Extra positional arguments provided"
 
 
 def better_text(error: TypeError) -> str:
-    """A better text for the error of a message's constructor; empty for other errors."""
+    """Return a better text for a message constructor's error; "" for other errors."""
     unknown = _UNKNOWN.match(str(error))
     if not unknown and str(error) != _BY_POSITION:
         return ""
@@ -32,7 +32,7 @@ def better_text(error: TypeError) -> str:
 
 
 def _called(trace: TracebackType | None) -> Any:
-    """The object whose call raised an error, if a name stands for it; else None."""
+    """Return the object whose call raised an error, if it has a name; else None."""
     if trace is None:
         return None
     while trace.tb_next is not None:
@@ -48,13 +48,13 @@ def _called(trace: TracebackType | None) -> Any:
     encoded[0] = encoded[0][start:]
     try:
         call = ast.parse(b"(" + b"".join(encoded) + b")", mode="eval").body
-    except SyntaxError:  # the file has changed
+    except SyntaxError:  # the file has changed since
         return None
     return _named(call.func, trace.tb_frame) if isinstance(call, ast.Call) else None
 
 
 def _named(expression: ast.expr, frame: FrameType) -> Any:
-    """The value of a name, or of a dotted one, in a module. No code of the user's runs for it."""
+    """Return the value of a possibly dotted name in a module, without running user code."""
     match expression:
         case ast.Name(name):
             return frame.f_globals.get(name)

@@ -1,4 +1,4 @@
-"""Errors in tasks and futures that nobody awaits, as `asyncio.create_task` leaves them: told like those of handlers."""
+"""Errors of tasks and futures that nobody awaits, such as `asyncio.create_task`'s: logged as errors of handlers are."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from graphflow.runtime.failures import report
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 
 PLACES_BOUND = 1000
-"""Kinds and places of errors that are counted."""
+"""Distinct errors counted, by type and line."""
 logger = logging.getLogger("graphflow")
 
 
-def tell_lost_errors(loop: asyncio.AbstractEventLoop) -> None:
-    """Have errors that are lost on a loop told, unless the program has seen to that itself."""
+def log_lost_errors(loop: asyncio.AbstractEventLoop) -> None:
+    """Log errors lost on a loop, unless the program has set its own exception handler."""
     if loop.get_exception_handler() is None:
         loop.set_exception_handler(_LostErrors())
 
 
 class _LostErrors:
-    """An event loop's exception handler: tells an error at its first, tenth, hundredth time."""
+    """An event loop's exception handler that logs an error the first, tenth and hundredth time."""
 
     def __init__(self) -> None:
         self._times: Counter[tuple[str, str]] = Counter()
@@ -36,7 +36,7 @@ class _LostErrors:
         if error is None or future is None or "never retrieved" not in context.get("message", ""):
             loop.default_exception_handler(context)
             return
-        if isinstance(error, ClosedError):  # its node has stopped meanwhile
+        if isinstance(error, ClosedError):  # its node has stopped in the meantime
             logger.debug("lost: %s", error)
             return
         coroutine = future.get_coro() if isinstance(future, asyncio.Task) else None

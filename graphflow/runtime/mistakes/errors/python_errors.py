@@ -1,4 +1,4 @@
-"""Errors that Python raises where graphflow's API is used in the wrong way: a table of what to write instead."""
+"""Advice on errors that Python raises for wrong use of graphflow's API, as a table of patterns."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from graphflow.runtime.mistakes.source.text_numbers import text_for_number
 
 
 class Remark(NamedTuple):
-    """One row.
+    """One row of the table.
 
     Attributes:
-        text: A pattern for the error's text.
-        line: A pattern for the line of the user's in which it happened.
-        remark: The advice, with groups of the two patterns by name.
+        text: A pattern of the error's text.
+        line: A pattern of the user's line that raised it.
+        remark: The advice, a format string with the named groups of both patterns.
     """
 
     text: str
@@ -191,11 +191,11 @@ OF_VALUES = (
         "whether there is anything in it says len(...) > 0",
     ),
 )
-"""The same for ValueError, which most often has nothing to do with a node."""
+"""The table for ValueErrors, which rarely concern a node."""
 
 
 def remark_on(error: BaseException) -> str:
-    """Advise what to write instead of the line that raised an error; empty if that is not known."""
+    """Return advice on the line that raised an error; "" if there is none."""
     if isinstance(error, TimeoutError) and not str(error):
         return "a time limit has passed; catch TimeoutError around the block that has it"
     if type(error) not in (TypeError, AttributeError, NameError, RuntimeError, ValueError):

@@ -1,1 +1,1 @@
-"""Mistakes that only the graph shows: names and domains that do not meet, servers that nobody offers."""
+"""Mistakes that only the graph shows: names and domains that do not match, services that no node offers."""

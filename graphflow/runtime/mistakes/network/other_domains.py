@@ -1,4 +1,4 @@
-"""Nodes of this machine in other domains, where a node is alone in its own."""
+"""Nodes of this machine in other domains, when a node is alone in its own."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from graphflow.names import is_hidden
 from graphflow.wire.liveliness import NODES
 
 TOLD_WITHIN = 0.2
-"""Seconds in which the rendezvous says which nodes there are."""
+"""Seconds to wait for the rendezvous's list of nodes."""
 
 
 def look_elsewhere(here: ProcessContext, node: str, told: Callable[[str], None]) -> None:
-    """Find out whether a node is alone in its domain while others have nodes.
+    """Check whether a node is alone in its domain while other domains have nodes.
 
     Args:
-        node: Its full name.
-        told: Called on the loop with a sentence; empty if it is not so. Perhaps at once.
+        node: The node's full name.
+        told: Called on the loop, possibly at once, with a sentence; "" if the node is not alone.
     """
     if any(other != node for other in here.cache.nodes(hidden=False)):
         told("")
@@ -30,7 +30,7 @@ def look_elsewhere(here: ProcessContext, node: str, told: Callable[[str], None])
 
 
 async def alone_here(here: ProcessContext, node: str) -> str:
-    """As `look_elsewhere`: `; this domain, 112, has no other nodes; ...`, for the end of a sentence, or nothing."""
+    """Return `look_elsewhere`'s sentence, to be appended: `; this domain, 112, has no other nodes; ...`, or ""."""
     found: Future[str] = here.loop.create_future()
     look_elsewhere(here, node, lambda text: None if found.done() else found.set_result(text))
     text = await found

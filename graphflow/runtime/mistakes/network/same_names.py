@@ -1,5 +1,6 @@
-"""Other nodes of this process's names, which tools, parameters and services of ROS 2 then reach by chance; and others
-that offer services of its own, which then reach both.
+"""Duplicate names on the network: nodes with the name of one of this process, and services offered twice.
+
+ROS 2's tools, and calls of parameters and services, then reach one of them by chance.
 """
 
 from __future__ import annotations
@@ -20,29 +21,29 @@ from graphflow.wire import process
 from graphflow.wire.process import ProcessToken
 
 TELL_AFTER = 1.0
-"""Seconds that a node of the same name may take to leave, as one does that is being restarted."""
+"""Seconds for a node of the same name to leave, as in a restart."""
 NAMED = 3
-"""Other processes that a message names."""
+"""Other processes named in a message."""
 PROCESSES_BOUND = 10_000
 logger = logging.getLogger("graphflow")
 
 
 class Twins:
-    """Tells, once for each name, of another node that has it, or that offers a service of it. One per process."""
+    """The duplicate names of a process's nodes and services, each reported once."""
 
     def __init__(self, here: ProcessContext) -> None:
         self._here = here
         self._known: set[str] = set()
         self._shared: set[str] = set()
-        """Services of which it is yet to be told."""
+        """Services to report."""
         self._told: set[str] = set()
-        """Services of which it has been told: a limited number, as those are this process's own."""
+        """Services reported, of which there are no more than this process offers."""
         self._processes: dict[str, ProcessToken] = {}
         self._watch: Closable | None = None
         self._alarms: set[Alarm] = set()
 
     def changed(self, change: GraphChange) -> None:
-        """A node came or went."""
+        """Handle the appearance or departure of an endpoint or node."""
         name = change.entity.node_name
         if not change.alive or name in self._known or is_hidden(name):
             return
@@ -76,7 +77,7 @@ class Twins:
         logger.warning(text, name, where, rename)
 
     def share(self, name: str) -> None:
-        """Another node offers a service of this process, too."""
+        """Note that another node offers a service of this process."""
         if not self._shared:
             self._later(self._tell_shared)
         self._shared.add(name)
@@ -104,7 +105,7 @@ class Twins:
             self._processes[token.zid] = token
 
     def close(self) -> None:
-        """Look no more, and tell no more: the graph stands still from now on."""
+        """Stop reporting: the graph no longer changes."""
         for alarm in self._alarms:
             alarm.cancel()
         if self._watch is not None:

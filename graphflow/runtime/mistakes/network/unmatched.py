@@ -1,7 +1,7 @@
-"""Topics and services with nobody at the other end, where a name or the domain is probably wrong.
+"""Topics and services without a counterpart, probably because of a wrong name or domain.
 
-A publisher that nobody listens to is legal, as is a subscription that nobody publishes for. So nothing is told unless a
-topic of the same type and a near name has what is missing, or the node is alone in its domain while others have nodes.
+Publishers and subscriptions without a counterpart are legal. So a warning requires that a topic of the same type and a
+similar name has the missing counterpart, or that the node is alone in its domain while other domains have nodes.
 """
 
 from __future__ import annotations
@@ -23,40 +23,40 @@ from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity, Kind
 
 TELL_AFTER = 3.0
-"""Seconds that the other end may take to come."""
+"""Seconds for the counterpart to appear."""
 AT_ONCE = 8
-"""Endpoints that are looked at before others have a turn of the loop."""
+"""Endpoints checked per iteration of the event loop."""
 LATE = 1.0
-"""Seconds by which a look may be late: a loop that was blocked for longer has not heard of who came meanwhile."""
+"""Longest delay of a check, in seconds: after a longer block, the loop has not yet processed new tokens."""
 
 
 @dataclass
 class _Waiting:
-    """A publisher, subscription or client without a counterpart so far."""
+    """A publisher, subscription or client without a counterpart."""
 
     log: logging.Logger
     due_ns: int | None
-    """The time of the next look; None if nothing of its type has come since the last."""
+    """The time of the next check; None if no endpoint of its type has appeared since the last one."""
 
 
 class Unmatched:
-    """Tells, once for each, of topics with nobody at the other end and a near name, and once of the domain.
+    """The endpoints of a process without a counterpart, each reported once, and the domain once.
 
-    An endpoint is looked at `TELL_AFTER` seconds after it was opened, and after a possible counterpart has come.
-    One per process.
+    An endpoint is checked `TELL_AFTER` seconds after it was opened, and after a possible counterpart has appeared. One
+    per process.
     """
 
     def __init__(self, here: ProcessContext) -> None:
         self._here = here
         self._waiting: dict[str, dict[Entity, _Waiting]] = {}
-        """By type."""
+        """Endpoints without a counterpart, by type."""
         self._told: set[tuple[str, Kind, str]] = set()
-        """The reported ones, by node, kind and topic: a limited number, as they are this process's own."""
+        """The reported endpoints by node, kind and topic, of which there are no more than this process has."""
         self._alarm: Alarm | None = None
         self._is_domain_told = self._is_closed = False
 
     def opened(self, own: Entity, log: logging.Logger) -> None:
-        """A node of this process has opened an endpoint."""
+        """Note that a node of this process has opened an endpoint."""
         name = own.name.removesuffix(ACTION_SEND_GOAL)
         if self._is_closed or own.kind is Kind.SERVICE or is_everybodys(name) or is_hidden(own.node_name):
             return
@@ -65,7 +65,7 @@ class Unmatched:
             self._waiting.setdefault(own.type, {})[own] = _Waiting(log, self._due())
 
     def changed(self, change: GraphChange) -> None:
-        """An endpoint came or went."""
+        """Handle the appearance or departure of an endpoint."""
         other = change.entity
         for own, waiting in [*self._waiting.get(other.type, {}).items()] if change.alive else ():
             if other.kind is COUNTERPARTS[own.kind] and other.name == own.name:
@@ -74,7 +74,7 @@ class Unmatched:
                 waiting.due_ns = self._due()
 
     def _due(self) -> int:
-        """Look again after some time; returns when."""
+        """Schedule the next check; returns its time."""
         clock = self._here.clock
         due_ns = clock.monotonic_ns() + to_ns(TELL_AFTER)
         if self._alarm is None:
@@ -86,7 +86,7 @@ class Unmatched:
         self._alarm = None
         due: list[tuple[Entity, _Waiting]] = []
         for own, waiting in [pair for same in self._waiting.values() for pair in same.items()]:
-            if own.token not in cache:  # it was closed
+            if own.token not in cache:  # the endpoint was closed
                 self._forget(own)
             elif waiting.due_ns is not None and waiting.due_ns + to_ns(LATE) < now_ns:
                 waiting.due_ns = self._due()
@@ -121,7 +121,7 @@ class Unmatched:
             del self._waiting[own.type]
 
     def close(self) -> None:
-        """Tell no more."""
+        """Stop reporting."""
         self._is_closed = True
         self._waiting.clear()
         if self._alarm is not None:

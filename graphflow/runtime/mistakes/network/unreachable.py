@@ -1,4 +1,4 @@
-"""Why a server that is announced cannot be reached: another definition, or a net profile between two machines."""
+"""Reasons why an announced server is unreachable: another definition, or a net profile between two machines."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from graphflow.wire.liveliness import Entity
 from graphflow.wire.net import NetToken
 
 TOLD_WITHIN = 0.2
-"""Seconds in which the links of this machine say which net profiles are in force."""
+"""Seconds to wait for the net profiles in force on this machine's links."""
 
 
 async def why_unreachable(host: Host, name: str, servers: Sequence[Entity], hash_: str) -> str:
-    """Why calls do not get to servers of the right name and type.
+    """Return the reason why servers of the right name and type are unreachable.
 
     Args:
-        name: The service, or a part of an action.
-        servers: What is announced.
-        hash_: The definition that calls have here.
+        name: The service, or a service of an action.
+        servers: The announced servers.
+        hash_: The type hash of calls from here.
     """
     type_name = servers[0].type
     if all(server.hash != hash_ for server in servers):
@@ -35,7 +35,7 @@ async def why_unreachable(host: Host, name: str, servers: Sequence[Entity], hash
 
 
 async def _profiles(host: Host) -> list[NetToken]:
-    """The net profiles that are in force on this machine."""
+    """Return the net profiles in force on this machine."""
     found: list[NetToken] = []
 
     def told(text: str, alive: bool) -> None:
@@ -44,7 +44,7 @@ async def _profiles(host: Host) -> list[NetToken]:
 
     watch = host.context.session.watch(net.watch_key(host.context.domain), told)
     try:
-        await asyncio.sleep(TOLD_WITHIN)  # links answer in real time, whatever the clock says
+        await asyncio.sleep(TOLD_WITHIN)  # links answer in real time, whatever the node's clock
     finally:
         watch.close()
     return found

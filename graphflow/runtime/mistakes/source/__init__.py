@@ -1,1 +1,1 @@
-"""Mistakes that the source of a node class shows before or while it runs: each module finds one kind."""
+"""Mistakes in a node class's source, found before or while it runs: each module finds one kind."""

@@ -1,4 +1,4 @@
-"""Lines of a method that compare or compute and do nothing with it: `self.state == "MOVE"`, where `=` was meant."""
+"""Statements without effect: `self.state == "MOVE"`, where `=` was meant."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 _SIGNS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 _PLACES = (ast.Name, ast.Attribute, ast.Subscript)
-"""What can be set."""
+"""Expressions that can be assigned to."""
 
 
 def ineffective(code: ast.AST) -> Iterator[tuple[int, str]]:
-    """The lines of functions that are only such an expression, each with what to write.
+    """Find the lines that consist of such an expression; each comes with its correction.
 
-    The functions of tests are left out, and what stands in a `try` or a `with`: it may be run for its error.
+    Test functions and the bodies of `try` and `with` are skipped: the expression may be there for its error.
     """
     todo: list[tuple[ast.AST, bool]] = [(code, False)]
     while todo:

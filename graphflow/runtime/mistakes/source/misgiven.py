@@ -1,7 +1,7 @@
-"""Functions that are given to be called later, and then do not do what they were written for, read from the source.
+"""Callbacks that do not do what they were written for, found in the source.
 
-An `async def` that is given to a thread; `lambda message: self.heard`, which gives the method back in place of calling
-it; and `lambda: self.show(i)` made in a loop, which sees the last `i` of the loop in each of its callbacks.
+An `async def` passed to a thread; `lambda message: self.heard`, which returns the method instead of calling it; and
+`lambda: self.show(i)` in a loop, where every callback sees the loop's last `i`.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ _TAKERS = {
 }
 """Functions and methods that take a callback and call it later."""
 _LATER = ("spin", "sleep", "wait", "result", "close", "cancel", "destroy", "remove", "join")
-"""Beginnings of names of calls after which a loop's former callbacks may have done what they were for."""
+"""Prefixes of calls after which a loop's earlier callbacks may no longer be needed."""
 
 _Made: TypeAlias = ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class _Given(NamedTuple):
-    """A function that is written where it is given, or in the loop around that."""
+    """A function that is defined where it is passed, or in the loop around that."""
 
     made: _Made
     parents: list[ast.AST]
-    """What encloses the call that it is given to."""
+    """The nodes that enclose the call that it is passed to."""
 
 
 def misgiven(code: ast.AST, starts: str = "self.spawn({})") -> Iterator[tuple[int, str]]:
-    """The lines of such callbacks, each with what to write.
+    """Find the lines of such callbacks; each comes with its correction.
 
     Args:
-        starts: How a coroutine is started.
+        starts: The call that starts a coroutine, as a format string.
     """
     methods = _methods(code)
     yield from _in_threads(code, methods, starts)
@@ -54,7 +54,7 @@ def misgiven(code: ast.AST, starts: str = "self.spawn({})") -> Iterator[tuple[in
 
 
 _THREADS = {"to_thread": 0, "run_in_executor": 1, "submit": 0, "Timer": 1, "Thread": None}
-"""Calls that have a thread call a function, and the position of that among their arguments."""
+"""Calls that run a function in a thread, with the position of the function among their arguments."""
 
 
 def _in_threads(code: ast.AST, methods: dict[str, FunctionNode], starts: str) -> Iterator[tuple[int, str]]:
@@ -94,7 +94,7 @@ def _last_name(function: ast.expr) -> str:
 
 
 def _methods(code: ast.AST) -> dict[str, FunctionNode]:
-    """The methods of the classes, without those whose names stand for something else, too."""
+    """Return the methods of the classes, except those whose names have other meanings, too."""
     found: dict[str, FunctionNode] = {}
     others: set[str] = set()
     for node in ast.walk(code):
@@ -109,7 +109,7 @@ def _methods(code: ast.AST) -> dict[str, FunctionNode]:
 
 
 def _given_back(made: ast.Lambda, methods: dict[str, FunctionNode]) -> str:
-    """Why a lambda does nothing: it gives a method back; empty if it does something."""
+    """Return the reason why a lambda has no effect: it returns a method; "" if it has one."""
     match made.body:
         case ast.Attribute(value=ast.Name(), attr=name) as method if name in methods:
             shown = ast.unparse(method)
@@ -123,7 +123,7 @@ def _given_back(made: ast.Lambda, methods: dict[str, FunctionNode]) -> str:
 
 
 def _loop_around(parents: Sequence[ast.AST]) -> ast.AST | None:
-    """The loop or comprehension in which something is made, in the same function."""
+    """Return the innermost loop or comprehension around a function, in the same scope."""
     for parent in reversed(parents):
         if isinstance(parent, NESTED):
             return None
@@ -133,7 +133,7 @@ def _loop_around(parents: Sequence[ast.AST]) -> ast.AST | None:
 
 
 def _of_loop(given: _Given) -> str:
-    """The variable of the loop around it that a callback reads when the loop has gone on; empty if there is none."""
+    """Return the loop variable that a callback reads too late; "" if there is none."""
     loop = _loop_around(given.parents)
     if loop is None or _may_be_over(loop):
         return ""
@@ -146,7 +146,7 @@ def _of_loop(given: _Given) -> str:
 
 
 def _may_be_over(loop: ast.AST) -> bool:
-    """Whether a round of a loop may be the last one, or may wait until its callback has been called."""
+    """Whether an iteration of a loop may be the last one, or may wait until its callback has been called."""
     for node, parents in walk(loop):
         if any(isinstance(parent, NESTED) for parent in parents):
             continue
@@ -159,7 +159,7 @@ def _may_be_over(loop: ast.AST) -> bool:
 
 
 def _changing(loop: ast.AST, parents: Sequence[ast.AST]) -> set[str]:
-    """The variables that have another value in each round of a loop: its own, and those that are made from them."""
+    """Return the variables that change with each iteration: the loop's own, and those computed from them."""
     if not isinstance(loop, (ast.For, ast.While)):
         return {name for part in getattr(loop, "generators", ()) for name in _names(part.target)}
     found = set(_names(loop.target)) if isinstance(loop, ast.For) else set()
@@ -176,7 +176,7 @@ def _names(node: ast.AST) -> list[str]:
 
 
 def _with_default(arguments: ast.arguments, name: str) -> ast.arguments:
-    """Arguments, and behind them the one that keeps the value of this round."""
+    """Return the arguments with a default appended that keeps the value of the current iteration."""
     positional = [*arguments.args, ast.arg(name)] if not arguments.vararg else arguments.args
     defaults = [*arguments.defaults, ast.Name(name)] if not arguments.vararg else arguments.defaults
     only = [*arguments.kwonlyargs, ast.arg(name)] if arguments.vararg else arguments.kwonlyargs

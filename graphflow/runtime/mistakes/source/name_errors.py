@@ -1,4 +1,4 @@
-"""Names that are not defined where they are used, and are attributes of the class: of a parent, or of the node."""
+"""Undefined names that are attributes of the class, of a parent, or of the node."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from graphflow.analysis.user_code import is_users, parts_of
 
 
 def owner_of(error: NameError) -> str:
-    """What to write for a name that Python does not find; empty if no class has it as an attribute.
+    """Return the correct form of a name that Python does not find; "" if it is not an attribute of a class.
 
-    The body of a class does not see the names of its parents, and a method does not see those of its class.
+    A class body does not see the names of its parents, and a method does not see those of its class.
     """
     frames = [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
     name = error.name
@@ -34,10 +34,10 @@ def owner_of(error: NameError) -> str:
 
 
 def _bases(frame: FrameType) -> list[ast.expr]:
-    """The bases of the class whose body runs in a frame, as they are written."""
+    """Return the bases of the class whose body runs in a frame, as expressions."""
     try:
         classes = syntax_of(frame.f_code.co_filename).classes
-    except (OSError, SyntaxError, ValueError):  # no source to be read
+    except (OSError, SyntaxError, ValueError):  # no readable source
         return []
     first = frame.f_code.co_firstlineno
     for item in classes:
@@ -48,7 +48,7 @@ def _bases(frame: FrameType) -> list[ast.expr]:
 
 
 def _value(expression: ast.expr, frame: FrameType) -> Any:
-    """The value of a name, or of a name with dots, as far as no code of the user's has to run for it."""
+    """Return the value of a possibly dotted name, as far as no user code has to run for it."""
     match expression:
         case ast.Name(id=name):
             return {**frame.f_globals, **(frame.f_back.f_locals if frame.f_back else {})}.get(name)

@@ -1,6 +1,7 @@
-"""Handlers that take the place of a parent's of the same name and are for something else, so that the parent's is lost.
+"""Handlers that accidentally override a parent's handler of the same name and another purpose.
 
-Python keeps the last method of a name: a child's `pose_callback` on the topic `goal` ends the parent's on `pose`.
+Python keeps the last method of a name: a subclass's `pose_callback` for the topic `goal` removes the parent's for
+`pose`.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ _LOST |= {"action": "which nothing answers any more"}
 
 
 def overridden(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
-    """The lines of a class at which a parent's handler is lost, each with a sentence.
+    """Find the lines of a class that remove a parent's handler; each comes with a sentence.
 
-    Told is nothing where the parent's is called from the class, where something hears its topic still, or where all
-    attributes that it sets are set by the child's, which then does the same from another topic.
+    An override counts as intended if the class calls the parent's handler, if another handler has the lost one's topic,
+    or if it sets all the attributes that the parent's sets, and so does the same from another topic.
 
     Args:
-        definition: The source of the class.
+        definition: The class statement.
     """
     for method in definition.body:
         if not isinstance(method, FunctionNode):
@@ -48,13 +49,13 @@ def overridden(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]
 
 
 def _handler(cls: type, name: str) -> Handler | None:
-    """The declaration at a method of a class itself."""
+    """Return the declaration of a method in the class itself."""
     mark = getattr(vars(cls).get(name), MARK, None)
     return mark if isinstance(mark, Handler) else None
 
 
 def _use(handler: Handler) -> tuple[str, str, object]:
-    """What a handler is for; timers may have another period."""
+    """Return the purpose of a handler; timers may differ in their periods."""
     return handler.kind, handler.name, handler.type
 
 
@@ -65,7 +66,7 @@ def _shown(handler: Handler, is_typed: bool) -> str:
 
 
 def _is_heard(cls: type, lost: Handler) -> bool:
-    """Whether a class has something else for what a lost handler was for."""
+    """Whether a class has another handler with the purpose of a lost one."""
     if any(_use(handler) == _use(lost) for handler in declared.handlers(cls).values()):
         return lost.kind in _LOST
     streams = [held for held in declared.held(cls).values() if isinstance(held, Subscription)]
@@ -73,7 +74,7 @@ def _is_heard(cls: type, lost: Handler) -> bool:
 
 
 def _calls_parent(definition: ast.ClassDef, name: str, parents: set[str]) -> bool:
-    """Whether a class mentions its parent's method, as in `super().heard` or `Base.heard`."""
+    """Whether a class refers to its parent's method, as in `super().heard` or `Base.heard`."""
     for node in ast.walk(definition):
         match node:
             case ast.Attribute(value=ast.Call(func=ast.Name("super")), attr=attr) if attr == name:
@@ -85,7 +86,7 @@ def _calls_parent(definition: ast.ClassDef, name: str, parents: set[str]) -> boo
 
 
 def _does_the_same(method: FunctionNode, owner: type) -> bool:
-    """Whether a method sets each attribute that the parent's sets, and that sets some."""
+    """Whether a method sets every attribute that the parent's sets, of which there is at least one."""
     source = definition_of(owner)
     for before in source[0].body if source is not None else ():
         if isinstance(before, FunctionNode) and before.name == method.name and (lost := _sets(before)):
@@ -94,6 +95,6 @@ def _does_the_same(method: FunctionNode, owner: type) -> bool:
 
 
 def _sets(method: FunctionNode) -> set[str]:
-    """The node's attributes that a method sets."""
+    """Return the node's attributes that a method sets."""
     found = (n for n in ast.walk(method) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store))
     return {node.attr for node in found if is_own(node)}

@@ -1,7 +1,7 @@
-"""Names that a class gives twice, so that one of the two is silently gone: read from its source.
+"""Names that a class body binds twice, so that one handler or declaration is silently lost.
 
-An attribute and a handler of one name, two handlers called `callback`, `self.enable = True` over a service `enable`:
-Python keeps the last, and the node would start without the other.
+Examples are an attribute and a handler of one name, two handlers called `callback`, or `self.enable = True` over a
+service `enable`. Python keeps the last, and the node would start without the other.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ _OF_NODES = {
         "choose another name",
     ),
 }
-"""Attributes of every node that are only read, and what to do instead."""
+"""Read-only attributes of every node, with the alternative for each."""
 _PARTS = {"setter", "getter", "deleter", "overload"}
-"""Decorators of functions that are meant to have one name."""
+"""Decorators of functions that share a name on purpose."""
 
 
 @cache
 def check_names(cls: type) -> None:
-    """See that a class and its parents give no name twice that stands for a handler or something that the node holds.
+    """Check that a class and its parents bind no name of a handler or declaration twice.
 
     Raises:
-        DeclarationError: One does; with the line, and the one before it.
+        DeclarationError: One is; the text has both lines.
     """
     names = {**declared.handlers(cls), **{k: v for k, v in declared.held(cls).items() if not isinstance(v, Param)}}
     for parent in cls.__mro__:
@@ -49,7 +49,7 @@ def check_names(cls: type) -> None:
 
 
 def definition_of(cls: type) -> tuple[ast.ClassDef, str] | None:
-    """The source of a class and its file; None if there is none, or it cannot be told from others."""
+    """Return a class statement and its file; None if it is missing or ambiguous."""
     file = getattr(sys.modules.get(cls.__module__), "__file__", None) or ""
     try:
         definitions = [item for item in syntax_of(file).classes if item.name == cls.__name__]
@@ -72,7 +72,7 @@ def _check_body(definition: ast.ClassDef, file: str) -> None:
 
 
 def _bound(definition: ast.ClassDef) -> Iterator[tuple[str, int, bool]]:
-    """The names that a class's body gives, each with its line, and whether it declares something."""
+    """List the names that a class body binds, each with its line and whether it declares something."""
     for item in definition.body:
         match item:
             case ast.FunctionDef() | ast.AsyncFunctionDef():
@@ -86,7 +86,7 @@ def _bound(definition: ast.ClassDef) -> Iterator[tuple[str, int, bool]]:
 
 
 def _last_word(expression: ast.expr) -> str:
-    """`timer` of `@graphflow.timer(1.0)`."""
+    """Return the last part of a dotted name: `timer` of `@graphflow.timer(1.0)`."""
     function = expression.func if isinstance(expression, ast.Call) else expression
     return ast.unparse(function).rpartition(".")[2]
 
@@ -97,7 +97,7 @@ def _check_assignments(definition: ast.ClassDef, file: str, names: Collection[st
             continue
         for node, parents in walk(method):
             if any(isinstance(parent, ast.ClassDef) for parent in parents):
-                continue  # its `self` is something else
+                continue  # its `self` is another object
             if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and is_own(node):
                 name, place = node.attr, Place(file, node.lineno)
                 if name in _OF_NODES:

@@ -1,8 +1,8 @@
-"""Slips in the source of a node class that Python runs without an error: what was written has no effect, or fails late.
+"""Slips in a node class's source that Python runs without an error, but that have no effect or fail late.
 
-A handler without its decorator, `self.rat = 2.0` beside a parameter `rate`, `Talker.rate = 2.0` in its place, and
-`message.dat = ...`, or a text for a number, in a message that a method has made or been given; `self.close` without
-parentheses, callbacks that give a method back or see the last value of a loop.
+Examples are a handler without its decorator, `self.rat = 2.0` beside a parameter `rate`, `Talker.rate = 2.0` in place
+of `self.rate`, `message.dat = ...` or a string for a number in a message, `self.close` without parentheses, and
+callbacks that return a method or see the last value of a loop.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ _LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|time
 
 @cache
 def slips(cls: type) -> tuple[str, ...]:
-    """A sentence for each, with its place; of the class and of those of the user's that it derives from."""
+    """Return a sentence with its place for each slip of a class and of its bases in user code."""
     try:
         return tuple(_slips(cls))
-    except Exception as error:  # a remark must not keep a node from running
+    except Exception as error:  # a bug in these checks must not keep a node from running
         logger.debug("the source of %s was not looked at", cls.__name__, exc_info=error)
         return ()
 
@@ -69,20 +69,20 @@ def _slips(cls: type) -> Iterator[str]:
 
 
 def _other_modules(file: str) -> Iterator[ast.Module]:
-    """The project's other modules, which may call what is in one of its files."""
+    """Parse the project's other modules, which may use a file's definitions."""
     from graphflow.workspace.project import project_root
 
     root = project_root(Path(file))
     others = {str(path) for module in list(sys.modules.values()) if (path := getattr(module, "__file__", None))}
     for other in sorted(others - {file}):
         if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
-            with suppress(OSError, SyntaxError, ValueError):  # no source to be read
+            with suppress(OSError, SyntaxError, ValueError):  # no readable source
                 yield syntax_of(other).module
 
 
 @cache
 def _mentioned(module: ast.Module) -> set[str]:
-    """Attributes and names that a module reads, and words in its texts, by which an attribute may be found, too."""
+    """Return the attributes and names that a module reads, and the words in its strings."""
     found: set[str] = set()
     for node in ast.walk(module):
         match node:
@@ -118,7 +118,7 @@ def _idle_methods(
 
 
 def _hook_meant(cls: type, name: str) -> str:
-    """The method of every node, or of those with a life cycle, that is meant by a name; empty for another kind."""
+    """Return the node method (of lifecycle nodes, too) that a name seems to mean; "" if none."""
     hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
     near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)
     meant = near or next((hook for hook, others in _HOOKS.items() if name.removeprefix("on_") in others), None)
@@ -131,13 +131,13 @@ _HOOKS = {
     "on_start": ("init", "begin", "startup", "ready", "open", "run"),
     "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
 }
-"""The methods of every node, and other words for them."""
+"""The methods of every node, and other names for them."""
 _OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_error")
 _DECORATORS = {"message": '@subscription(Type, "topic")', "request": '@service(Type, "name")'}
 
 
 def _received(argument: ast.arg, space: dict[str, Any]) -> str:
-    """Whether an argument is annotated as a message or a request."""
+    """Return the annotation of an argument if it is a message or request, else ""."""
     type_ = _message(argument.annotation, space)
     if type_ is None:
         return ""
@@ -145,15 +145,15 @@ def _received(argument: ast.arg, space: dict[str, Any]) -> str:
 
 
 def _resolved(expression: ast.expr | None, space: dict[str, Any]) -> Any:
-    """The value of a name, or of a name with dots, in a module."""
+    """Return the value of a possibly dotted name in a module."""
     match expression:
         case ast.Name(id=name):
             return space.get(name)
         case ast.Attribute(value=value, attr=name):
             owner = _resolved(value, space)
             if isinstance(owner, ModuleType) and owner.__name__.startswith("graphflow.msgs"):
-                return getattr(owner, name, None)  # classes are made when they are asked for
-            # Anything else could run code of the user's, such as a property.
+                return getattr(owner, name, None)  # message classes are built on access
+            # Other attributes may be properties, which would run user code.
             return vars(owner).get(name) if isinstance(owner, (ModuleType, type)) else None
         case ast.Constant(value=str(text)):
             return space.get(text)
@@ -161,7 +161,7 @@ def _resolved(expression: ast.expr | None, space: dict[str, Any]) -> Any:
 
 
 def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str]) -> Iterator[str]:
-    """Attributes that are set, never read, and spelt almost as something that the class declares."""
+    """Find attributes that are set, never read, and spelt almost as a declaration of the class."""
     names = declared.held(cls)
     for method in definition.body:
         for node, parents in walk(method):
@@ -177,7 +177,7 @@ def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned:
 
 
 def _is_another(name: str, near: str) -> bool:
-    """Whether a name that is nearly another one is meant as it is: `speeds` by `speed`, `goal_y` by `goal_x`."""
+    """Whether a name similar to another one is likely on purpose: `speeds` and `speed`, `goal_y` and `goal_x`."""
     short, long = sorted((name, near), key=len)
     if long in (f"{short}s", f"{short}es", f"_{short}", f"{short}_"):
         return True
@@ -185,11 +185,11 @@ def _is_another(name: str, near: str) -> bool:
 
 
 _COUNTING = {*"0123456789xyzabclr"}
-"""Ends of names of which there are several."""
+"""Suffixes of numbered names."""
 
 
 def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, Any]) -> Iterator[str]:
-    """Declarations that a method replaces by setting an attribute of the class, where it means the node's."""
+    """Find declarations that a method replaces by setting a class attribute instead of the node's."""
     names = declared.held(cls)
     for method in definition.body:
         for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
@@ -201,7 +201,7 @@ def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, A
 
 
 def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterator[str]:
-    """Lists of parameters that are changed as if they were the node's own: no check sees it, and no tool."""
+    """Find list parameters that are modified in place: no check and no tool sees the change."""
     lists = {
         name for name, p in declared.held(cls).items() if isinstance(p, Param) and p.parameter.type.startswith("list[")
     }
@@ -221,7 +221,7 @@ _OWN_CLASS = ("type(self)", "self.__class__")
 
 
 def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Iterator[str]:
-    """Fields of messages made or received here that their type does not have, and literals that do not fit them."""
+    """Find fields of messages that their type does not have, and literals that do not fit them."""
     bound = {a.arg: {_message(a.annotation, space)} for a in method.args.args}
     times: Counter[str] = Counter()
     for node in ast.walk(method):
@@ -231,7 +231,7 @@ def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Ite
                 times[name] -= 1
             case ast.Name(id=name, ctx=ast.Store()):
                 times[name] += 1
-    # A name that is one thing here and another there, or bound by a loop or the like, is known nowhere.
+    # A name with several meanings, or bound by a loop, is treated as unknown.
     made = {
         name: type_
         for name, types in bound.items()
@@ -246,12 +246,12 @@ def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Ite
 
 
 def _type_made(value: ast.expr, space: dict[str, Any]) -> type[Message] | None:
-    """The message that an expression makes, as in `String()`."""
+    """Return the message class that an expression instantiates, as in `String()`."""
     return _message(value.func, space) if isinstance(value, ast.Call) else None
 
 
 def _message(expression: ast.expr | None, space: dict[str, Any]) -> type[Message] | None:
-    """The message class that an expression names."""
+    """Return the message class that an expression names."""
     type_ = _resolved(expression, space)
     return type_ if isinstance(type_, type) and issubclass(type_, Message) else None
 

@@ -1,4 +1,4 @@
-"""Numbers that were written as texts, `gain = Param("5.0")`, found where a handler calculates with them."""
+"""Numbers written as strings, `gain = Param("5.0")`, found when a handler computes with them."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _OWN = re.compile(r"\bself\.(\w+)\b(?!\s*\()")
 
 
 def text_for_number(error: TypeError, line: str) -> str:
-    """What to write for an attribute of the user's line that is a text, and stands for a number; empty for none.
+    """Return the correction for an attribute that is a string and stands for a number; "" if there is none.
 
     Args:
-        line: The line that raised the error.
+        line: The user's line that raised the error.
     """
     frames = [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
     node: Any = frames[-1].f_locals.get("self") if frames else None
@@ -38,7 +38,7 @@ def text_for_number(error: TypeError, line: str) -> str:
 
 
 def _number(value: object) -> str:
-    """The number that a text is; empty for anything else."""
+    """Return the number that a string spells; "" for anything else."""
     try:
         return repr(float(value) if "." in value or "e" in value else int(value)) if isinstance(value, str) else ""
     except ValueError:

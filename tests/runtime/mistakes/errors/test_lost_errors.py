@@ -10,7 +10,7 @@ import pytest
 
 from graphflow.errors import ClosedError
 from graphflow.runtime.mistakes.errors import lost_errors
-from graphflow.runtime.mistakes.errors.lost_errors import tell_lost_errors
+from graphflow.runtime.mistakes.errors.lost_errors import log_lost_errors
 
 
 async def fail(error: Exception) -> None:
@@ -29,7 +29,7 @@ async def lose(error: Exception, times: int = 1) -> None:
 async def test_they_are_told(graphflow_runner: asyncio.Runner, caplog: pytest.LogCaptureFixture) -> None:
     """In the format of the log with the name of what failed, at the first, the tenth and the hundredth time."""
     loop = asyncio.get_running_loop()
-    tell_lost_errors(loop)
+    log_lost_errors(loop)
     try:
         await lose(ValueError("boom"), 12)
         await lose(ClosedError("the node has stopped"))
@@ -51,7 +51,7 @@ async def test_many_kinds_of_errors(graphflow_runner: asyncio.Runner, monkeypatc
     """Only so many are counted."""
     monkeypatch.setattr(lost_errors, "PLACES_BOUND", 2)
     loop = asyncio.get_running_loop()
-    tell_lost_errors(loop)
+    log_lost_errors(loop)
     handler = loop.get_exception_handler()
     assert isinstance(handler, lost_errors._LostErrors)
     try:
@@ -67,7 +67,7 @@ async def test_a_handler_of_the_programs_own(graphflow_runner: asyncio.Runner) -
     loop = asyncio.get_running_loop()
     told = list[str]()
     loop.set_exception_handler(lambda _, context: told.append(context["message"]))
-    tell_lost_errors(loop)
+    log_lost_errors(loop)
     try:
         await lose(ValueError("boom"))
     finally:
