@@ -1,4 +1,4 @@
-"""Adds two integers."""
+"""A service server that adds two integers."""
 
 import graphflow
 from graphflow import Node, service
@@ -6,7 +6,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 
 
 class AddTwoIntsServer(Node):
-    """Offer the service of ROS 2's first lesson on services."""
+    """Offer the service from ROS 2's first tutorial on services."""
 
     @service(AddTwoInts, "add_two_ints")
     def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:

@@ -1,7 +1,7 @@
-"""A turtle in a circle, the first exercise of every course: two parameters, a publisher and a timer.
+"""A turtle in a circle, a common first exercise: two parameters, a publisher and a timer.
 
 Driving at v metres and turning at w radians a second makes a circle with a radius of v / w metres. The command
-is repeated because turtles, like real robots, stop after a second without one.
+is repeated, since turtles, like real robots, stop after a second without one.
 """
 
 import graphflow

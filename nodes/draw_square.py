@@ -1,4 +1,4 @@
-"""A turtle in a square: a plan that is carried out step by step, each until the turtle is where it should be."""
+"""A turtle in a square: a plan whose steps each run until the turtle has reached the target pose."""
 
 import math
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.msgs.turtlesim.msg import Pose
 
 NEAR = 0.001
-"""How many metres, or radians, count as there."""
+"""Tolerance in metres or radians."""
 
 
 class DrawSquare(Node):
@@ -29,7 +29,7 @@ class DrawSquare(Node):
             await self.move(turn_left, lambda speed: Twist(angular=Vector3(z=speed)))
 
     async def move(self, left: Callable[[Pose, Pose], float], command: Callable[[float], Twist]) -> None:
-        """Send commands until nothing is left to do, slower towards the end."""
+        """Send commands until nothing is left, decelerating towards the end."""
         start: Pose | None = None
         async for pose in self.pose:
             start = start or pose
@@ -43,7 +43,7 @@ class DrawSquare(Node):
 
 
 def turn_left(start: Pose, pose: Pose) -> float:
-    """Radians that are left of a quarter of a turn."""
+    """Return the radians left of a quarter turn."""
     return math.pi / 2 - (pose.theta - start.theta + 0.1) % (2 * math.pi) + 0.1
 
 

@@ -1,4 +1,4 @@
-"""An action client: a goal is a block, and leaving the block before the goal has ended cancels the goal."""
+"""An action client: a goal is a block, and leaving the block early cancels the goal."""
 
 import graphflow
 from graphflow import ActionClient, GoalError, Node, Param, task
@@ -6,7 +6,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 
 
 class FibonacciClient(Node):
-    """Order a sequence, watch it grow, and give up after `patience` seconds."""
+    """Request a sequence, log its growth, and give up after `patience` seconds."""
 
     order = Param(10, ge=0, doc="Where the sequence ends.")
     patience = Param(60.0, unit="s", gt=0.0, doc="How long to wait for it.")

@@ -1,7 +1,7 @@
-"""The action server of every ROS 2 tutorial: a goal that takes its time, feedback on the way, and a result.
+"""The action server of the ROS 2 tutorials: a goal that takes time, with feedback and a result.
 
-Cancelling needs no code here. A goal that is cancelled gets `CancelledError` at its next `await`, and its client gets
-what `goal.partial` held.
+Cancellation needs no code here. A cancelled goal raises `CancelledError` at its next `await`, and its client receives
+`goal.partial`.
 """
 
 import graphflow
@@ -10,7 +10,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 
 
 class FibonacciServer(Node):
-    """Count like rabbits, one generation a second."""
+    """Compute Fibonacci numbers, one a second."""
 
     goals = Group(limit=None)
 

@@ -1,7 +1,7 @@
-"""A turtle that is told where to go: services of your own, and a client in the same node.
+"""A turtle that drives to goals: services with a definition of your own, and a client in the same node.
 
 `SetGoal` is defined in `interfaces/turtle_interfaces/srv/SetGoal.srv`; there is nothing to build. Another node sets
-the goals, such as `scheduler.py`, which is called back on arrival.
+the goals, such as `scheduler.py`, whose service is called on arrival.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .position_controller import Point, PositionController
 
 
 class GoalFollower(PositionController):
-    """Drive to the goal that was set, once enabled, and call `notify_arrival` on arrival."""
+    """Drive to the goal once enabled, and call `notify_arrival` on arrival."""
 
     notify_arrival = Client(Empty, "notify_arrival")
     next_goal: Point | None = None
@@ -33,7 +33,7 @@ class GoalFollower(PositionController):
         return Empty.Response()
 
     async def arrived(self) -> None:
-        # Before the call, not after it: the scheduler may answer with the next goal while the call still waits.
+        # Before the call, not after it: the scheduler may set the next goal while the call still waits.
         goal, self.goal = self.goal, None
         self.log.info("arrived at (%g, %g)", *goal or ())
         try:

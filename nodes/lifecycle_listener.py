@@ -1,4 +1,4 @@
-"""ROS 2's lifecycle demo: who listens to a talker that comes and goes."""
+"""ROS 2's lifecycle demo: a listener that follows a lifecycle talker's transitions."""
 
 import graphflow
 from graphflow import Node, subscription
@@ -7,7 +7,7 @@ from graphflow.msgs.std_msgs.msg import String
 
 
 class LifecycleListener(Node):
-    """Log what the talker says, and what becomes of it."""
+    """Log the talker's messages and transitions."""
 
     node_name = "lc_listener"
 

@@ -8,7 +8,7 @@ from graphflow.msgs.std_msgs.msg import String
 
 
 class LifecycleTalker(LifecycleNode):
-    """Greet the world on `lifecycle_chatter`, while active, and keep a diary from `configure` to `cleanup`."""
+    """Publish greetings on `lifecycle_chatter` while active, and keep a diary from `configure` to `cleanup`."""
 
     node_name = "lc_talker"
     rate = Param(1.0, unit="Hz", gt=0.0, le=1000.0, doc="Greetings per second.")

@@ -1,4 +1,4 @@
-"""The listener of every ROS 2 tutorial: a subscription."""
+"""The listener of the ROS 2 tutorials: a subscription."""
 
 import graphflow
 from graphflow import Node, subscription

@@ -1,4 +1,4 @@
-"""A turtle that copies another: what one drives, the other is told to drive."""
+"""A turtle that copies another's movements."""
 
 import graphflow
 from graphflow import Node, Publisher, subscription

@@ -1,8 +1,7 @@
 """A controller that drives a turtle to a point: a base class for nodes.
 
-A node class inherits the parameters, topics and timers of its parent. This one has everything but a goal; its children
-say where that comes from: `turtle_follower.py` from a topic, `via_point_follower.py` from a list. They may override
-`arrived` and `departed`.
+A node class inherits the parameters, topics and timers of its parent. This one lacks only a goal, which its subclasses
+get from a topic (`turtle_follower.py`) or a list (`via_point_follower.py`). They may override `arrived` and `departed`.
 
 The names are relative. Put the node in a turtle's namespace and `pose` is that turtle's:
 
@@ -20,24 +19,24 @@ from graphflow.msgs.turtlesim.msg import Pose
 
 
 class Point(NamedTuple):
-    """A place, in metres."""
+    """A position in metres."""
 
     x: float
     y: float
 
 
 def distance(pose: Pose, goal: Point) -> float:
-    """Metres from a pose to a goal."""
+    """Return the distance in metres from a pose to a goal."""
     return math.hypot(goal.x - pose.x, goal.y - pose.y)
 
 
 def steer(pose: Pose, goal: Point, *, gain: float, speed: float) -> Twist:
-    """How to move towards the goal: the further it is to one side, the faster to turn and the slower to drive.
+    """Return the velocity towards the goal: the larger the angle to it, the faster the turn and the slower the drive.
 
     At constant full speed a turtle that has just missed its goal would circle around it for ever.
     """
     error = math.atan2(goal.y - pose.y, goal.x - pose.x) - pose.theta
-    shortest = math.atan2(math.sin(error), math.cos(error))  # never the long way round
+    shortest = math.atan2(math.sin(error), math.cos(error))  # in -pi..pi, the shorter way round
     return Twist(linear=Vector3(x=speed * max(0.0, math.cos(shortest))), angular=Vector3(z=gain * shortest))
 
 
@@ -54,7 +53,7 @@ class PositionController(Node):
     is_there = False
 
     def go_to(self, goal: Point) -> None:
-        """Start over with another goal. Reaching it is an arrival, even if the turtle is already there."""
+        """Set another goal. Reaching it calls `arrived`, even if the turtle is already there."""
         self.goal, self.is_there = goal, False
 
     @subscription(Pose, "pose")
@@ -76,7 +75,7 @@ class PositionController(Node):
             await self.departed()
 
     async def arrived(self) -> None:
-        """Override to do something when the goal is reached."""
+        """React to reaching the goal; for subclasses."""
 
     async def departed(self) -> None:
-        """Override to do something when the turtle sets off again, because the goal or the turtle was moved."""
+        """React to leaving the goal, because the goal or the turtle was moved; for subclasses."""

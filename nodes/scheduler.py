@@ -1,6 +1,6 @@
-"""Sends a follower from point to point: two clients and two services in one node.
+"""A scheduler that sends a follower from point to point: two clients and two services in one node.
 
-The follower calls `notify_arrival` when it is there, and the handler responds with the next goal.
+The follower calls `notify_arrival` on arrival, and the handler sets the next goal.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Scheduler(Node):
         super().__init__(name, **options)
         if len(self.via_x) != len(self.via_y):
             raise ParameterError(
-                f"via_x has {len(self.via_x)} numbers and via_y {len(self.via_y)}: give as many of each"
+                f"via_x has {len(self.via_x)} numbers but via_y has {len(self.via_y)}: give the same number of each"
             )
         self.left = [Point(x=x, y=y) for x, y in zip(self.via_x, self.via_y, strict=True)]
 

@@ -1,4 +1,4 @@
-"""The talker of every ROS 2 tutorial: a publisher and a timer."""
+"""The talker of the ROS 2 tutorials: a publisher and a timer."""
 
 import graphflow
 from graphflow import Node, Param, Publisher, timer
@@ -6,7 +6,7 @@ from graphflow.msgs.std_msgs.msg import String
 
 
 class Talker(Node):
-    """Greet the world on `chatter`, `rate` times a second."""
+    """Publish greetings on `chatter`, `rate` times a second."""
 
     rate = Param(1.0, unit="Hz", gt=0.0, le=1000.0, doc="Greetings per second.")
     greeting = Param("Hello World", doc="What to say.")

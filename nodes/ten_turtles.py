@@ -15,11 +15,11 @@ from graphflow.msgs.turtlesim.srv import Spawn
 
 
 class TenTurtles(Node):
-    """Spawn turtles in a row and drive each in a circle of its own."""
+    """Spawn turtles in a row and drive each in its own circle."""
 
     count = Param(10, ge=1, le=50, read_only=True, doc="How many turtles.")
     spawn_turtle = Client(Spawn, "spawn")
-    dynamic_names = ("*/cmd_vel",)  # known only when the simulator has named the turtles
+    dynamic_names = ("*/cmd_vel",)  # the simulator chooses the turtles' names
 
     async def on_start(self) -> None:
         self.cmd_vel: list[TopicPublisher[Twist]] = []

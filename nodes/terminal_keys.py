@@ -1,8 +1,8 @@
-"""Keys as they are pressed: a terminal's bytes, and the terminal itself.
+"""Keyboard input: decoding of a terminal's bytes, and access to the terminal.
 
-A terminal sends a letter as itself and an arrow as several bytes, `ESC [ A`, which may arrive in pieces. Normally it
-sends nothing before Return is pressed; `keyboard` changes that for the length of a block. The event loop says when
-there is something to read, so nothing blocks or polls.
+A terminal sends a letter as one byte and an arrow as several, `ESC [ A`, which may arrive in pieces. Normally it sends
+nothing before Return is pressed; `keyboard` changes that for the length of a block. The event loop reports available
+input, so nothing blocks or polls.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 HANGUP = "hangup"
-"""Stands in for the last key: the terminal has gone."""
+"""The last item of the queue: the terminal has closed."""
 _NAMES = {b"A": "up", b"B": "down", b"C": "right", b"D": "left"}
 # ECMA-48, 5.4: a control sequence is ESC [, parameters, intermediates and a final byte. ESC O is what a keypad
 # in application mode sends instead.
@@ -25,11 +25,11 @@ _BEGUN = re.compile(rb"\x1b(?:\[[0-?]*[ -/]*|O)?\Z")
 
 
 def decode_keys(pressed: bytes) -> tuple[list[str], bytes]:
-    """Read keys from what a terminal sent.
+    """Decode keys from a terminal's bytes.
 
     Returns:
-        The keys: `up`, `down`, `left`, `right`, `escape`, or the character; nameless keys are left out. And the bytes
-        of an incomplete key: put them before what comes next.
+        The keys, `up`, `down`, `left`, `right`, `escape` or the character, without unnamed ones; and the bytes of an
+        incomplete key, to be prepended to the next ones.
     """
     keys: list[str] = []
     at = 0
@@ -47,12 +47,12 @@ def decode_keys(pressed: bytes) -> tuple[list[str], bytes]:
 
 @contextmanager
 def keyboard(terminal: int) -> Iterator[asyncio.Queue[str]]:
-    """The keys pressed on a terminal, each at once and without echo, for the length of the block.
+    """Read a terminal's keys, each at once and without echo, for the length of the block.
 
-    However the block ends, the terminal is then as it was before. Ctrl-C stays Ctrl-C.
+    The terminal's settings are restored however the block ends. Ctrl-C still interrupts.
 
     Args:
-        terminal: Its file descriptor.
+        terminal: The terminal's file descriptor.
 
     Raises:
         termios.error: `terminal` is not a terminal.
@@ -81,5 +81,5 @@ def keyboard(terminal: int) -> Iterator[asyncio.Queue[str]]:
         yield keys
     finally:
         loop.remove_reader(terminal)
-        with suppress(termios.error):  # a terminal that has gone needs no restoring
+        with suppress(termios.error):  # a closed terminal needs no restoring
             termios.tcsetattr(terminal, termios.TCSADRAIN, before)

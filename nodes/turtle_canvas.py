@@ -1,11 +1,10 @@
-"""What turtles draw on: strokes to show, and pixels to look up colours in.
+"""The drawing surface of turtles: strokes to show, and pixels for colour look-ups.
 
-Strokes are the drawing as lines, few enough to send as one picture. Two rules keep them few however long the turtles
-run: a stroke keeps only the points where it bends, and when all strokes together have more than `MAX_POINTS` points
-the oldest is forgotten. Pixels are the drawing as turtlesim's window has it, always 1 MB: they tell what colour
-is under a turtle, and forget nothing.
+Strokes are the drawing as lines, few enough to send as one picture. Two rules limit their number: a stroke keeps only
+the points where it bends, and when all strokes together have more than `MAX_POINTS` points, the oldest is dropped.
+Pixels are the drawing in turtlesim's window, always 1 MB: they give the colour under a turtle, and nothing is dropped.
 
-Positions are metres with the origin at the bottom left and y up; only pixels count from the top.
+Positions are in metres, with the origin at the bottom left and y up; only pixels count from the top.
 """
 
 from __future__ import annotations
@@ -20,13 +19,13 @@ import numpy as np
 PIXELS = 500
 """Width and height of turtlesim's window."""
 SCALE = 45.0
-"""Pixels per metre: a turtle's image is 45 pixels high and stands for one metre."""
+"""Pixels per metre: a turtle's image is 45 pixels high and represents one metre."""
 TOLERANCE = 0.002
-"""Metres by which a stroke may miss where the turtle went: a tenth of a pixel."""
+"""Largest distance in metres between a stroke and the turtle's path: a tenth of a pixel."""
 MAX_POINTS = 10_000
-"""Points in all strokes together: less than half a megabyte of memory, and of picture."""
+"""Most points in all strokes: less than half a megabyte, in memory and in the picture."""
 STROKE_POINTS = 250
-"""Points in one stroke; a longer one continues in a new stroke, so that the old part can be forgotten separately."""
+"""Most points in one stroke; a longer one continues in a new stroke, so that its start can be dropped separately."""
 
 Position: TypeAlias = tuple[float, float]
 Colour: TypeAlias = tuple[int, int, int]
@@ -34,17 +33,17 @@ Colour: TypeAlias = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class Pen:
-    """A colour, each part 0 to 255, and a width in pixels."""
+    """A colour, with components from 0 to 255, and a width in pixels."""
 
     colour: Colour = (0xB3, 0xB8, 0xFF)
     width: int = 3
 
 
 class Stroke:
-    """A line of one pen, with as few points as it takes to stay within `TOLERANCE` of where the pen went.
+    """A line of one pen, with as few points as possible within `TOLERANCE` of the pen's path.
 
-    The last point moves with the pen for as long as the path from the point before it is straight. Straight means:
-    every position lies in a sleeve around the line, and the sleeve's angle only narrows as it gets longer.
+    The last point moves with the pen while the path from the previous point is straight, that is, while every position
+    lies in a sleeve around the line, whose angle narrows as it gets longer.
     """
 
     def __init__(self, pen: Pen, start: Position, end: Position) -> None:
@@ -53,7 +52,7 @@ class Stroke:
         self._aim()
 
     def extend(self, point: Position) -> None:
-        """Draw on from the last point to `point`."""
+        """Extend the stroke from the last point to `point`."""
         if self._goes_straight_to(point):
             self.points[-1] = point
         else:
@@ -83,7 +82,7 @@ class Stroke:
 
 
 class Canvas:
-    """Everything drawn so far."""
+    """The drawing so far."""
 
     def __init__(self) -> None:
         self.strokes: deque[Stroke] = deque()
@@ -93,7 +92,7 @@ class Canvas:
         self._pixels = np.zeros((PIXELS, PIXELS), np.uint32)
 
     def draw(self, who: str, pen: Pen, start: Position, end: Position) -> None:
-        """Draw a straight line. It continues the last stroke of `who` if it can."""
+        """Draw a straight line. It continues the last stroke of `who` if possible."""
         self._paint(pen, start, end)
         stroke = self._current.get(who)
         if stroke and stroke.pen == pen and stroke.points[-1] == start and len(stroke.points) < STROKE_POINTS:
@@ -112,7 +111,7 @@ class Canvas:
         self._current = {who: current for who, current in self._current.items() if current is not stroke}
 
     def colour_at(self, position: Position) -> Colour | None:
-        """The colour drawn at a position; None where nothing is drawn."""
+        """Return the colour drawn at a position; None where nothing is drawn."""
         column, row = (min(max(round(v), 0), PIXELS - 1) for v in to_pixel(position))
         value = int(self._pixels[row, column])
         return (value >> 16 & 255, value >> 8 & 255, value & 255) if value else None
@@ -133,11 +132,11 @@ class Canvas:
 
 
 def to_pixel(position: Position) -> Position:
-    """A position in the window: pixels from the left, pixels from the top."""
+    """Convert a position to window coordinates: pixels from the left, pixels from the top."""
     return position[0] * SCALE, PIXELS - 1 - position[1] * SCALE
 
 
 def _span(low: float, high: float) -> tuple[int, int]:
-    """The pixels from `low` to `high` that are in the window, as the bounds of a slice."""
+    """Return the pixels in the window from `low` to `high`, as the bounds of a slice."""
     first, last = (min(max(v, 0), PIXELS) for v in (low, high + 1))
     return math.floor(first), math.ceil(last)

@@ -1,6 +1,6 @@
-"""A turtle that an action sends somewhere: the drive takes its time, can be watched and can be cancelled.
+"""A turtle that an action drives to a position, with feedback and cancellation.
 
-The goal's body waits while the timer of `PositionController` does the driving. `GoToGoal` is defined in
+The goal's handler waits while the timer of `PositionController` drives. `GoToGoal` is defined in
 `interfaces/turtle_interfaces/action/GoToGoal.action`.
 
     graphflow action send_goal /turtle1/go_to_goal turtle_interfaces/action/GoToGoal "{position: {x: 9, y: 9}}" -f
@@ -21,7 +21,7 @@ SIDE = 11.0
 
 
 class TurtleDriver(PositionController):
-    """Drive to the goal of `go_to_goal`; a newer goal replaces an older one."""
+    """Drive to the goal of `go_to_goal`; a newer goal preempts an older one."""
 
     travelled = 0.0
     """Metres since the last goal was set."""

@@ -1,4 +1,4 @@
-"""A turtle that follows another: a node class that inherits one."""
+"""A turtle that follows another: a node class that inherits another."""
 
 import graphflow
 from graphflow import subscription
@@ -8,7 +8,7 @@ from .position_controller import Point, PositionController
 
 
 class TurtleFollower(PositionController):
-    """Drive to where the turtle on `goal` is."""
+    """Drive to the turtle on `goal`."""
 
     @subscription(Pose, "goal")
     async def goal_moved(self, pose: Pose) -> None:

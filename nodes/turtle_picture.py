@@ -1,4 +1,4 @@
-"""A picture of the turtles and what they have drawn, as SVG: any browser shows it, any editor changes it."""
+"""A picture of the turtles and their drawing, as SVG, which any browser shows and any editor changes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COATS = (
     ("#b48ad8", "#6d4596"),
     ("#c9c14b", "#85802a"),
 )
-"""Skin and shell of the first turtle, the second, ...; then from the start again."""
+"""Colours of skin and shell for the first turtle, the second, and so on; repeated from the start."""
 
 BODY = """
 <g fill="{skin}" stroke="#1d2b1f" stroke-width="0.8" stroke-linejoin="round">
@@ -38,7 +38,7 @@ M3.5 6 L6.5 11.8 M-3.5 6 L-6.5 11.8 M3.5 -6 L6.5 -11.8 M-3.5 -6 L-6.5 -11.8" str
 
 
 def svg(world: World, background: Colour) -> str:
-    """The world as a picture of 500 x 500 pixels."""
+    """Return the world as a picture of 500 x 500 pixels."""
     strokes = "\n".join(_stroke(stroke) for stroke in world.canvas.strokes)
     turtles = "\n".join(_turtle(turtle) for turtle in world.turtles.values())
     return f"""\
@@ -67,7 +67,7 @@ def _turtle(turtle: Turtle) -> str:
 
 
 def _centres(positions: list[Position]) -> Iterator[Position]:
-    """Positions as SVG coordinates, in which a pixel's middle is at a half."""
+    """Return positions as SVG coordinates, where a pixel's centre is at a half."""
     return ((x + 0.5, y + 0.5) for x, y in map(to_pixel, positions))
 
 

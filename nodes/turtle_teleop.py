@@ -1,7 +1,7 @@
-"""A turtle driven with the arrow keys: a task that waits for something outside the graph.
+"""A turtle driven with the arrow keys: a task that waits for input from outside the graph.
 
-Topics, timers and services call a node. A keyboard does not, so a `@task` runs alongside them and waits for it. When
-the node stops, the task is cancelled wherever it waits; its `with` block restores the terminal.
+Topics, timers and services call a node. A keyboard does not, so a `@task` waits for it in the background. When the node
+stops, the task is cancelled where it waits, and its `with` block restores the terminal.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ Use arrow keys to move the turtle.
 'Q' to quit."""
 
 ARROWS = {"up": (1.0, 0.0), "down": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
-"""How much forwards and how much to the left."""
+"""Components forwards and to the left."""
 
 
 class TurtleTeleop(Node):
-    """Drive turtle1 with the arrow keys; one press is one command."""
+    """Drive turtle1 with the arrow keys; each press sends one command."""
 
     node_name = "teleop_turtle"
 
@@ -36,7 +36,7 @@ class TurtleTeleop(Node):
     @task
     async def read_keys(self) -> None:
         if sys.stdin is None or not sys.stdin.isatty():
-            raise GraphflowError(f"no arrow keys here: this is not a terminal; run {self.name} in one of its own")
+            raise GraphflowError(f"no arrow keys, since this is not a terminal; run {self.name} in its own terminal")
         with keyboard(sys.stdin.fileno()) as keys:
             print(PROMPT, flush=True)
             while (key := await keys.get()) not in ("q", "Q", HANGUP):

@@ -1,7 +1,7 @@
-"""A page that shows the turtles live in any browser of this machine, and steers the first one with the arrow keys.
+"""A web page that shows the turtles live and steers the first one with the arrow keys.
 
-The page asks for a new picture again and again, and sends what the keys say. It is served on loopback only, and answers
-no page but its own: any page that is open in the browser could ask.
+The page requests pictures repeatedly and sends key presses. It is served on loopback only and accepts requests only
+from itself, since any page open in the browser could send some.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 HOST = "127.0.0.1"
 BODY_BOUND = 200
-"""Bytes that the page may send."""
+"""Longest request body, in bytes."""
 
 PAGE = """\
 <!doctype html>
@@ -55,12 +55,12 @@ turn();
 
 
 class TurtleView:
-    """The page's server, in threads of its own.
+    """The web server of the page, in threads of its own.
 
     Args:
-        port: Where it listens; 0 takes a free port.
-        picture: The world as SVG; called from threads.
-        drive: Takes a speed and a turning speed, in units/s and rad/s; called from threads.
+        port: The port to listen on; 0 for any free port.
+        picture: Returns the world as SVG; called from threads.
+        drive: Takes a linear and an angular speed, in m/s and rad/s; called from threads.
 
     Raises:
         OSError: The port is taken.
@@ -73,11 +73,11 @@ class TurtleView:
 
     @property
     def url(self) -> str:
-        """What to open in a browser."""
+        """The page's address."""
         return f"http://{HOST}:{self._server.server_port}/"
 
     def close(self) -> None:
-        """Serve no more."""
+        """Stop serving."""
         self._server.shutdown()
         self._server.server_close()
 
@@ -100,7 +100,7 @@ class _Handler(BaseHTTPRequestHandler):
         elif self.path == "/picture":
             self._answer(HTTPStatus.OK, "image/svg+xml", self.server.picture())
         else:
-            self._answer(HTTPStatus.NOT_FOUND, "text/plain", "there is / and /picture\n")
+            self._answer(HTTPStatus.NOT_FOUND, "text/plain", "the pages are / and /picture\n")
 
     def do_POST(self) -> None:
         if not self._is_own_page():
@@ -116,12 +116,12 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer(HTTPStatus.OK, "text/plain", "")
 
     def _is_own_page(self) -> bool:
-        """Whether a request comes from the page itself, or from no page; another one is refused."""
+        """Whether a request comes from the page itself or from no page; others are refused."""
         hosts = {f"{name}:{self.server.server_port}" for name in (HOST, "localhost")}
         origin = self.headers.get("Origin")
         if self.headers.get("Host") in hosts and (origin is None or urlsplit(origin).netloc in hosts):
             return True
-        self._answer(HTTPStatus.FORBIDDEN, "text/plain", "this can be used from its own page only\n")
+        self._answer(HTTPStatus.FORBIDDEN, "text/plain", "requests are accepted only from this page\n")
         return False
 
     def _answer(self, status: HTTPStatus, kind: str, text: str) -> None:
@@ -134,4 +134,4 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def log_message(self, *_: object) -> None:
-        """Say nothing: a picture is asked for many times a second."""
+        """Log nothing: there are many requests a second."""

@@ -1,8 +1,8 @@
-"""The world of turtlesim, without a node: turtles, their commanded velocities, the walls around them.
+"""The world of turtlesim, without a node: turtles, their commanded velocities, and the walls around them.
 
-A turtle is a unicycle: it moves along its nose and turns on the spot. Time goes in ticks of 16 ms. The owner of the
-world calls `step` once a tick with the time, which matters only to old commands: after a second without
-a new one a turtle stops. `nodes/turtlesim.py` puts all this on the network.
+A turtle is a unicycle: it moves along its heading and turns on the spot. The owner of the world calls `step` every 16
+ms with the time, which only serves to expire commands: a turtle stops a second after its last one. `nodes/turtlesim.py`
+connects the world to the network.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ TICK = 0.016
 SIZE = 11.088889122009277
 """Metres from wall to wall: 499 pixels of 45 to the metre, rounded to float32 as turtlesim does."""
 COMMAND_LIFE_NS = 1_000_000_000
-"""How long a velocity command holds."""
+"""Nanoseconds that a velocity command lasts."""
 LIMIT = 1e5
-"""No turtle is further away or faster than this, in metres, radians and seconds."""
+"""Limit of a turtle's position and speed, in metres, radians and seconds."""
 
 
 class NameTaken(Exception):
@@ -28,14 +28,14 @@ class NameTaken(Exception):
 
 @dataclass
 class Turtle:
-    """Where a turtle is, how it moves and what it draws with. Metres and radians; theta 0 points along x."""
+    """A turtle's pose, velocity and pen. Metres and radians; theta 0 points along x."""
 
     name: str
     x: float
     y: float
     theta: float = 0.0
     number: int = 0
-    """The turtle's number since the last reset; decides its colour."""
+    """The turtle's number since the last reset, which determines its colour."""
     pen: Pen | None = field(default_factory=Pen)
     """The pen; None while it is lifted."""
     forward: float = 0.0
@@ -52,7 +52,7 @@ class Turtle:
         return math.hypot(self.forward, self.sideways)
 
     def command(self, forward: float, sideways: float, turning: float, now_ns: int) -> None:
-        """Move with these velocities (m/s, m/s to the left, rad/s) from the next step on.
+        """Set the velocities (m/s forward, m/s to the left, rad/s) from the next step on.
 
         Raises:
             ValueError: A velocity is not a number, or is beyond `LIMIT`.
@@ -61,7 +61,7 @@ class Turtle:
         self.forward, self.sideways, self.turning, self.commanded_ns = forward, sideways, turning, now_ns
 
     def move(self, seconds: float) -> None:
-        """Move by the velocities for a moment; turning comes first."""
+        """Move for a number of seconds at the current velocities, turning first."""
         self.theta = normalize(self.theta + self.turning * seconds)
         cos, sin = math.cos(self.theta), math.sin(self.theta)
         self.x += (cos * self.forward - sin * self.sideways) * seconds
@@ -69,7 +69,7 @@ class Turtle:
 
 
 class World:
-    """Turtles by name and what they have drawn."""
+    """Turtles by name, and their drawing."""
 
     def __init__(self) -> None:
         self.turtles: dict[str, Turtle] = {}
@@ -78,7 +78,7 @@ class World:
         self._spawned = 0
 
     def free_name(self) -> str:
-        """`turtle1`, `turtle2`, ...: the next that is free. A number is used once, even if its turtle is gone."""
+        """Return the next free name: `turtle1`, `turtle2`, ... A number is never reused."""
         while True:
             self._numbered += 1
             if (name := f"turtle{self._numbered}") not in self.turtles:
@@ -100,7 +100,7 @@ class World:
         return turtle
 
     def kill(self, name: str) -> None:
-        """Remove a turtle. What it drew stays.
+        """Remove a turtle. Its drawing stays.
 
         Raises:
             KeyError: There is no turtle of that name.
@@ -108,10 +108,10 @@ class World:
         del self.turtles[name]
 
     def step(self, turtle: Turtle, now_ns: int) -> Position | None:
-        """Let one tick pass for a turtle.
+        """Advance a turtle by one tick.
 
         Returns:
-            None, or where it would be now but for a wall.
+            None, or the position it would have reached without a wall.
         """
         if now_ns - turtle.commanded_ns > COMMAND_LIFE_NS:
             turtle.forward = turtle.sideways = turtle.turning = 0.0
@@ -150,14 +150,12 @@ class World:
 
 
 def check_numbers(*values: float) -> None:
-    """Raise ValueError unless a turtle can have these numbers."""
+    """Raise ValueError unless all values are numbers within `LIMIT`."""
     for value in values:
-        if not abs(value) < LIMIT:  # nor is that true of a NaN
-            raise ValueError(
-                f"{value} is not something a turtle can do: give a number between {-LIMIT:g} and {LIMIT:g}"
-            )
+        if not abs(value) < LIMIT:  # also true of a NaN
+            raise ValueError(f"{value} is out of a turtle's range: give a number between {-LIMIT:g} and {LIMIT:g}")
 
 
 def normalize(angle: float) -> float:
-    """The same angle, from -pi up to but not including pi."""
+    """Return the same angle from -pi up to but not including pi."""
     return angle - math.tau * math.floor((angle + math.pi) / math.tau)

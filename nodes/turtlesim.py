@@ -1,11 +1,11 @@
-"""The turtle simulator of every ROS 2 course: names that come and go with the turtles.
+"""The turtle simulator of ROS 2's tutorials: a node whose topics and services come and go.
 
-A node that knows its topics and services in advance declares them on its class. This one cannot: each turtle has
-topics and services of its own, so they are made when it hatches, with the `create_*` methods that declarations
-use too, and closed when it is killed. What turtles do is in `turtle_world.py`, which knows nothing about nodes.
+A node that knows its topics and services in advance declares them on its class. This one cannot: each turtle has its
+own topics and services, which are created when it hatches, with the `create_*` methods that declarations use, too, and
+closed when it is killed. The turtles' behaviour is in `turtle_world.py`, which does not depend on nodes.
 
-There is no window. With `-p view:=true` a page in your browser shows the turtles live; its address is logged. Or ask
-for a picture, an SVG file in the response's `message`, whenever you want one:
+There is no window. With `-p view:=true` a page in your browser shows the turtles live; its address is logged. Or
+request a picture at any time, an SVG file in the response's `message`:
 
     graphflow snapshot
 
@@ -35,13 +35,13 @@ from .turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
 TURNING_SPEED = 1.0
 """Turning speed of `rotate_absolute`, in rad/s."""
 PATIENCE = 2.0
-"""Seconds that the loop may take to draw a picture for the view."""
+"""Seconds for the loop to draw a picture for the view."""
 CLOSE_ENOUGH = 0.02
-"""Radians from the goal within which `rotate_absolute` ends."""
+"""Radians from the goal at which `rotate_absolute` ends."""
 
 
 class TurtleSim(Node):
-    """Turtles that drive where `<turtle>/cmd_vel` says and draw a line behind them."""
+    """Turtles that follow `<turtle>/cmd_vel` and draw lines."""
 
     node_name = "turtlesim"
     dynamic_names = (
@@ -76,7 +76,7 @@ class TurtleSim(Node):
 
     @asynccontextmanager
     async def shown(self) -> AsyncGenerator[None, None]:
-        """The page that shows the turtles."""
+        """Serve the page that shows the turtles."""
         loop = asyncio.get_running_loop()
 
         async def picture() -> str:
@@ -98,7 +98,7 @@ class TurtleSim(Node):
             await asyncio.to_thread(page.close)
 
     def drive_first(self, linear: float, angular: float) -> None:
-        """Steer turtle1, or the oldest that is there."""
+        """Steer turtle1, or the oldest turtle."""
         for reins in list(self.reins.values())[:1]:
             reins.command(Twist(linear=Vector3(x=linear), angular=Vector3(z=angular)))
 
@@ -155,7 +155,7 @@ class TurtleSim(Node):
         return Trigger.Response(success=True, message=svg(self.world, self.background))
 
     def hatch(self, name: str, x: float, y: float, theta: float) -> Turtle:
-        """Add a turtle and its topics and services.
+        """Add a turtle with its topics and services.
 
         Raises:
             NameTaken: There is already one of that name.
@@ -184,7 +184,7 @@ class TurtleSim(Node):
 
 
 class Rotation:
-    """A goal of `rotate_absolute` under way: where it began, and what it waits for."""
+    """A goal of `rotate_absolute` in progress: its start, and the future of its end."""
 
     def __init__(self, goal: RotateAbsolute.Handle, start: float) -> None:
         self.goal, self.start = goal, start
@@ -192,7 +192,7 @@ class Rotation:
 
 
 class Reins:
-    """The topics, services and the action of one turtle. Their names are relative: namespace and remaps apply."""
+    """The topics, services and action of one turtle, with relative names: namespace and remaps apply."""
 
     rotation: Rotation | None = None
 
@@ -214,12 +214,12 @@ class Reins:
         self.pose, self.color = pose, color
 
     def close(self) -> None:
-        """Withdraw them from the network."""
+        """Close the topics, services and action."""
         for endpoint in self.endpoints:
             endpoint.close()
 
     def publish(self) -> None:
-        """Publish where the turtle is and what colour is under it."""
+        """Publish the turtle's pose and the colour under it."""
         t = self.turtle
         self.pose.publish(Pose(x=t.x, y=t.y, theta=t.theta, linear_velocity=t.speed, angular_velocity=t.turning))
         r, g, b = self.node.world.canvas.colour_at(t.position) or self.node.background
@@ -253,7 +253,7 @@ class Reins:
             return
         goal, turtle = self.rotation.goal, self.turtle
         remaining = normalize(goal.request.theta - turtle.theta)
-        # The way back, as in turtlesim: negative for a turn to the left.
+        # The angle back to the start, as in turtlesim: negative after a turn to the left.
         goal.partial = RotateAbsolute.Result(delta=normalize(self.rotation.start - turtle.theta))
         goal.feedback(RotateAbsolute.Feedback(remaining=remaining))
         if abs(remaining) < CLOSE_ENOUGH:

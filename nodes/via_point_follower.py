@@ -1,6 +1,6 @@
-"""A turtle on a round trip: list parameters, and a check of parameters that belong together.
+"""A turtle on a round trip: list parameters, and a check across parameters.
 
-A parameter's own limits are in its declaration. What several must meet together is checked when the node is made;
+A parameter's own limits are in its declaration. A condition on several parameters is checked when the node is made;
 `read_only` keeps it true from then on.
 """
 
@@ -23,7 +23,7 @@ class ViaPointFollower(PositionController):
         super().__init__(name, **options)
         if not len(self.via_x) == len(self.via_y) > 0:
             raise ParameterError(
-                f"via_x has {len(self.via_x)} numbers and via_y {len(self.via_y)}: give as many of each, at least one"
+                f"via_x has {len(self.via_x)} numbers but via_y has {len(self.via_y)}: give the same number of each, at least one"
             )
         self.points = cycle(map(Point, self.via_x, self.via_y))
         self.go_to(next(self.points))

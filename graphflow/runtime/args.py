@@ -75,7 +75,7 @@ class RosArgs:
                 if not setting.is_optional or interface.param(name) is not None:
                     found[name] = (setting.value, str(setting.place))
                 else:
-                    logger.warning("%s: %s has no parameter %r; it is left out", setting.place, full_name, name)
+                    logger.warning("%s: %s has no parameter %r; it is ignored", setting.place, full_name, name)
         names = (None, interface.node_name, full_name.rpartition("/")[2])
         return found | {p: (v, source) for node, p, v, source in self.params if node in names}
 
@@ -99,10 +99,7 @@ def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> Ros
         elif word == "--" and in_ros:
             in_ros = False
         elif word in _FLAGS and in_ros:
-            if "rosout" in word:
-                result.has_rosout = _FLAGS[word]
-            elif "stdout" in word:
-                result.has_stdout = _FLAGS[word]
+            _flag(result, word)
         elif word in _VALUED or (in_ros and word in _LEFT_OUT):
             if not todo or todo[0] in _OPTIONS:
                 raise GraphflowError(f"{word} needs a value after it, such as {_EXAMPLES.get(word, 'info')}")
@@ -143,7 +140,7 @@ def cut_off(word: str, words: Sequence[str]) -> str:
     place = list(words).index(word)
     option, before = words[place - 2 : place] if place > 1 else ("", "")
     is_cut = option in _VALUED and ":=" in before
-    return f"; a value with a space in it goes into quotes: {option} '{before} {word}'" if is_cut else ""
+    return f"; quote a value that contains a space: {option} '{before} {word}'" if is_cut else ""
 
 
 def is_number_or_truth(text: str) -> bool:
@@ -166,7 +163,7 @@ def missed(words: Sequence[str]) -> str:
         elif not in_ros and (option := _slip(word)):
             rest = " ".join(words[place + 1 :])
             way = option if option == "--ros-args" else f"--ros-args {option}"
-            return f"{word!r} means nothing to ROS, nor does what follows{f' ({rest})' if rest else ''}; write {way}"
+            return f"{word!r} means nothing to ROS, nor does the rest{f' ({rest})' if rest else ''}; write {way}"
         elif not in_ros and ":=" in word:
             before = words[place - 1] if place else ""
             is_whole = before in _VALUED and not word.startswith("___")
@@ -185,6 +182,13 @@ def _slip(word: str) -> str:
     return "--params-file" if bare == "params-file" else nearest(f"--{bare}", ["--ros-args"], cutoff=0.85) or ""
 
 
+def _flag(result: RosArgs, flag: str) -> None:
+    if "rosout" in flag:
+        result.has_rosout = _FLAGS[flag]
+    elif "stdout" in flag:
+        result.has_stdout = _FLAGS[flag]
+
+
 def _option(result: RosArgs, option: str, value: str) -> None:
     if option in ("-r", "--remap"):
         _remap(result, value)
@@ -197,13 +201,13 @@ def _option(result: RosArgs, option: str, value: str) -> None:
     elif option == "--params-file":
         result.params_files.append(value)
     elif option in _LEFT_OUT:
-        logger.warning("%s means nothing to graphflow, and is left out", option)
+        logger.warning("%s means nothing to graphflow and is ignored", option)
     else:
         target, arrow, text = value.partition(":=")
         if not arrow or not target:
             raise GraphflowError(f"-p {value!r}: write name:=value, for example rate:=2.0")
         if not text:
-            raise GraphflowError(f"-p {value!r}: the value is missing; write it behind := without a space")
+            raise GraphflowError(f"-p {value!r}: the value is missing; write it after :=, without a space")
         if re.search(r"\s[\w.]+:=", text):
             raise GraphflowError(f"-p {value!r}: write one -p each: {' '.join(f'-p {one}' for one in value.split())}")
         from graphflow.markup.source import parse_value

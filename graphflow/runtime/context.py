@@ -296,7 +296,7 @@ class Context:
                 listener(change)
         if refused == 0 and self.cache.refused:
             text = printable(token[:200])
-            logger.warning("a liveliness token is left out, since it is malformed or one too many: %s", text)
+            logger.warning("a liveliness token is ignored, since it is malformed or exceeds the limit: %s", text)
 
     def _advise(self, entity: Entity) -> None:
         """Log once that a node on the network uses another wire profile."""

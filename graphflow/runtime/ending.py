@@ -6,11 +6,11 @@ import asyncio
 import logging
 import os
 import signal
+import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from types import FunctionType, MethodType
-from typing import Any
 
 from graphflow.analysis.frames import stack_of
 from graphflow.analysis.user_code import called_by_loop, innermost
@@ -21,7 +21,7 @@ SAME_SIGNAL = 0.1
 """Seconds within which a second signal counts as the first."""
 REMIND_AFTER = 1.0
 """Seconds after a signal at which a program that is still stopping reports what it waits for."""
-LOOK_AFTER, LOOK_EVERY = 1.0, 60.0
+CHECK_AFTER, CHECK_EVERY = 1.0, 60.0
 """Seconds until the signal handlers are first checked, and the longest time between two checks.
 The interval doubles with each check, as libraries replace signal handlers when they are first used."""
 _MANAGER = "_ExecutorManagerThread"
@@ -79,21 +79,15 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 
     # Not loop.add_signal_handler: its callbacks would wait for a handler that blocks the loop.
     former = {number: signal.signal(number, caught) for number in _stop_signals()}
-    watch = loop.call_later(LOOK_AFTER, lambda: look(LOOK_AFTER))
+    watch = loop.call_later(CHECK_AFTER, lambda: check(CHECK_AFTER))
 
-    def look(waited: float) -> None:
+    def check(waited: float) -> None:
         nonlocal watch
         others = {number: found for number in former if (found := signal.getsignal(number)) is not caught}
-        for number, found in others.items():
-            logger.warning(
-                "%s has taken the signal %s: unless it calls the handler that was there before, that signal no longer "
-                "stops the nodes, and their on_shutdown will not run",
-                _name(found),
-                number.name,
-            )
+        _warn_of_replaced(others)
         if not others:
-            wait = min(2 * waited, LOOK_EVERY)
-            watch = loop.call_later(wait, look, wait)
+            wait = min(2 * waited, CHECK_EVERY)
+            watch = loop.call_later(wait, check, wait)
 
     def restore() -> None:
         watch.cancel()
@@ -104,28 +98,38 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
     return restore
 
 
+def _warn_of_replaced(others: Mapping[signal.Signals, object]) -> None:
+    for number, handler in others.items():
+        logger.warning(
+            "%s has replaced the handler of %s: unless it calls the previous handler, that signal no longer "
+            "stops the nodes, and their on_shutdown will not run",
+            _name(handler),
+            number.name,
+        )
+
+
 def _stop_signals() -> Iterator[signal.Signals]:
     yield signal.SIGINT
     yield signal.SIGTERM
-    hang_up = getattr(signal, "SIGHUP", None)  # the terminal was closed; nohup makes the process ignore it
-    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
-        yield hang_up
+    # Sent when the terminal closes; nohup makes a process ignore it.
+    if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        yield signal.SIGHUP
 
 
-def _name(handler: Any) -> str:
+def _name(handler: object) -> str:
     """Return a signal handler's function and its place, as far as they are known."""
     function = handler.__func__ if isinstance(handler, MethodType) else handler
     if isinstance(function, FunctionType):
         code = function.__code__
         return f"{function.__module__}.{function.__qualname__} ({code.co_filename}:{code.co_firstlineno})"
     if handler is None:
-        return "code outside of Python"
+        return "code outside Python"
     return f"code that chose {handler}"
 
 
 def _remind() -> None:
-    told = [*hindrances()]
-    waits = f" (it waits for {'; '.join(told)})" if told else ""
+    reasons = [*hindrances()]
+    waits = f" (waiting for {'; '.join(reasons)})" if reasons else ""
     os.write(2, f"still stopping{waits}; Ctrl-C again ends it without cleanup\n".encode())
 
 

@@ -48,7 +48,7 @@ from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.mistakes import unrun
 from graphflow.runtime.mistakes.doubled import warn_doubled
 from graphflow.runtime.mistakes.other_threads import call_soon
-from graphflow.runtime.mistakes.rclpy_words import OF_PARTS, SpeaksRos, in_our_words
+from graphflow.runtime.mistakes.rclpy_words import OF_PARTS, AttributeHints, with_argument_hints
 from graphflow.runtime.mistakes.repeats import warn_duplicate
 from graphflow.runtime.mistakes.source.shadowing import check_names
 from graphflow.runtime.node_arguments import rules_of
@@ -59,7 +59,7 @@ M = TypeVar("M", bound=Message)
 T = TypeVar("T")
 
 
-class Node(SpeaksRos):
+class Node(AttributeHints):
     """A ROS 2 node as an async Python class. Subclass it, declare its endpoints and handlers, and `graphflow.run` it.
 
     Args:
@@ -147,10 +147,10 @@ class Node(SpeaksRos):
     def _hint(self, name: str) -> str:
         core = vars(self).get("_core")
         if name in ("run", "spin", "main"):
-            return f"nodes are run by graphflow.run({type(self).__name__})"
+            return f"run nodes with graphflow.run({type(self).__name__})"
         if core is None or name not in core.parameters:
             return OF_PARTS.get(name, "")
-        return f'a parameter is read by self.parameters.get("{name}"), or declared in the class: {name} = Param(...)'
+        return f'read a parameter with self.parameters.get("{name}"), or declare it in the class: {name} = Param(...)'
 
     def _instead_of(self, name: str) -> str:
         is_unmade = name in ("_core", "log", "parameters")
@@ -221,7 +221,7 @@ class Node(SpeaksRos):
         """Return counters since the start, by the name of each handler, endpoint and group."""
         return self._core.statistics()
 
-    @in_our_words
+    @with_argument_hints
     def create_publisher(
         self, type_: type[M], name: str, qos: Qos | int = 10, *, on_event: OnEvent | None = None
     ) -> TopicPublisher[M]:
@@ -232,7 +232,7 @@ class Node(SpeaksRos):
         check_qos(qos, None, place)
         return core.add(TopicPublisher(core, type_, core.names.resolve(name), Qos.of(qos), on_event))
 
-    @in_our_words
+    @with_argument_hints
     def create_subscription(
         self,
         type_: type[M],
@@ -266,7 +266,7 @@ class Node(SpeaksRos):
         check_group(group, (Group, HandlerGroup), what, place)
         check_on_error(on_error, place)
         if callback is not None:
-            hint = "" if takes_info else "; with takes_info=True it gets the message and a MessageInfo"
+            hint = "" if takes_info else "; with takes_info=True it is called with the message and a MessageInfo"
             check_callback(callback, range(2, 3) if takes_info else range(1, 2), what, place, hint)
         core, resolved = self._core, self._core.names.resolve(name)
         same = (part for part in core.parts if isinstance(part, TopicSubscription) and part.name == resolved)
@@ -277,7 +277,7 @@ class Node(SpeaksRos):
         warn_duplicate(core, core.parts, made, callback)
         return core.add(made, late=callback is not None)
 
-    @in_our_words
+    @with_argument_hints
     def create_service(
         self,
         type_: type[Service[Request, Response]],
@@ -313,7 +313,7 @@ class Node(SpeaksRos):
         made.configure_introspection(introspection)
         return core.add(made, late=True)
 
-    @in_our_words
+    @with_argument_hints
     def create_client(
         self,
         type_: type[Service[Request, Response]],
@@ -337,7 +337,7 @@ class Node(SpeaksRos):
         made.configure_introspection(introspection)
         return core.add(made)
 
-    @in_our_words
+    @with_argument_hints
     def create_action_server(
         self,
         type_: type[Action[Goal, Result, Feedback]],
@@ -372,7 +372,7 @@ class Node(SpeaksRos):
         options: dict[str, Any] = {"rules": rules, "accept": accept, "cancellable": cancellable}
         return core.add(ActionServer(core, type_, resolved, call, label, slots, **options), late=True)
 
-    @in_our_words
+    @with_argument_hints
     def create_action_client(
         self, type_: type[Action[Goal, Result, Feedback]], name: str
     ) -> GoalClient[Goal, Result, Feedback]:
@@ -381,7 +381,7 @@ class Node(SpeaksRos):
         check_text(name, "create_action_client", here())
         return self._core.add(GoalClient(self._core, type_, self._core.names.resolve(name, "service")))
 
-    @in_our_words
+    @with_argument_hints
     def create_timer(
         self,
         period: float,
@@ -410,7 +410,7 @@ class Node(SpeaksRos):
         warn_duplicate(self._core, self._core.parts, made, callback)
         return self._core.add(made, late=True)
 
-    @in_our_words
+    @with_argument_hints
     def declare_parameter(self, name: str, default: Any, *, dynamic: bool = False, **limits: Any) -> Any:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
 

@@ -25,13 +25,13 @@ def rules_of(remap: object) -> list[Remap]:
         InvalidName: A rule is invalid, or `remap` is not a list of rules; the text has the correct form.
     """
     if isinstance(remap, str):
-        raise InvalidName(f"{here()}: remap= is a list: remap=[{_quoted(remap)}]")
+        raise InvalidName(f"{here()}: remap= takes a list: remap=[{_quoted(remap)}]")
     if isinstance(remap, Mapping):
-        raise InvalidName(f"{here()}: remap= is a list: {_as_rules(remap)}")
+        raise InvalidName(f"{here()}: remap= takes a list: {_as_rules(remap)}")
     found = []
     for rule in remap if isinstance(remap, Iterable) else ():
         if isinstance(rule, tuple) and len(rule) == 2:
-            raise InvalidName(f"{here()}: a rule is a text: {_as_rules(dict([rule]))}")
+            raise InvalidName(f"{here()}: a rule is a string: {_as_rules(dict([rule]))}")
         found.append(rule if isinstance(rule, Remap) else Remap.parse(rule))
     return found
 
@@ -41,7 +41,7 @@ def instead_of(word: str, value: object) -> str:
     meant = _WORDS.get(word)
     if meant is None:
         return ""
-    return f"write {_argument(word, value)}" if meant else f"parameters go by their names: {_argument(word, value)}"
+    return f"write {_argument(word, value)}" if meant else f"pass parameters by name: {_argument(word, value)}"
 
 
 def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> None:
@@ -54,7 +54,7 @@ def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> Non
         first = next(iter(nodes), None)
         name = "Talker" if first is None else first.__name__ if isinstance(first, type) else type(first).__name__
         arguments = ", ".join(_argument(word, value) for word, value in given.items())
-        way = f"{next(iter(given))}= is for the node: graphflow.run({name}({arguments}))"
+        way = f"{next(iter(given))}= belongs to the node: graphflow.run({name}({arguments}))"
         raise UsageFault(f"{here()}: {way}, or on the command line --ros-args -r __ns:=/NS -r FROM:=TO -p NAME:=VALUE")
 
 

@@ -13,7 +13,7 @@ from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS, to_ns
 
 TIMELESS = (
-    "it goes by simulated time (use_sim_time), and nothing has come on /clock: its timers stand still. Start the "
+    "it uses simulated time (use_sim_time), but there is no message on /clock: its timers stand still. Start the "
     "simulator, or play a bag with --clock, or set use_sim_time to false"
 )
 TELL_AFTER = 3.0

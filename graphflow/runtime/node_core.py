@@ -290,7 +290,7 @@ class NodeCore:
             ClosedError: The node is already running, or has been stopped.
         """
         if self._ended is not None:
-            state = "is already running" if self.is_running else "has been stopped; make a new one"
+            state = "is already running" if self.is_running else "has been stopped; create a new one"
             raise ClosedError(f"node {self.full_name} {state}")
         self.ensure_made()
         self._context = context
@@ -414,7 +414,7 @@ class NodeCore:
     async def _finish(self) -> None:
         if self.has_started:
             await self.limited("on_shutdown", self.instance.on_shutdown)
-        await self.limited("leaving what was entered", self.entered.aclose)
+        await self.limited("exiting context managers", self.entered.aclose)
 
     async def limited(self, what: str, work: Callable[[], Coroutine[Any, Any, Any]]) -> None:
         """Run one step of stopping; its failure or timeout does not prevent the next ones."""

@@ -13,7 +13,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import OnError
 from graphflow.runtime.context import Context
-from graphflow.runtime.mistakes.rclpy_words import SpeaksRos
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints
 
 
 class Host(Protocol):
@@ -62,7 +62,7 @@ class Host(Protocol):
         """Log an error: graphflow's own as a sentence, any other with its traceback."""
 
 
-class Part(SpeaksRos, ABC):
+class Part(AttributeHints, ABC):
     """A resource that a node opens, stops and closes: an endpoint, an action, a timer."""
 
     opens_last = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import sys
-from collections.abc import AsyncGenerator, Sequence
+from collections.abc import AsyncGenerator, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
 from types import TracebackType
 from typing import Never
@@ -90,7 +90,7 @@ async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerat
                 finally:
                     for watcher in watchers:
                         watcher.cancel()
-        except BaseExceptionGroup as errors:
+        except BaseExceptionGroup as errors:  # of the block or of nodes; a single error is unwrapped
             failure = errors.exceptions[0] if len(errors.exceptions) == 1 else errors
             explain(failure)
         if failure is not None:  # raised here, where the group does not become its context
@@ -123,7 +123,26 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
     _refuse_running_loop(nodes)
     setup_console()
     if not nodes:
-        logger.warning("%s: graphflow.run was given no node, so it runs none; write graphflow.run(Talker)", here())
+        logger.warning("%s: graphflow.run was called without a node; write graphflow.run(Talker)", here())
+    ros = _configure(strange, nodes, args)
+    made = _make_all(nodes, ros)
+    if text := one_by_one(users_frame(sys._getframe(1))):
+        logger.warning("%s", text)
+    try:
+        loop.run(_run(made))
+    except KeyboardInterrupt:
+        return
+    except Exception as error:  # a node's, of any type
+        status = _exit_status(error, made)
+        if status is None:
+            raise
+        raise SystemExit(status) from None
+
+
+def _configure(
+    strange: Mapping[str, object], nodes: Sequence[Node | type[Node]], args: Sequence[str] | None
+) -> RosArgs:
+    """Parse the arguments and apply those for logging; exits with status 2 if they are invalid."""
     try:
         refuse_keywords(strange, nodes)
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
@@ -131,40 +150,42 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
         if args is None:
             _refuse_unread(ros, nodes)
         setup_console(log_level(ros.log_level), is_quiet=not ros.has_stdout)
-        for name, word in ros.log_levels.items():
-            node_logger(f"/{name.replace('.', '/')}").setLevel(log_level(word))
+        for name, level in ros.log_levels.items():
+            node_logger(f"/{name.replace('.', '/')}").setLevel(log_level(level))
     except GraphflowError as error:
         print_error(error)
         raise SystemExit(2) from None
-    made: list[Node] = []
+    return ros
+
+
+def _make_all(nodes: Sequence[Node | type[Node]], ros: RosArgs) -> list[Node]:
+    """Make nodes of the classes among `nodes`; exits with status 2, or 1 for an error in a constructor."""
     try:
         for node in nodes:
             if not isinstance(node, type):
                 core_of(node)
-        made += [n if isinstance(n, Node) else make(n, ros) for n in nodes]
+        made = [n if isinstance(n, Node) else make(n, ros) for n in nodes]
         for node in made:
             core_of(node).refuses_unused = len(made) == 1  # with several nodes a rule need not match in each
     except GraphflowError as error:
         print_error(error)
         raise SystemExit(2) from None
-    except Exception as error:
+    except Exception as error:  # raised by a user's constructor
         log_with_traceback(logger, "", error)
         raise SystemExit(1) from None
-    if text := one_by_one(users_frame(sys._getframe(1))):
-        logger.warning("%s", text)
-    try:
-        loop.run(_run(made))
-    except KeyboardInterrupt:
-        return
-    except Exception as error:
-        is_logged = any(core_of(node).failure is error for node in made)
-        if is_logged and not isinstance(error, TooManyErrors):  # the node has logged each of these, but not their sum
-            raise SystemExit(1) from None
-        if not isinstance(error, GraphflowError):
-            explain(error)
-            raise
-        print_error(error)
-        raise SystemExit(2 if isinstance(error, UsageFault) else 1) from None
+    return made
+
+
+def _exit_status(error: Exception, made: Sequence[Node]) -> int | None:
+    """Report an error that ended the nodes; returns the exit status, or None for an error to propagate."""
+    is_logged = any(core_of(node).failure is error for node in made)
+    if is_logged and not isinstance(error, TooManyErrors):  # the node has logged each of these, but not their sum
+        return 1
+    if not isinstance(error, GraphflowError):
+        explain(error)
+        return None
+    print_error(error)
+    return 2 if isinstance(error, UsageFault) else 1
 
 
 def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
@@ -180,7 +201,7 @@ def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
     way = f"async with graphflow.running({_names(nodes)}): ..."
     if "_pytest" in sys.modules:
         way = f"await graph.start({_names(nodes)}), with graph as an argument of the test"
-    raise RuntimeError(f"{here()}: graphflow.run starts an event loop, and one runs here already; write {way}")
+    raise RuntimeError(f"{here()}: graphflow.run starts an event loop, but one is already running here; write {way}")
 
 
 def _names(nodes: Sequence[Node | type[Node]]) -> str:
@@ -198,7 +219,7 @@ def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
     if made and (ros.remaps or ros.params or ros.params_files):
         name = type(made[0]).__name__
         raise GraphflowError(
-            f"-r and -p cannot change {name}(), which has been made already; give the class: graphflow.run({name})"
+            f"-r and -p cannot change {name}(), which has already been created; pass the class: graphflow.run({name})"
         )
 
 

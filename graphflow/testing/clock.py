@@ -83,8 +83,8 @@ async def settle() -> None:
     while work.is_awaited and (pending := sorted(set(work.pending()))):
         if time.monotonic() > until:
             raise RuntimeError(
-                f"the graph does not come to rest: after {OUTSIDE_LIMIT:g} s it still waits for {', '.join(pending)}; "
-                "put a fake in its place, or set graph.waits_outside = False"
+                f"the graph does not settle: after {OUTSIDE_LIMIT:g} s it still waits for {', '.join(pending)}; "
+                "replace it with a fake, or set graph.waits_outside = False"
             )
         await asyncio.sleep(0.001)
         await _idle(loop)
@@ -103,4 +103,4 @@ async def _idle(loop: asyncio.AbstractEventLoop) -> None:
                 return
     finally:
         _settling[loop] -= 1
-    raise RuntimeError("the graph does not come to rest: a handler or task keeps waking itself without waiting")
+    raise RuntimeError("the graph does not settle: a handler or task keeps waking itself without waiting")

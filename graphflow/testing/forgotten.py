@@ -44,7 +44,7 @@ def forgotten() -> list[str]:
     _calls.clear()
     for call in calls:
         call.coroutine.close()  # or Python warns that it was never awaited, too
-    return [f"{call.place}: this does nothing until it is awaited; write {_written(call)}" for call in calls]
+    return [f"{call.place}: this has no effect until it is awaited; write {_written(call)}" for call in calls]
 
 
 def _has_not_begun(call: _Call) -> bool:

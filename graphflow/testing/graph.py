@@ -15,7 +15,7 @@ from graphflow.qos import Durability, Qos
 from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.context import Context
 from graphflow.runtime.endpoints.publishers import TopicPublisher
-from graphflow.runtime.mistakes.rclpy_words import SpeaksRos
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.runtime.node_options import NodeOptions, make_within
@@ -31,7 +31,7 @@ M = TypeVar("M", bound=Message)
 N = TypeVar("N", bound=Node)
 
 
-class Tap(SpeaksRos, Generic[M]):
+class Tap(AttributeHints, Generic[M]):
     """The messages published on a topic since the tap was opened; a sequence that compares equal to a list."""
 
     def __init__(self, type_: type[M], topic: str, messages: list[M]) -> None:
@@ -68,7 +68,7 @@ class Tap(SpeaksRos, Generic[M]):
     def _hint(self, name: str) -> str:
         if name not in {field.name for field in self._type.SCHEMA.fields}:
             return ""
-        return f"a tap is a sequence of messages, which have it: write .latest.{name}, or [0].{name}"
+        return f"a tap is a sequence of messages, which have this attribute: write .latest.{name}, or [0].{name}"
 
 
 _INSTEAD = {
@@ -82,7 +82,7 @@ _INSTEAD = {
 """The methods of a graph for other tools' names of the same."""
 
 
-class Graph(SpeaksRos):
+class Graph(AttributeHints):
     """The nodes, clock and network of one test. Made by the fixture `graph`."""
 
     def _hint(self, name: str) -> str:
@@ -250,7 +250,7 @@ class Graph(SpeaksRos):
         try:
             self.loop = asyncio.get_running_loop()
         except RuntimeError:
-            raise RuntimeError("nodes need the event loop of a test: write async def in place of def") from None
+            raise RuntimeError("nodes need the event loop of a test: write async def instead of def") from None
         self._contexts.append(Context(self.network.session(self.loop), clock=self.clock, deadlock=deadlock))
         self._contexts[-1].noticed = self._noticed
         outside(self.loop).is_awaited = self.waits_outside
@@ -266,7 +266,7 @@ def _run_now(coroutine: Any) -> None:
     raise AssertionError("starting a bare node waited")
 
 
-_ADVANCE = "time passes by await graph.clock.advance(1.0)"
+_ADVANCE = "to let time pass, write await graph.clock.advance(1.0)"
 _WAYS = {
     **dict.fromkeys(("advance", "sleep", "spin", "spin_once", "run", "wait"), _ADVANCE),
     "publish": "write graph.publisher(Type, topic).publish(message)",

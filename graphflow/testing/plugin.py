@@ -72,7 +72,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
         item.obj = _limited(item, item.obj)
         return (yield)
     result = yield
-    _raise_forgotten("; write async def in place of def")
+    _raise_forgotten("; write async def instead of def")
     return result
 
 
@@ -134,8 +134,8 @@ def _limited(item: pytest.Function, test: Test) -> Test:
         loop = asyncio.get_running_loop()
         if graph is not None and graph.loop not in (None, loop):
             raise RuntimeError(
-                "a fixture has started nodes in another event loop than that of the test: mark the test for the "
-                "plugin of the fixture, as with @pytest.mark.asyncio"
+                "a fixture has started nodes in an event loop other than the test's: mark the test for the "
+                "fixture's plugin, as with @pytest.mark.asyncio"
             )
         began = time.monotonic()
         try:
@@ -205,7 +205,7 @@ def _by_examples(item: pytest.Function, test: Test) -> Test:
     fixtures = item._fixtureinfo.name2fixturedefs.items()
     if users := [name for name, found in fixtures if found and "graph" in found[-1].argnames]:
         raise RuntimeError(
-            f"each example has a graph of its own, which {users[0]!r} cannot have: start its nodes in the test"
+            f"each example has its own graph, which {users[0]!r} cannot use: start its nodes in the test"
         )
     from hypothesis import HealthCheck, settings
 

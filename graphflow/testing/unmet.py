@@ -31,7 +31,7 @@ async def unmet(graph: Graph) -> list[str]:
     for (topic, tap), count in zip(graph.taps, before, strict=False):
         if len(tap) > count:
             came = f"{_messages(len(tap) - count)} of {topic}"
-            found.append(f"{came} came after the test had ended: await graph.settle() before it looks at them")
+            found.append(f"{came} arrived after the test had ended: await graph.settle() before inspecting them")
     found += _late(graph)
     found += _strangers(graph, cores)
     if has_stood_still:
@@ -47,7 +47,7 @@ def _unfed(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
     for core in cores:
         for name in sorted({e.name for e in core.endpoints if e.kind is Kind.SUBSCRIPTION} - published):
             if not is_hidden(name):
-                yield f"{core.full_name} listens to {name}, on which neither the test nor a node of it publishes"
+                yield f"{core.full_name} listens to {name}, to which neither the test nor its nodes publish"
 
 
 def _tasks(core: NodeCore) -> Iterator[Any]:
@@ -72,8 +72,8 @@ def _sleepers(cores: list[NodeCore]) -> Iterator[str]:
             if any(code_of(part) is asyncio.sleep.__code__ for part in awaited(task.get_coro())):
                 where = place_of(task)
                 yield (
-                    f"{core.full_name} waits{where and ' ' + where} for real time, which a test does not: write "
-                    "await self.clock.sleep(...) in place of asyncio.sleep"
+                    f"{core.full_name} waits{where and ' ' + where} for real time, but a test does not: write "
+                    "await self.clock.sleep(...) instead of asyncio.sleep"
                 )
 
 
@@ -99,8 +99,8 @@ def _late(graph: Graph) -> Iterator[str]:
     for topic, tap in graph.taps:
         if tap.missed:
             yield (
-                f"{_messages(tap.missed)} of {topic} came before graph.tap, which collects what comes later: "
-                "write it above what makes them"
+                f"{_messages(tap.missed)} of {topic} arrived before graph.tap, which collects later ones: "
+                "move it before the code that causes them"
             )
     for publisher, count, name in graph.unheard:
         yield f"the test published {_messages(count)} on {publisher.name} before {name} listened: start the node first"

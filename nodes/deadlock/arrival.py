@@ -1,9 +1,10 @@
 """Exercise 4, a first attempt: a follower that reports its arrival, and a scheduler that responds with the next goal.
 
-The scheduler's handler of `notify_arrival` sets the next goal and enables the follower *before* it answers. What that
-does to a follower that clears `enabled` *after* its call depends on its groups: without any it is a race (the enabling
-is undone, the turtle stops at the second point), in one group a deadlock across two nodes. A follower that clears
-`enabled` before the call, as `CarefulFollower` does, and lets the services run meanwhile, has neither.
+The scheduler's handler of `notify_arrival` sets the next goal and enables the follower *before* it responds. If the
+follower clears `enabled` *after* its call, the effect depends on its groups: without groups there is a race (the
+follower undoes its enabling, and the turtle stops at the second point), in one group a deadlock across two nodes. A
+follower that clears `enabled` before the call, as `CarefulFollower` does, and lets the services run meanwhile, has
+neither.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from ..position_controller import Point, PositionController
 
 
 class Follower(PositionController):
-    """Drives to its goal while it is enabled."""
+    """Drive to the goal while enabled."""
 
     notify_arrival = Client(Empty, "notify_arrival")
     enabled = False
@@ -44,7 +45,7 @@ class Follower(PositionController):
 
 
 class CarefulFollower(Follower):
-    """Is done with the old goal before it notifies anyone."""
+    """Clear `enabled` before notifying the scheduler."""
 
     async def arrived(self) -> None:
         if self.enabled:

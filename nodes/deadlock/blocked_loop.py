@@ -1,4 +1,4 @@
-"""A handler that waits for a response without `await`: the event loop stands still, and so does what could respond."""
+"""A handler that waits for a response without `await`: it blocks the event loop, which would have to receive it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 
 
 class Blocker(Node):
-    """Calls as in a script, line by line."""
+    """Call a service synchronously, as in a script."""
 
     adder = Client(AddTwoInts, "~/add")
 

@@ -1,7 +1,7 @@
-"""ROS 2's classic: the service is another node's, but its response needs a slot of the group that waits for it.
+"""ROS 2's classic deadlock: the response of another node's service needs a slot of the group that waits for it.
 
-In ROS 2 a client belongs to a group like everything else, so this happens by default. In graphflow,
-responses need no slot unless a client is put in a group, as here.
+In ROS 2 a client belongs to a group like everything else, so this happens by default. In graphflow, responses need no
+slot unless the client is in a group, as here.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 
 
 class Adder(Node):
-    """Adds two numbers."""
+    """Add two numbers."""
 
     @service(AddTwoInts, "add_two_ints")
     async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -20,7 +20,7 @@ class Adder(Node):
 
 
 class Asker(Node):
-    """Holds the group's only slot while the response waits for it."""
+    """Occupy the group's only slot while the response waits for it."""
 
     everything = Group(1)
     adder = Client(AddTwoInts, "add_two_ints", group=everything)

@@ -1,4 +1,4 @@
-"""Two nodes that call each other, each while holding the slot it would answer in: neither alone is wrong."""
+"""Two nodes that call each other while occupying the slot of their own service: neither alone is wrong."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from graphflow.msgs.std_srvs.srv import Trigger
 
 
 class Neighbour(Node):
-    """Asks the other node how it is, once a second."""
+    """Call the other node once a second."""
 
     default_group = Group(1)
     other = Client(Trigger, "other")
 
     @timer(1.0)
     async def greet(self) -> None:
-        await self.clock.sleep(0.6)  # more than half a period: so both are at it when they call
+        await self.clock.sleep(0.6)  # more than half a period, so that both have a handler running when they call
         response = await self.other.call(Trigger.Request())
         self.log.info("the other one says: %s", response.message)
 

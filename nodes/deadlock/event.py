@@ -1,4 +1,4 @@
-"""A goal whose body waits for an event that only a timer of the same group sets."""
+"""A goal that waits for an event, which only a timer in the same group sets."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 
 
 class Patient(Node):
-    """Accepts goals that end when the time has come, and has a clock that cannot say so."""
+    """Accept goals that wait for a timer, which cannot run meanwhile."""
 
     everything = Group(1)
     goals = ActionClient(Fibonacci, "~/wait")

@@ -1,7 +1,7 @@
-"""The course's first go-to-goal: until it is there, the goal's body looks at a pose that nothing can set.
+"""A first go-to-goal: the goal's handler polls a pose that no handler can update meanwhile.
 
-`BlockingDriver` waits by sleeping in a `def`, `AsyncDriver` by sleeping in an `async def`. What then stands still
-depends on the groups that the graph file puts their handlers in.
+`BlockingDriver` sleeps in a `def`, `AsyncDriver` in an `async def`. Which handlers are blocked depends on the groups
+that the graph file assigns.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ GOAL = (8.0, 5.544445)
 
 
 class Driver(Node):
-    """Drives straight ahead until the goal is near, and sends itself there at the start."""
+    """Drive straight ahead until the goal is near, and send itself there at the start."""
 
     node_name = "driver"
     cmd_vel = Publisher(Twist, "cmd_vel")
@@ -44,7 +44,7 @@ class Driver(Node):
 
 
 class BlockingDriver(Driver):
-    """Sleeps without releasing anything."""
+    """Sleep without releasing the loop or the group."""
 
     @action(GoToGoal, "go_to_goal")
     def execute(self, goal: GoToGoal.Handle) -> GoToGoal.Result:
@@ -56,7 +56,7 @@ class BlockingDriver(Driver):
 
 
 class AsyncDriver(Driver):
-    """Releases the loop while it sleeps, but not its group."""
+    """Sleep without releasing the group; the loop is free."""
 
     @action(GoToGoal, "go_to_goal")
     async def execute(self, goal: GoToGoal.Handle) -> GoToGoal.Result:

@@ -1,4 +1,4 @@
-"""A service that calls itself: a group with two slots allows a depth of two and no more."""
+"""A service that calls itself: a group with two slots allows a depth of two."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 
 
 class Factorial(Node):
-    """Multiplies by asking for the factorial of one less."""
+    """Compute a factorial by calling itself for the number below."""
 
     depth = Param(3, ge=0, doc="The number whose factorial is wanted.")
     answers = Group(2)

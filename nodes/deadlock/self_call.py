@@ -1,4 +1,4 @@
-"""A node that calls its own service from a handler of the same group: everyone's first deadlock with ROS 2."""
+"""A node that calls its own service from a handler of the same group: a common first deadlock in ROS 2."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 
 
 class Narcissus(Node):
-    """Calls itself, once a second, while it holds the only slot in which it could answer."""
+    """Call its own service once a second while occupying the service's only slot."""
 
     default_group = Group(1)
     adder = Client(AddTwoInts, "~/add")

@@ -57,5 +57,5 @@ async def test_random_goals_are_inside(graph: Graph) -> None:
 
 def test_lists_that_do_not_fit_are_refused() -> None:
     """There is no node then."""
-    with pytest.raises(ParameterError, match="via_x has 1 numbers and via_y 2"):
+    with pytest.raises(ParameterError, match="via_x has 1 numbers but via_y has 2"):
         Scheduler(via_x=[1.0], via_y=[1.0, 2.0])

@@ -85,8 +85,8 @@ async def test_without_a_terminal_it_says_what_to_do(
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     node = TurtleTeleop()
     await graph.start(node)
-    with pytest.raises(GraphflowError, match="no arrow keys here"):
+    with pytest.raises(GraphflowError, match="no arrow keys, since"):
         await node.wait_ended()
 
     assert node.name == "teleop_turtle"
-    assert any("run teleop_turtle in one of its own" in m for m in caplog.messages)
+    assert any("run teleop_turtle in its own terminal" in m for m in caplog.messages)

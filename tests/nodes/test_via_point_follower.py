@@ -51,7 +51,7 @@ async def test_points_are_parameters(graph: Graph, caplog: pytest.LogCaptureFixt
 @pytest.mark.parametrize(("xs", "ys"), [([1.0, 2.0], [1.0]), ([1.0], [1.0, 2.0]), ([], [])])
 def test_lists_that_do_not_fit_are_refused(xs: list[float], ys: list[float]) -> None:
     """There is no node then, and the error says how many there are of each."""
-    with pytest.raises(ParameterError, match=f"via_x has {len(xs)} numbers and via_y {len(ys)}"):
+    with pytest.raises(ParameterError, match=f"via_x has {len(xs)} numbers but via_y has {len(ys)}"):
         ViaPointFollower(via_x=xs, via_y=ys)
 
 

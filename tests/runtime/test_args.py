@@ -96,7 +96,7 @@ def test_values_for_one_node() -> None:
         (["-p", "rate=2"], "-p 'rate=2': write name:=value, for example rate:=2.0"),
         (["-p", ":=2"], "-p ':=2': write name:=value"),
         (["--params-file", "-r", "a:=b"], "--params-file needs a value after it, such as params.yaml"),
-        (["-p", "x:=", "100"], "-p 'x:=': the value is missing; write it behind := without a space"),
+        (["-p", "x:=", "100"], "-p 'x:=': the value is missing; write it after :=, without a space"),
         (["-p", "a:=1 b:=2"], "-p 'a:=1 b:=2': write one -p each: -p a:=1 -p b:=2"),
         (["-r", "nothing"], "'nothing' is not a remap rule; write it as from:=to"),
         (["-r", "__nod:=x"], "'__nod' is not a remap key; did you mean '__node:=x'?"),
@@ -105,7 +105,7 @@ def test_values_for_one_node() -> None:
             ["--ros-args", "-r", "__node:=my", "turtle"],
             "'turtle' is not a ROS argument; a value with a space in it goes",
         ),
-        (["--ros-args", "-p", "a:=b", "c"], "in it goes into quotes: -p 'a:=b c'"),
+        (["--ros-args", "-p", "a:=b", "c"], "contains a space: -p 'a:=b c'"),
         (["--ros-args", "—p", "a:=1"], "'—p' is not a ROS argument; write -p"),
         (["\u2013r", "a:=b"], "'\u2013r' is not a ROS argument; write -r"),
         (["--ros-args", "--remp", "a:=b"], "'--remp' is not a ROS argument; did you mean '--remap'?"),
@@ -137,14 +137,17 @@ def test_a_bare_rule_where_ros_knows_none() -> None:
 @pytest.mark.parametrize(
     ("line", "text"),
     [
-        ("- -ros-args -p a:=1", "'-ros-args' means nothing to ROS, nor does what follows (-p a:=1); write --ros-args"),
+        (
+            "- -ros-args -p a:=1",
+            "'-ros-args' means nothing to ROS, nor does the rest (-p a:=1); write --ros-args",
+        ),
         ("___ns:=/a", "'___ns:=/a' means nothing to ROS before --ros-args; write --ros-args -r __ns:=/a"),
         ("-p a:=1", "'a:=1' means nothing to ROS before --ros-args; write --ros-args -p a:=1"),
         ("a:=b --ros-args", "'a:=b' means nothing to ROS before --ros-args; write --ros-args -r a:=b"),
         ("--ros-args -p a:=1 -- b:=c", "'b:=c' means nothing to ROS before --ros-args; write --ros-args -r b:=c"),
         (
             "-params-file x.yaml",
-            "'-params-file' means nothing to ROS, nor does what follows (x.yaml); write --ros-args --params-file",
+            "'-params-file' means nothing to ROS, nor does the rest (x.yaml); write --ros-args --params-file",
         ),
         ("--ros-args -p a:=1 -r b:=c", ""),
         ("-p 8080 -r --params-file x.yaml --log-level debug", ""),

@@ -89,7 +89,7 @@ async def test_who_takes_a_signal_is_named(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Once: nodes that do not hear of their end cannot stop in order."""
-    monkeypatch.setattr(ending, "LOOK_AFTER", 0.0)
+    monkeypatch.setattr(ending, "CHECK_AFTER", 0.0)
     restore = catch_signals(asyncio.Event())
     try:
         signal.signal(signal.SIGTERM, vendors_handler)
@@ -99,7 +99,7 @@ async def test_who_takes_a_signal_is_named(
         restore()
     [record] = caplog.records
     line = vendors_handler.__code__.co_firstlineno
-    assert f"test_ending.vendors_handler ({__file__}:{line}) has taken the signal SIGTERM" in record.getMessage()
+    assert f"test_ending.vendors_handler ({__file__}:{line}) has replaced the handler of SIGTERM" in record.getMessage()
     assert "on_shutdown will not run" in record.getMessage()
 
 
@@ -107,7 +107,7 @@ async def test_handlers_that_stay_are_no_news(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Whoever looks finds ours."""
-    monkeypatch.setattr(ending, "LOOK_AFTER", 0.0)
+    monkeypatch.setattr(ending, "CHECK_AFTER", 0.0)
     restore = catch_signals(asyncio.Event())
     for _ in range(5):
         await asyncio.sleep(0)

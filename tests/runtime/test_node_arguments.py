@@ -21,9 +21,9 @@ WANTED = 'remap=["goal:=/turtle1/pose"]'
 @pytest.mark.parametrize(
     ("remap", "told"),
     [
-        ({"goal": "/turtle1/pose"}, f"remap= is a list: {WANTED}"),
-        ("goal:=/turtle1/pose", f"remap= is a list: {WANTED}"),
-        ([("goal", "/turtle1/pose")], f"a rule is a text: {WANTED}"),
+        ({"goal": "/turtle1/pose"}, f"remap= takes a list: {WANTED}"),
+        ("goal:=/turtle1/pose", f"remap= takes a list: {WANTED}"),
+        ([("goal", "/turtle1/pose")], f"a rule is a string: {WANTED}"),
     ],
 )
 def test_rules_in_another_shape(remap: Any, told: str) -> None:
@@ -49,8 +49,8 @@ def test_rules() -> None:
         ({"remappings": [("goal", "/turtle1/pose")]}, f"write {WANTED}"),
         ({"remaps": "goal:=/turtle1/pose"}, f"write {WANTED}"),
         ({"remaps": 3}, 'write remap=["from:=to"]'),
-        ({"params": {"gain": 2.0}}, "parameters go by their names: gain=2.0"),
-        ({"parameters": [{"gain": 2.0}]}, "parameters go by their names: gain=5.0"),
+        ({"params": {"gain": 2.0}}, "pass parameters by name: gain=2.0"),
+        ({"parameters": [{"gain": 2.0}]}, "pass parameters by name: gain=5.0"),
         ({"node_name": "bob"}, 'write name="bob"'),
         ({"gian": 2.0}, "did you mean 'gain'?"),
     ],
@@ -84,8 +84,11 @@ TALK = "import graphflow\n\nclass Talk(graphflow.Node):\n    pass\n\n"
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ('graphflow.run(Talk, namespace="/a")', 'namespace= is for the node: graphflow.run(Talk(namespace="/a")), or'),
-        ('graphflow.run(Talk(), ns="/a")', 'ns= is for the node: graphflow.run(Talk(namespace="/a")), or'),
+        (
+            'graphflow.run(Talk, namespace="/a")',
+            'namespace= belongs to the node: graphflow.run(Talk(namespace="/a")), or',
+        ),
+        ('graphflow.run(Talk(), ns="/a")', 'ns= belongs to the node: graphflow.run(Talk(namespace="/a")), or'),
         ("Talk().run()", "AttributeError: 'Talk' object has no attribute 'run'\n"),
     ],
 )
@@ -96,4 +99,4 @@ def test_a_program(tmp_path: Path, line: str, told: str) -> None:
     assert told in done.stderr
     assert done.returncode == (1 if "Attribute" in told else 2)
     if "Attribute" in told:
-        assert done.stderr.endswith("has no attribute 'run'; nodes are run by graphflow.run(Talk)\n")
+        assert done.stderr.endswith("has no attribute 'run'; run nodes with graphflow.run(Talk)\n")

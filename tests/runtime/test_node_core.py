@@ -287,7 +287,7 @@ async def test_a_node_is_started_once(graph: Graph) -> None:
     with pytest.raises(ClosedError, match="node /talker is already running"):
         await graph.start(node)
     await graph.stop(node)
-    with pytest.raises(ClosedError, match="node /talker has been stopped; make a new one"):
+    with pytest.raises(ClosedError, match="node /talker has been stopped; create a new one"):
         await graph.start(node)
 
 

@@ -75,7 +75,7 @@ def context_of(clock: ManualClock | None = None) -> Context:
 
 async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch) -> None:
     """As in a notebook, or in a test; it says what to write there, and names the line."""
-    begins = r"^\S+test_run\.py:\d+: graphflow\.run starts an event loop, and one runs here already; write "
+    begins = r"^\S+test_run\.py:\d+: graphflow\.run starts an event loop, but one is already running here; write "
     with pytest.raises(RuntimeError, match=rf"{begins}await graph\.start\(Talker\(\)\), with graph as an argument"):
         run(Talker)
     monkeypatch.delitem(sys.modules, "_pytest")
@@ -89,9 +89,7 @@ def test_run_without_nodes(caplog: pytest.LogCaptureFixture, monkeypatch: pytest
     monkeypatch.setattr("graphflow.runtime.run.serve", AsyncMock())
     run(args=[])
     assert caplog.messages[0].startswith(f"{__file__}:")
-    assert caplog.messages[0].endswith(
-        ": graphflow.run was given no node, so it runs none; write graphflow.run(Talker)"
-    )
+    assert caplog.messages[0].endswith(": graphflow.run was called without a node; write graphflow.run(Talker)")
 
 
 async def test_nodes_run_for_the_length_of_the_block(graphflow_runner: asyncio.Runner) -> None:

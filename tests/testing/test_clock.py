@@ -147,7 +147,7 @@ async def test_what_never_rests_is_an_error(graphflow_runner: asyncio.Runner, mo
             await asyncio.sleep(0)
 
     running = asyncio.create_task(restless())
-    with pytest.raises(RuntimeError, match="does not come to rest"):
+    with pytest.raises(RuntimeError, match="does not settle"):
         await settle()
     running.cancel()
     await settle()

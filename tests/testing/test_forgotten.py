@@ -19,8 +19,8 @@ async def test_a_call_that_is_not_awaited(graph: Graph) -> None:
     graph.clock.advance(1.0)  # type: ignore[unused-coroutine]
     coroutine = graph.settle()
     assert told() == [
-        "this does nothing until it is awaited; write await graph.clock.advance(1.0)",
-        "this does nothing until it is awaited; write await graph...settle(...)",
+        "this has no effect until it is awaited; write await graph.clock.advance(1.0)",
+        "this has no effect until it is awaited; write await graph...settle(...)",
     ]
     assert told() == []
     del coroutine

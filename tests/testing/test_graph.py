@@ -255,7 +255,9 @@ async def test_a_field_of_a_tap(graph: Graph) -> None:
     with pytest.raises(AttributeError) as caught:
         _ = tap.data
     explain(caught.value)
-    assert str(caught.value).endswith("a tap is a sequence of messages, which have it: write .latest.data, or [0].data")
+    assert str(caught.value).endswith(
+        "a tap is a sequence of messages, which have this attribute: write .latest.data, or [0].data"
+    )
 
 
 async def test_the_line_of_a_test(graph: Graph) -> None:
@@ -267,7 +269,7 @@ async def test_the_line_of_a_test(graph: Graph) -> None:
 
 def test_a_test_without_an_event_loop(graph: Graph) -> None:
     """It is told how it gets one."""
-    with pytest.raises(RuntimeError, match="write async def in place of def"):
+    with pytest.raises(RuntimeError, match="write async def instead of def"):
         graph.tap(String, "out")
 
 
@@ -321,5 +323,5 @@ async def test_an_assertion_that_ends_a_node(graph: Graph) -> None:
 
 def test_without_an_event_loop() -> None:
     """The test is a plain function: the way is told."""
-    with pytest.raises(RuntimeError, match="write async def in place of def"):
+    with pytest.raises(RuntimeError, match="write async def instead of def"):
         Graph().tap(String, "/words")

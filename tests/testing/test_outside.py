@@ -105,7 +105,7 @@ async def test_a_thread_that_does_not_end_is_named(graph: Graph, monkeypatch: py
         "to_thread": lambda node: asyncio.to_thread(for_ever, ends),
     }
     await graph.start(Worker(ways[by]))
-    told = "the graph does not come to rest: after 0.05 s it still waits for for_ever in a thread; put a fake"
+    told = "the graph does not settle: after 0.05 s it still waits for for_ever in a thread; replace it with a fake"
     with pytest.raises(RuntimeError, match=re.escape(told)):
         await graph.clock.advance(0.1)
     graph.waits_outside = False

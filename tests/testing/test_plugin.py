@@ -149,8 +149,8 @@ def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(
         [
             "*assert *'1' == '2'*",
-            "*test_it.py:15: this does nothing until it is awaited; write await graph.clock.advance(2.0)*",
-            "*test_it.py:18: this * write await graph.start(Counter()); write async def in place of def*",
+            "*test_it.py:15: this has no effect until it is awaited; write await graph.clock.advance(2.0)*",
+            "*test_it.py:18: this * write await graph.start(Counter()); write async def instead of def*",
             "*call it: await settle()*",
             "*'Graph' object has no attribute 'advance'; write await graph.clock.advance(1.0)*",
         ]
@@ -352,7 +352,7 @@ def test_nodes_of_another_loop_are_refused(pytester: pytest.Pytester) -> None:
 
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
-        ["*RuntimeError: a fixture has started nodes in another event loop*@pytest.mark.asyncio"]
+        ["*RuntimeError: a fixture has started nodes in an event loop other than*@pytest.mark.asyncio"]
     )
 
 
@@ -416,7 +416,7 @@ def test_generated_examples_share_no_node(pytester: pytest.Pytester) -> None:
     )
 
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*each example has a graph of its own, which 'tap' cannot have*"])
+    result.stdout.fnmatch_lines(["*each example has its own graph, which 'tap' cannot use*"])
 
 
 def test_each_test_has_a_loop_of_its_own(pytester: pytest.Pytester) -> None:

@@ -35,7 +35,7 @@ async def test_messages_on_their_way(graph: Graph) -> None:
     heard, words = graph.tap(String, "/out"), graph.publisher(String, "/words")
     words.publish(String(data="a"))
     assert await unmet(graph) == [
-        "1 message of /out came after the test had ended: await graph.settle() before it looks at them"
+        "1 message of /out arrived after the test had ended: await graph.settle() before inspecting them"
     ]
     assert len(heard) == 1
     assert await unmet(graph) == []
@@ -88,8 +88,8 @@ async def test_waits_in_vain(graph: Graph) -> None:
     await graph.clock.advance(1.0)
     line = Asker.sleep.__code__.co_firstlineno + 2
     assert await unmet(graph) == [
-        f"/asker waits (test_unmet.py:{line} in sleep) for real time, which a test does not: write "
-        "await self.clock.sleep(...) in place of asyncio.sleep",
+        f"/asker waits (test_unmet.py:{line} in sleep) for real time, but a test does not: write "
+        "await self.clock.sleep(...) instead of asyncio.sleep",
         "/asker waits for /add, which no node of the test offers",
         "/asker waits for /count, which no node of the test offers",
     ]
@@ -113,10 +113,10 @@ async def test_what_came_too_late(graph: Graph) -> None:
     await graph.start(ear)
     early.publish(String())
     late = [text for text in await unmet(graph) if "before" in text]
-    way = "which collects what comes later: write it above what makes them"
+    way = "which collects later ones: move it before the code that causes them"
     assert late == [
-        f"3 messages of /words came before graph.tap, {way}",
-        f"1 message of /out came before graph.tap, {way}",
+        f"3 messages of /words arrived before graph.tap, {way}",
+        f"1 message of /out arrived before graph.tap, {way}",
         "the test published 2 messages on /early before /ear listened: start the node first",
     ]
 
@@ -136,7 +136,7 @@ async def test_topics_that_a_silent_node_listens_to(graph: Graph) -> None:
     """Are told where a tap has got nothing, and nothing else explains it."""
     await graph.start(Echo())
     graph.tap(String, "/out")
-    told = "/echo listens to /words, on which neither the test nor a node of it publishes"
+    told = "/echo listens to /words, to which neither the test nor its nodes publish"
     assert await unmet(graph) == [told]
     graph.publisher(String, "/words")
     assert await unmet(graph) == []

@@ -36,7 +36,7 @@ from graphflow.runtime.endpoints.service_client import DISCOVERY_GRACE, ServiceC
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.mistakes.network.other_domains import alone_here
 from graphflow.runtime.mistakes.network.unserved import Unserved, nobody_acts
-from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, SpeaksRos
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
 from graphflow.runtime.mistakes.unentered import Unentered
 from graphflow.runtime.part import Host, Part
 from graphflow.times import to_ns
@@ -56,7 +56,7 @@ FEEDBACK_KEPT = 100
 """Feedback messages buffered for a slow reader; the oldest are dropped."""
 
 
-class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
+class ClientGoalHandle(AttributeHints, PendingGoal, Generic[Goal, Result, Feedback]):
     """A goal, as its client sees it."""
 
     def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
@@ -85,9 +85,9 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
     def _hint(self, name: str) -> str:
         action: Any = self._client.type
         if name in action.Result.__struct_fields__:
-            return f"that is the goal; its result is (await goal.result()).{name}"
+            return f"that is the goal; its result has it: (await goal.result()).{name}"
         is_feedback = name in action.Feedback.__struct_fields__
-        return "that is the goal; its feedback is read: async for feedback in goal.feedback():" if is_feedback else ""
+        return "that is the goal; read its feedback with async for feedback in goal.feedback():" if is_feedback else ""
 
     @property
     def done(self) -> bool:

@@ -32,7 +32,7 @@ from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.endpoints.services import ServiceServer
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
-from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, SpeaksRos
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
 from graphflow.runtime.part import Host, Part
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire import attachment
@@ -45,13 +45,13 @@ STATUS_KEPT = 10.0
 """Seconds that an ended goal stays in the status array, as in ROS 2."""
 RESULTS_KEPT = 1_000
 _RETURNED_ALL_THE_SAME = (
-    "%s: %r was cancelled, and its handler returned a result all the same: the goal succeeds. To end it as cancelled, "
-    "set goal.partial and let CancelledError pass%s"
+    "%s: %r was cancelled, but its handler returned a result: the goal succeeds. To end it as cancelled, "
+    "set goal.partial and let CancelledError propagate%s"
 )
 _WHY = {GoalEvent.NEWER: "a newer goal has come"}
 
 
-class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
+class ServedGoal(AttributeHints, ServerGoalHandle[Goal, Result, Feedback]):
     """A goal, as its server and handler see it."""
 
     def __init__(
@@ -74,7 +74,9 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
         return f"<goal {self._id.hex()[:8]} of {self._server.name}: {self.status.name}>"
 
     def _hint(self, name: str) -> str:
-        return f"the client's wish is goal.request.{name}" if name in type(self.request).__struct_fields__ else ""
+        return (
+            f"the client's request has it: goal.request.{name}" if name in type(self.request).__struct_fields__ else ""
+        )
 
     @property
     def goal_id(self) -> bytes:
@@ -243,18 +245,18 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         if self.idle_because:
             return self.idle_because
         if self.runner is None or self.runner.closed:
-            return "the server stops"
+            return "the server is stopping"
         if self.book.has_room():
             return ""
         if self.rules.policy == "queue":
-            return f"{self.rules.queue_depth} goals wait for their turn already"
-        return "another goal is under way, and policy='reject' allows one at a time; others: queue, preempt, parallel"
+            return f"{self.rules.queue_depth} goals are waiting already"
+        return "another goal is running, and policy='reject' allows only one; other policies: queue, preempt, parallel"
 
     async def _decide(self, goal_id: bytes, request: Goal, client: bytes) -> str:
         """Decide whether to accept a goal; returns the reason for a rejection, "" if accepted."""
         goal = ServedGoal(self, goal_id, request, self.book.ask(goal_id, client))
         self._deciding[goal_id] = goal
-        reason = "the server stops"
+        reason = "the server is stopping"
         try:
             reason = await self._reject_reason(request) or self._why_full()
         finally:
@@ -287,7 +289,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         if isinstance(answer, str):
             return answer
         if answer is None:
-            return f"{name} returned None: it has to return True, or False, or the reason why not"
+            return f"{name} returned None: it must return True, False, or the reason for the rejection"
         return "" if answer else f"{name} returned {answer!r}"
 
     def _cancel_goal(self, request: Any, client: bytes) -> Any:

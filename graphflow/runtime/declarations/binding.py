@@ -202,7 +202,7 @@ class _Follower:
         length, began_ns = (0, now) if turn is None or turn.is_over else (turn.length + 1, turn.began_ns)
         if length >= CHAIN and now - began_ns < to_ns(1.0):
             text = "%s follows %r, and each change causes another, %d in a row: further changes are not followed; "
-            text += "set a parameter there only where it differs, as in `if new > 2.0: self.%s = 2.0`"
+            text += "set a parameter there only if it differs, as in `if new > 2.0: self.%s = 2.0`"
             self._host.log.error(text, self._method.__name__, self._parameter, CHAIN, self._parameter)
             return
         self._turns.append(_Turn(change, length, began_ns))

@@ -24,9 +24,9 @@ DEPTH = 10
 def check_node(node: object) -> None:
     """Check that an object passed to `run` is a node."""
     if isinstance(node, type):
-        raise DeclarationError(f"{node.__name__} is a class; make a node of it: {node.__name__}()")
+        raise DeclarationError(f"{node.__name__} is a class; create a node:{node.__name__}()")
     if isinstance(node, (list, tuple)):
-        raise DeclarationError("nodes are given one by one, as in running(talker, listener), or as running(*nodes)")
+        raise DeclarationError("pass nodes as separate arguments, as in running(talker, listener) or running(*nodes)")
     if not hasattr(type(node), "_core_class"):
         raise DeclarationError(f"{node!r} is not a node: an object of a class that derives from graphflow.Node")
 
@@ -61,7 +61,7 @@ def _kind_hint(type_: Any, kind: type) -> str:
     if other is None:
         return ""
     return (
-        f"; that is a {other.__name__.lower()} class, and {kind.__name__.lower()} classes are such as {examples[kind]}"
+        f"; that is a {other.__name__.lower()} class; an example of a {kind.__name__.lower()} class is {examples[kind]}"
     )
 
 
@@ -126,7 +126,7 @@ def check_function(fn: Any, what: str, example: str) -> None:
     if inspect.iscoroutine(fn):
         fn.close()  # or Python warns that it was never awaited, too
         shown = f"what {fn.__qualname__}(...) returns"
-    raise DeclarationError(f"{what} takes the function itself and then its arguments: {example}, not {shown}")
+    raise DeclarationError(f"{what} takes the function itself, then its arguments: {example}, not {shown}")
 
 
 def check_plain(fn: Any, what: str) -> None:
@@ -134,7 +134,7 @@ def check_plain(fn: Any, what: str) -> None:
     if inspect.iscoroutinefunction(fn):
         name = fn.__name__
         raise DeclarationError(
-            f"{what} runs a `def` in a thread, and {name} is an `async def`: await {name}(...) itself"
+            f"{what} runs a `def` in a thread, but {name} is an `async def`: await {name}(...) directly"
         )
 
 
@@ -173,7 +173,7 @@ def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: P
         if isinstance(found, type) and issubclass(found, Message) and not issubclass(wanted, found):
             raise DeclarationError(
                 f"{place}: {what}: {fn.__name__} is given {called}, and its argument "
-                f"{parameter.name!r} is annotated {found.__name__.replace('_', '.')}; write the same in both"
+                f"{parameter.name!r} is annotated {found.__name__.replace('_', '.')}; use the same type in both"
             )
 
 
@@ -189,7 +189,7 @@ def check_returned(fn: Any, called: str, wanted: type, what: str, place: Place) 
     plain = next((kind for kind in _PLAIN if annotation in (kind, kind.__name__)), None)
     if is_message or plain is not None:
         name = (plain or found).__name__.replace("_", ".")
-        raise DeclarationError(f"{place}: {what}: {fn.__name__} returns {called}, and is annotated to return {name}")
+        raise DeclarationError(f"{place}: {what}: {fn.__name__} returns {called}, but is annotated to return {name}")
 
 
 _PLAIN = (str, int, float, bool, bytes, list, dict, tuple)

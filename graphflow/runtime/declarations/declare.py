@@ -19,7 +19,7 @@ from graphflow.qos import Qos
 from graphflow.runtime.call_site import here
 from graphflow.runtime.declarations.checks import check_group, check_name, check_on_event, check_qos, check_type
 from graphflow.runtime.endpoints.service_events import Introspection
-from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, in_our_words
+from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, with_argument_hints
 from graphflow.runtime.parameters.params import Parameters
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Group:
         DeclarationError: The limit or the policy is invalid.
     """
 
-    @in_our_words
+    @with_argument_hints
     def __init__(
         self, limit: int | None = 1, when_full: WhenFull = "wait", *, thread: bool = False, name: str = ""
     ) -> None:
@@ -126,7 +126,7 @@ class Publisher(Held, Generic[M]):
 
     MAKER = 'create_publisher(Type, "topic", 10), or declare Publisher(Type, "topic") in the class'
 
-    @in_our_words
+    @with_argument_hints
     def __init__(
         self,
         type: type[M],  # noqa: A002
@@ -160,7 +160,7 @@ class Subscription(Held, Generic[M]):
 
     MAKER = 'create_subscription(Type, "topic", self.heard, 10), or declare @subscription(Type, "topic") on the method'
 
-    @in_our_words
+    @with_argument_hints
     def __init__(
         self,
         type: type[M],  # noqa: A002
@@ -201,7 +201,7 @@ class Client(Held, Generic[Request, Response]):
 
     MAKER = 'create_client(Type, "name"), or declare Client(Type, "name") in the class'
 
-    @in_our_words
+    @with_argument_hints
     def __init__(
         self,
         type: type[Service[Request, Response]],  # noqa: A002
@@ -229,7 +229,7 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
 
     MAKER = 'create_action_client(Type, "name"), or declare ActionClient(Type, "name") in the class'
 
-    @in_our_words
+    @with_argument_hints
     def __init__(self, type: type[Action[Goal, Result, Feedback]], name: str) -> None:  # noqa: A002
         self.place = here()
         check_type(type, Action, "ActionClient", self.place)
@@ -262,7 +262,7 @@ class Param(Held, Generic[V]):
         DeclarationError: The default has no parameter type, or does not fit its limits.
     """
 
-    @in_our_words
+    @with_argument_hints
     def __init__(
         self,
         default: V,

@@ -5,13 +5,21 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import cache
-from typing import Any, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import DeclarationError, Place
-from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, GroupInfo, HandlerInfo, Interface, Parameter
+from graphflow.interface import (
+    COMMON_PARAMETERS,
+    EndpointInfo,
+    EndpointKind,
+    GroupInfo,
+    HandlerInfo,
+    Interface,
+    Parameter,
+)
 from graphflow.runtime.declarations.declare import (
     HOOK_MARK,
     ActionClient,
@@ -87,7 +95,8 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
 def hooks(cls: type) -> frozenset[str]:
     """Return the methods called outside any handler: parameter checks, event callbacks and goal decisions."""
     found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
-    called: list[Any] = [getattr(declared, "on_event", None) for declared in held(cls).values()]
+    endpoints = (declared for declared in held(cls).values() if isinstance(declared, (Publisher, Subscription)))
+    called: list[object] = [declared.on_event for declared in endpoints]
     for handler in handlers(cls).values():
         called += [handler.on_event]
         called += [handler.action.accept, handler.action.cancellable] if handler.action else []
@@ -119,7 +128,7 @@ def check_attributes(cls: type, node: type) -> None:
         DeclarationError: An attribute does.
     """
     taken = reserved(node)
-    found: dict[str, Any] = {**held(cls), **handlers(cls), **groups(cls)}
+    found: dict[str, object] = {**held(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
         function = getattr(value, "__func__", value)  # unwraps classmethod and staticmethod
         is_override = inspect.isfunction(function) and "super" in function.__code__.co_names
@@ -139,8 +148,14 @@ def check_attributes(cls: type, node: type) -> None:
 
 def place_of(cls: type) -> Place:
     """Return the place of a class statement."""
+    return Place(_file_of(cls), vars(cls).get("__firstlineno__", 0))
+
+
+def _file_of(cls: type) -> str:
+    """Return the file of a class's module, or the module's name."""
     module = sys.modules.get(cls.__module__)
-    return Place(getattr(module, "__file__", None) or cls.__module__, vars(cls).get("__firstlineno__", 0))
+    file = None if module is None else vars(module).get("__file__")
+    return file or cls.__module__
 
 
 def groups(cls: type) -> dict[str, Group]:
@@ -148,7 +163,7 @@ def groups(cls: type) -> dict[str, Group]:
     return {name: value for name, value in _members(cls) if isinstance(value, Group)}
 
 
-def _members(cls: type) -> Iterator[tuple[str, Any]]:
+def _members(cls: type) -> Iterator[tuple[str, object]]:
     for parent in reversed(cls.__mro__):
         yield from vars(parent).items()
 
@@ -170,58 +185,14 @@ def interface_of(cls: type[NodeClass]) -> Interface:
     Raises:
         DeclarationError: Two declarations contradict each other.
     """
-    line: int = vars(cls).get("__firstlineno__", 0)
-    try:
-        place = Place(inspect.getsourcefile(cls) or "", line or inspect.getsourcelines(cls)[1])
-    except (OSError, TypeError):
-        place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
-    endpoints: list[EndpointInfo] = []
-    params: dict[str, Parameter] = {}
-    kinds = {
-        Publisher: "publisher",
-        Subscription: "subscription",
-        Client: "client",
-        ActionClient: "action client",
-    }
-    for attribute, declared in held(cls).items():
-        if isinstance(declared, Param):
-            p = declared.parameter
-            if p.name in COMMON_PARAMETERS:
-                raise DeclarationError(
-                    f"{p.place}: every node has the parameter {p.name!r}; give this one another name"
-                )
-            if p.name in params:
-                raise DeclarationError(f"{p.place}: {cls.__name__} declares the parameter {p.name!r} twice")
-            params[p.name] = p
-        elif isinstance(declared, (Publisher, Subscription, Client, ActionClient)):
-            is_topic = isinstance(declared, (Publisher, Subscription))
-            type_name = declared.type.SCHEMA.name if is_topic else declared.type.NAME  # type: ignore[union-attr]
-            kind: Any = kinds[type(declared)]
-            group = declared.group.name if isinstance(declared, Client) and declared.group is not None else ""
-            endpoints.append(EndpointInfo(kind, declared.name, type_name, attribute, declared.place, group))
-    methods = handlers(cls)
+    place = _source_place(cls)
+    params, endpoints, methods = _params(cls), _attributes(cls), handlers(cls)
     for attribute, handler in methods.items():
-        for name in handler.rate.parameters() if handler.rate is not None else ():
-            if name not in params:
-                text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
-                raise DeclarationError(f"{handler.place}: {text}")
+        _check_rate(cls, attribute, handler, params)
         if handler.kind in ("subscription", "service", "action"):
-            type_name = handler.type.SCHEMA.name if handler.kind == "subscription" else handler.type.NAME
-            kind = handler.kind
-            same = [e for e in endpoints if (e.kind, e.name) == (kind, handler.name) and kind != "subscription"]
-            if same:
-                raise DeclarationError(
-                    f"{handler.place}: {attribute} offers the {kind} {handler.name!r}, which {same[0].attribute} "
-                    f"({same[0].place}) offers already; a client reaches one of them only"
-                )
-            endpoints.append(EndpointInfo(kind, handler.name, type_name, attribute, handler.place))
+            endpoints.append(_method(attribute, handler, endpoints))
     dynamic = cls.dynamic_names
-    for pattern in () if isinstance(dynamic, bool) else dynamic:
-        if pattern[:1] not in ("/", "*", "?", "["):
-            raise DeclarationError(
-                f"{place}: dynamic_names: {pattern!r} would match nothing, since patterns are compared with full "
-                f"names; write '*/{pattern}'"
-            )
+    _check_patterns(place, () if isinstance(dynamic, bool) else dynamic)
     return Interface(
         class_path=f"{cls.__module__}:{cls.__qualname__}",
         node_name=default_name(cls),
@@ -234,6 +205,78 @@ def interface_of(cls: type[NodeClass]) -> Interface:
         dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
         is_managed=cls.is_managed,
     )
+
+
+def _source_place(cls: type) -> Place:
+    line: int = vars(cls).get("__firstlineno__", 0)
+    try:
+        return Place(inspect.getsourcefile(cls) or "", line or inspect.getsourcelines(cls)[1])
+    except (OSError, TypeError):  # no source, as in an interactive session
+        return Place(_file_of(cls))
+
+
+def _params(cls: type) -> dict[str, Parameter]:
+    """Return the parameters of a class by name. Raises DeclarationError for a name that is taken."""
+    found: dict[str, Parameter] = {}
+    for parameter in (declared.parameter for declared in held(cls).values() if isinstance(declared, Param)):
+        if parameter.name in COMMON_PARAMETERS:
+            raise DeclarationError(
+                f"{parameter.place}: every node has the parameter {parameter.name!r}; rename this one"
+            )
+        if parameter.name in found:
+            raise DeclarationError(f"{parameter.place}: {cls.__name__} declares the parameter {parameter.name!r} twice")
+        found[parameter.name] = parameter
+    return found
+
+
+def _attributes(cls: type) -> list[EndpointInfo]:
+    """Return the endpoints that are declared as attributes."""
+    found: list[EndpointInfo] = []
+    kind: EndpointKind
+    for attribute, declared in held(cls).items():
+        match declared:
+            case Publisher():
+                kind, type_name, group = "publisher", declared.type.SCHEMA.name, None
+            case Subscription():
+                kind, type_name, group = "subscription", declared.type.SCHEMA.name, None
+            case Client():
+                kind, type_name, group = "client", declared.type.NAME, declared.group
+            case ActionClient():
+                kind, type_name, group = "action client", declared.type.NAME, None
+            case _:
+                continue
+        name = "" if group is None else group.name
+        found.append(EndpointInfo(kind, declared.name, type_name, attribute, declared.place, name))
+    return found
+
+
+def _check_rate(cls: type, attribute: str, handler: Handler, params: Container[str]) -> None:
+    for name in handler.rate.parameters() if handler.rate is not None else ():
+        if name not in params:
+            text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
+            raise DeclarationError(f"{handler.place}: {text}")
+
+
+def _method(attribute: str, handler: Handler, endpoints: Iterable[EndpointInfo]) -> EndpointInfo:
+    """Return the endpoint of a handler. Raises DeclarationError if a service or action is offered twice."""
+    assert handler.kind in ("subscription", "service", "action")
+    same = [e for e in endpoints if (e.kind, e.name) == (handler.kind, handler.name) and e.kind != "subscription"]
+    if same:
+        raise DeclarationError(
+            f"{handler.place}: {attribute} offers the {handler.kind} {handler.name!r}, which {same[0].attribute} "
+            f"({same[0].place}) already offers; a client reaches only one of them"
+        )
+    type_name = handler.type.SCHEMA.name if handler.kind == "subscription" else handler.type.NAME
+    return EndpointInfo(handler.kind, handler.name, type_name, attribute, handler.place)
+
+
+def _check_patterns(place: Place, patterns: Iterable[str]) -> None:
+    for pattern in patterns:
+        if pattern[:1] not in ("/", "*", "?", "["):
+            raise DeclarationError(
+                f"{place}: dynamic_names: {pattern!r} would match nothing, since patterns are compared with full "
+                f"names; write '*/{pattern}'"
+            )
 
 
 def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerInfo:

@@ -29,7 +29,7 @@ from graphflow.runtime.declarations.checks import (
 )
 from graphflow.runtime.declarations.declare import HOOK_MARK, Group, Param, ParamHook
 from graphflow.runtime.endpoints.service_events import Introspection
-from graphflow.runtime.mistakes.rclpy_words import in_our_words
+from graphflow.runtime.mistakes.rclpy_words import with_argument_hints
 
 M = TypeVar("M", bound=Message)
 F = TypeVar("F", bound=Callable[..., Any])
@@ -91,8 +91,8 @@ class Rate:
                     hook = getattr(source, HOOK_MARK, None)
                     if isinstance(hook, ParamHook):
                         raise TypeError(
-                            f"{source.__name__!r} is now the method of {hook.place}, which has taken the name of "
-                            f"the Param of {hook.param.place}; give the method another name"
+                            f"{source.__name__!r} is now the method of {hook.place}, which has replaced the "
+                            f"Param of {hook.param.place}; rename the method"
                         )
                     raise TypeError(f"a period or frequency is a number or a Param, not {source!r}")
                 return None if source is None else float(source)
@@ -111,7 +111,7 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
         kinds = f"@{other.kind} and @{handler.kind}"
         raise DeclarationError(f"{handler.place}: {name} is declared twice, as {kinds}; split it into two methods")
     if inspect.isgeneratorfunction(fn) or inspect.isasyncgenfunction(fn):
-        raise DeclarationError(f"{handler.place}: {name} has a yield in it, so its body would never run")
+        raise DeclarationError(f"{handler.place}: {name} contains yield, so its body would never run")
     if handler.thread and inspect.iscoroutinefunction(fn):
         raise DeclarationError(f"{handler.place}: {name}: thread=True is for `def`, an `async def` runs on the loop")
     positional = [
@@ -146,7 +146,7 @@ def _expected(handler: Handler) -> dict[str, type]:
     return {f"{handler.type.__name__}.{part}": getattr(handler.type, part) for part in parts}
 
 
-@in_our_words
+@with_argument_hints
 def subscription(
     type: type[M],  # noqa: A002
     name: str,
@@ -189,7 +189,7 @@ def subscription(
     return lambda fn: _mark(fn, handler, range(2, 4))
 
 
-@in_our_words
+@with_argument_hints
 def timer(
     period: float | Param[Any] | None = None,
     *,
@@ -222,7 +222,7 @@ def timer(
     return lambda fn: _mark(fn, handler, range(1, 3))
 
 
-@in_our_words
+@with_argument_hints
 def service(
     type: type[Service[Request, Response]],  # noqa: A002
     name: str,
@@ -246,7 +246,7 @@ def service(
     return lambda fn: _mark(fn, handler, range(2, 4))
 
 
-@in_our_words
+@with_argument_hints
 def action(
     type: type[Action[Goal, Result, Feedback]],  # noqa: A002
     name: str,
@@ -290,7 +290,7 @@ def action(
     return lambda fn: _mark(fn, handler, range(2, 3))
 
 
-@in_our_words
+@with_argument_hints
 def task(fn: F) -> F:
     """Run the method in the background once the node is up. An error in it ends the node."""
     place = here()

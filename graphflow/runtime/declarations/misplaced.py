@@ -34,12 +34,12 @@ def check_misplaced(cls: type) -> None:
     annotations = vars(cls).get("__annotations__", {})
     for attribute, value in annotations.items() if isinstance(annotations, Mapping) else ():
         if isinstance(value, Held):
-            raise DeclarationError(f"{value.place}: {attribute} is only annotated; write = in place of the colon")
+            raise DeclarationError(f"{value.place}: {attribute} is only annotated; write = instead of the colon")
         if (inner := next(_handlers_in(value), None)) is not None:
             raise DeclarationError(f"{inner.place}: @{inner.kind} goes above a method; {attribute} is only annotated")
         if isinstance(value, str) and _declares(value, vars(sys.modules[cls.__module__])):
             place = f"{declared.place_of(cls)}: {cls.__name__}.{attribute}"
-            raise DeclarationError(f"{place} is only annotated, as {value}; write = in place of the colon")
+            raise DeclarationError(f"{place} is only annotated, as {value}; write = instead of the colon")
 
 
 def _declares(annotation: str, space: Mapping[str, Any]) -> bool:
@@ -94,7 +94,7 @@ def _refuse_wrapped(attribute: str, value: Any, inner: Any) -> None:
     else:
         name = getattr(value, "__qualname__", type(value).__qualname__).partition(".<locals>")[0].rpartition(".")[2]
         way = f"{own} goes above @{name}, or functools.wraps(fn) into what that returns"
-    raise DeclarationError(f"{mark.place}: {attribute} would never run, as the decorator above hides it; {way}")
+    raise DeclarationError(f"{mark.place}: {attribute} would never run, because the decorator above hides it; {way}")
 
 
 def _refuse_collected(attribute: str, value: Any, known: Collection[int]) -> None:
@@ -104,7 +104,7 @@ def _refuse_collected(attribute: str, value: Any, known: Collection[int]) -> Non
         kind = type(item).__name__
         if isinstance(value, tuple) and len(value) == 1:
             raise DeclarationError(
-                f"{item.place}: {attribute} is a tuple, by the comma behind {kind}(...); leave it out"
+                f"{item.place}: {attribute} is a tuple because of the comma after {kind}(...); remove it"
             )
         way = "give each an attribute of its own"
         if not isinstance(item, Param):
@@ -125,7 +125,7 @@ def check_made(node: object) -> None:
             way = f"write {attribute} = {kind}(...) in the body of the class"
             if not isinstance(value, Param):
                 way += f", or self.{attribute} = self.{value.MAKER.partition('(')[0]}(...) here"
-            raise DeclarationError(f"{value.place}: self.{attribute} is no {kind} of the node; {way}")
+            raise DeclarationError(f"{value.place}: self.{attribute} is not a {kind} of the node; {way}")
 
 
 def check_hooks(cls: type) -> None:
@@ -168,5 +168,5 @@ def check_module(cls: type) -> None:
     for value in values:
         mark = getattr(value, MARK, None) if inspect.isfunction(value) else None
         if isinstance(mark, Handler) and value.__module__ == cls.__module__ and id(value) not in known:
-            text = f"@{mark.kind} goes on a method, and {value.__name__} stands outside of a class; indent it into one"
+            text = f"@{mark.kind} goes on a method, and {value.__name__} is outside a class; indent it into one"
             raise DeclarationError(f"{mark.place}: {text}")

@@ -11,7 +11,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.runtime.mistakes.overruns import Overruns
-from graphflow.runtime.mistakes.rclpy_words import in_our_words
+from graphflow.runtime.mistakes.rclpy_words import with_argument_hints
 from graphflow.runtime.part import Host, Part
 
 
@@ -31,7 +31,7 @@ class Timer(Part):
 
     opens_last = True
 
-    @in_our_words
+    @with_argument_hints
     def __init__(
         self,
         host: Host,

@@ -125,7 +125,7 @@ class NodeLogger(OwnLogger):
     ) -> None:
         if unknown:
             word = next(iter(unknown))
-            hint = "; here it is throttle=1.0" if word.startswith("throttle") else ""
+            hint = "; in graphflow it is throttle=1.0" if word.startswith("throttle") else ""
             raise TypeError(f"a node's logger takes throttle, once and skip_first, not {word!r}{hint}")
         frame = sys._getframe(1 + stacklevel)
         site = (frame.f_code, frame.f_lineno)

@@ -197,7 +197,7 @@ class ManagedCore(NodeCore):
             if self.state is LifecycleState.ERRORPROCESSING:
                 outcome, _ = await self._attempt(start)
                 self._arrive(after(self.state, outcome))
-                self.log.warning("after the error the node is %s", self.state.label)
+                self.log.warning("after the error, the node is %s", self.state.label)
         except asyncio.CancelledError:  # the node is stopping
             self._arrive(after(self.state, Outcome.FAILURE))
             raise
@@ -226,7 +226,7 @@ class ManagedCore(NodeCore):
             try:
                 await self._leave_level()
             except Exception as error:  # any error of the user's resources: the levels below are released all the same
-                self.report_error(f"leaving what was entered, after {hook}", error)
+                self.report_error(f"exiting context managers, after {hook}", error)
                 outcome, why = Outcome.ERROR, f"{type(error).__name__}: {error}"
         return outcome, why
 
@@ -236,7 +236,7 @@ class ManagedCore(NodeCore):
             returned = await getattr(self.instance, hook)()
             if returned is not None:
                 raise TypeError(
-                    f"{hook} returned {returned!r}; it succeeds by returning nothing, and refuses by `raise`"
+                    f"{hook} returned {returned!r}; a hook succeeds by returning None, and refuses by `raise`"
                 )
         except TransitionRefused as error:
             self.log.warning("%s refused: %s", hook, error)
@@ -267,8 +267,8 @@ class ManagedCore(NodeCore):
                 assert last is not None
                 await self.limited("on_shutdown", partial(self._make, last))
             while self._levels:
-                await self.limited("leaving what was entered", self._leave_level)
-        await self.limited("leaving what was entered", self.entered.aclose)
+                await self.limited("exiting context managers", self._leave_level)
+        await self.limited("exiting context managers", self.entered.aclose)
 
     # services
 

@@ -26,5 +26,5 @@ def warn_doubled(
         return
     name: str = callback.__name__  # type: ignore[union-attr]
     if any(part.handler_title == f"{mark.kind} {name}" for part in alike):
-        text = "%s: %s is called twice for %s, as @%s in line %d registers it already; leave out one of the two"
+        text = "%s: %s is called twice for %s, since @%s in line %d already registers it; remove one of the two"
         log.warning(text, place, name, what, mark.kind, mark.place.line)

@@ -71,8 +71,8 @@ def _tell(told: set[Place], frame: FrameType | None) -> None:
         return
     told.add(place)
     text = (
-        "%s: thread %r changes something of the event loop's, which notices it when something else wakes it, perhaps "
-        "seconds later; write %s"
+        "%s: thread %r changes the event loop's state, which takes effect only when something else wakes the loop, "
+        "perhaps seconds later; write %s"
     )
     logger.error(text, place, threading.current_thread().name, _way(linecache.getline(place.file, place.line)))
 

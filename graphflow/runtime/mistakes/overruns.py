@@ -13,7 +13,7 @@ RUNS = 3
 """Successive overruns before a warning: the first run or two may only be slow to start."""
 SECONDS = 3.0
 """Total seconds of these runs before a warning."""
-_WAY = "give it a longer period, or start what takes long by self.spawn(...)"
+_WAY = "give it a longer period, or start the long work with self.spawn(...)"
 
 
 class Overruns:
@@ -61,7 +61,7 @@ class Overruns:
         place = next(filter(None, map(place_of, runs)), "")
         every = f"{period_ns / NANOSECONDS:g} s"
         self._text = (
-            f"{self._title} is due every {every}, and its runs take longer{place and ' '}{place}; "
+            f"{self._title} is due every {every}, but its runs take longer{place and ' '}{place}; "
             f"{self._skipped} periods were skipped in {seconds:.1f} s: {_WAY}"
         )
         if not self._is_told:

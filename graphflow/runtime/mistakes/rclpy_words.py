@@ -1,4 +1,4 @@
-"""The words of rclpy and what they are called here: one table for error messages and for the page "coming from ROS 2".
+"""The equivalents of rclpy's names in graphflow: one table for error messages and for the page "coming from ROS 2".
 
 `python -m graphflow.runtime.mistakes.rclpy_words` prints the table of that page.
 """
@@ -19,15 +19,15 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-class Word(NamedTuple):
-    """One row.
+class Equivalent(NamedTuple):
+    """One row of the table.
 
     Attributes:
-        ros: How it is written with rclpy.
-        here: How it is written with graphflow.
-        attributes: Attributes of rclpy's objects that ours do not have: who uses them is told `here`.
-        keywords: Keywords of rclpy's calls, likewise.
-        names: Names that are imported from rclpy, likewise.
+        ros: The code with rclpy.
+        here: The code with graphflow.
+        attributes: Attributes of rclpy's objects without a counterpart of that name; errors about them suggest `here`.
+        keywords: The same for keywords of rclpy's calls.
+        names: The same for names imported from rclpy.
     """
 
     ros: str
@@ -37,200 +37,208 @@ class Word(NamedTuple):
     names: str = ""
 
 
-WORDS = (
-    Word(
+EQUIVALENTS = (
+    Equivalent(
         "`rclpy.init`, `spin`, `shutdown`",
         "`graphflow.run(Talker)`; in your own program `async with graphflow.running(node):`",
         names="init spin shutdown ok try_shutdown create_node",
     ),
-    Word(
+    Equivalent(
         "`spin_once`, `spin_until_future_complete`",
         "not needed: `await`",
         "executor",
         names="spin_once spin_until_future_complete",
     ),
-    Word('`super().__init__("talker")`', "the same, or leave it out: the name is then the class's in snake case"),
-    Word("`from std_msgs.msg import String`", "`from graphflow.msgs.std_msgs.msg import String`"),
-    Word('`create_publisher(String, "chatter", 10)`', 'the same, or `chatter = Publisher(String, "chatter", 10)`'),
-    Word(
+    Equivalent('`super().__init__("talker")`', "the same, or omit it: the name is then the class name in snake case"),
+    Equivalent("`from std_msgs.msg import String`", "`from graphflow.msgs.std_msgs.msg import String`"),
+    Equivalent(
+        '`create_publisher(String, "chatter", 10)`', 'the same, or `chatter = Publisher(String, "chatter", 10)`'
+    ),
+    Equivalent(
         '`create_subscription(String, "chatter", self.heard, 10)`',
         'the same, or `@subscription(String, "chatter", 10)`',
         names="subscriber Subscriber",
     ),
-    Word("`create_timer(1.0, self.tick)`", "the same, or `@timer(1.0)`, `@timer(hz=rate)`"),
-    Word(
+    Equivalent("`create_timer(1.0, self.tick)`", "the same, or `@timer(1.0)`, `@timer(hz=rate)`"),
+    Equivalent(
         '`create_service(Srv, "name", self.answer)`',
         'the same, or `@service(Srv, "name")`; the handler takes `(request)` or `(request, response)`',
     ),
-    Word('`create_client(Srv, "name")`', 'the same, or `Client(Srv, "name")`'),
-    Word("`client.call_async(request)`, then spin", "`await client.call(request, timeout=2.0)`", "call_async"),
-    Word("`client.call(request)`", "the same with `await`; the rest of the node keeps running"),
-    Word(
+    Equivalent('`create_client(Srv, "name")`', 'the same, or `Client(Srv, "name")`'),
+    Equivalent("`client.call_async(request)`, then spin", "`await client.call(request, timeout=2.0)`", "call_async"),
+    Equivalent("`client.call(request)`", "the same with `await`; the rest of the node keeps running"),
+    Equivalent(
         "`client.wait_for_service(1.0)`",
         "`await client.wait_ready(1.0)`, which returns True or False",
         "wait_for_service wait_for_server",
     ),
-    Word("`client.service_is_ready()`", "the same"),
-    Word("`future.add_done_callback(f)`", "the lines after the `await`"),
-    Word(
+    Equivalent("`client.service_is_ready()`", "the same"),
+    Equivalent("`future.add_done_callback(f)`", "the lines after the `await`"),
+    Equivalent(
         '`declare_parameter("rate", 1.0)`',
         '`rate = Param(1.0)`, then `self.rate`; `self.declare_parameter("rate", 1.0)` returns a copy of the value: '
-        'where it is used, read `self.parameters.get("rate")`',
+        'read `self.parameters.get("rate")` for the current one',
     ),
-    Word(
+    Equivalent(
         "`declare_parameters(ns, [...])`",
-        "a `Param` for each in the class, or `self.declare_parameter` for each",
+        "one `Param` each in the class, or one `self.declare_parameter` each",
         "declare_parameters",
     ),
-    Word(
+    Equivalent(
         '`get_parameter("rate").value`',
-        '`self.parameters.get("rate")`; `self.rate` where the class has `rate = Param(1.0)`',
+        '`self.parameters.get("rate")`; `self.rate` if the class has `rate = Param(1.0)`',
         "get_parameter get_parameters get_parameter_or get_parameters_by_prefix get_parameter_type get_parameter_types",
     ),
-    Word('`has_parameter("rate")`', '`"rate" in self.parameters`', "has_parameter"),
-    Word(
+    Equivalent('`has_parameter("rate")`', '`"rate" in self.parameters`', "has_parameter"),
+    Equivalent(
         "`set_parameters([...])`",
         '`self.rate = 2.0`, or `self.parameters.set({"rate": 2.0})`',
         "set_parameters set_parameters_atomically",
     ),
-    Word("`describe_parameter(name)`", "`self.parameters.describe(name)`", "describe_parameter describe_parameters"),
-    Word(
+    Equivalent(
+        "`describe_parameter(name)`", "`self.parameters.describe(name)`", "describe_parameter describe_parameters"
+    ),
+    Equivalent(
         "`add_on_set_parameters_callback`",
-        "limits in `Param`, or a method with `@rate.check`; for several at once `self.parameters.check(f)`",
+        "limits in `Param`, or a method with `@rate.check`; for several parameters at once `self.parameters.check(f)`",
         "add_on_set_parameters_callback add_pre_set_parameters_callback set_parameters_callback",
     ),
-    Word(
+    Equivalent(
         "`add_post_set_parameters_callback`",
         "a method with `@rate.on_change`, or `self.parameters.observe(f)`",
         "add_post_set_parameters_callback",
     ),
-    Word(
+    Equivalent(
         "`ParameterDescriptor`, ranges",
-        '`Param(1.0, ge=0.0, le=5.0, step=0.5, doc="...", read_only=True)`; `declare_parameter` takes them too',
+        '`Param(1.0, ge=0.0, le=5.0, step=0.5, doc="...", read_only=True)`; `declare_parameter` takes them, too',
         keywords="descriptor min max",
         names="ParameterDescriptor",
     ),
-    Word("`dynamic_typing=True`", '`self.declare_parameter("name", 1, dynamic=True)`'),
-    Word("`undeclare_parameter`", "the same"),
-    Word("a callback with `(msg, info)`", "a method with a third argument, `info: MessageInfo`"),
-    Word("`ignore_local_publications`", "`ignore_local=True`"),
-    Word('`get_logger().info("...")`', '`self.log.info("...")`, a Python logger', "get_logger"),
-    Word(
+    Equivalent("`dynamic_typing=True`", '`self.declare_parameter("name", 1, dynamic=True)`'),
+    Equivalent("`undeclare_parameter`", "the same"),
+    Equivalent("a callback with `(msg, info)`", "a method with a third argument, `info: MessageInfo`"),
+    Equivalent("`ignore_local_publications`", "`ignore_local=True`"),
+    Equivalent('`get_logger().info("...")`', '`self.log.info("...")`, a Python logger', "get_logger"),
+    Equivalent(
         "`get_logger().info(..., throttle_duration_sec=1.0)`, `once=True`",
         '`self.log.info("...", throttle=1.0)`, `once=True`',
     ),
-    Word(
+    Equivalent(
         "`get_clock().now()`",
         "`self.clock.now()`; no `.to_msg()`, since a `Time` can be put into a message",
         "get_clock",
     ),
-    Word("`now().to_msg()`", "the `Time` itself, which can be put into a message", "to_msg"),
-    Word("`now().nanoseconds`", "the same; `.seconds` as a float"),
-    Word("`Duration(seconds=1.0)`", "`Duration.of(1.0)`"),
-    Word("`create_rate(10).sleep()`", "`async for n in self.clock.every(hz=10.0):`", "create_rate", names="Rate"),
-    Word("`create_guard_condition`", "an `asyncio.Event` that a `@task` awaits", "create_guard_condition"),
-    Word(
+    Equivalent("`now().to_msg()`", "the `Time` itself, which can be put into a message", "to_msg"),
+    Equivalent("`now().nanoseconds`", "the same; `.seconds` as a float"),
+    Equivalent("`Duration(seconds=1.0)`", "`Duration.of(1.0)`"),
+    Equivalent("`create_rate(10).sleep()`", "`async for n in self.clock.every(hz=10.0):`", "create_rate", names="Rate"),
+    Equivalent("`create_guard_condition`", "an `asyncio.Event` that a `@task` awaits", "create_guard_condition"),
+    Equivalent(
         "`get_name()`, `get_namespace()`, `get_fully_qualified_name()`",
         "`node.name`, `node.namespace`, `node.full_name`",
         "get_name get_namespace get_fully_qualified_name",
     ),
-    Word(
+    Equivalent(
         "`get_topic_names_and_types()`, `get_node_names()`",
         "`self.context.cache.topics()`, `.nodes()`, `.services()`, `.actions()`",
         "get_topic_names_and_types get_service_names_and_types get_node_names get_node_names_and_namespaces"
         " get_publishers_info_by_topic get_subscriptions_info_by_topic count_publishers count_subscribers",
     ),
-    Word("`publisher.get_subscription_count()`", "the same"),
-    Word("`publisher.topic_name`, `client.srv_name`", "`.name`", "topic topic_name srv_name service_name"),
-    Word(
+    Equivalent("`publisher.get_subscription_count()`", "the same"),
+    Equivalent("`publisher.topic_name`, `client.srv_name`", "`.name`", "topic topic_name srv_name service_name"),
+    Equivalent(
         "`QoSProfile(depth=1, durability=...)`, `qos_profile=`",
         "`Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)`, `qos=`",
         keywords="qos_profile",
         names="QoSProfile",
     ),
-    Word(
+    Equivalent(
         "`MutuallyExclusiveCallbackGroup()`",
         "`Group(1)`; a class's `default_group = Group(1)` is rclpy's default",
         "default_callback_group",
         names="MutuallyExclusiveCallbackGroup",
     ),
-    Word("`ReentrantCallbackGroup()`", "`Group(None)`", names="ReentrantCallbackGroup CallbackGroup"),
-    Word("`callback_group=`", "`group=`, with a `Group` of the class", keywords="callback_group"),
-    Word(
+    Equivalent("`ReentrantCallbackGroup()`", "`Group(None)`", names="ReentrantCallbackGroup CallbackGroup"),
+    Equivalent("`callback_group=`", "`group=`, with a `Group` of the class", keywords="callback_group"),
+    Equivalent(
         "`SingleThreadedExecutor`, `MultiThreadedExecutor`",
         "one event loop per process; `thread=True` and `await self.offload(f)` for code that blocks",
         names="SingleThreadedExecutor MultiThreadedExecutor",
     ),
-    Word(
+    Equivalent(
         "`destroy_publisher(p)` and so on",
         "`p.close()`",
         "destroy_publisher destroy_subscription destroy_client destroy_service destroy_timer destroy_rate destroy",
     ),
-    Word(
+    Equivalent(
         "`destroy_node()`",
         "not needed: done at the end of `run` or `running`; `self.shutdown()` ends the node from within",
         "destroy_node",
     ),
-    Word(
+    Equivalent(
         '`ActionServer(node, Type, "name", execute)`',
         '`@action(Type, "name")` on the method, or `self.create_action_server(Type, "name", self.execute)`',
         keywords="execute_callback",
     ),
-    Word(
+    Equivalent(
         "`goal_callback=`, `GoalResponse.REJECT`",
-        "`accept=`, a method that returns True, False, or a text that says why not, for the client",
+        "`accept=`, a method that returns True, False, or the reason for a rejection, which the client receives",
         keywords="goal_callback",
         names="GoalResponse",
     ),
-    Word(
+    Equivalent(
         "`cancel_callback=`, `CancelResponse.REJECT`",
         "`cancellable=`: True, False, or a method that takes the goal and decides",
         keywords="cancel_callback",
         names="CancelResponse",
     ),
-    Word(
+    Equivalent(
         "`handle_accepted_callback=`, `goal_handle.execute()`",
         "`policy=`: `reject`, `queue`, `preempt` or `parallel`",
         "execute",
         keywords="handle_accepted_callback",
     ),
-    Word(
+    Equivalent(
         '`ActionClient(node, Type, "name")`',
         '`ActionClient(Type, "name")`, then `async with self.client.send(goal) as sent:`',
     ),
-    Word(
+    Equivalent(
         "`send_goal_async(goal)`, `get_result_async()`",
         "`async with client.send(goal) as sent:`, then `await sent.result()`",
         "send_goal_async get_result_async get_result",
     ),
-    Word("`cancel_goal_async()`", "`await sent.cancel()`", "cancel_goal_async cancel_goal"),
-    Word("`ServerGoalHandle`, `ClientGoalHandle`", "the same; a handler's argument is annotated `Type.Handle`"),
-    Word("`goal_handle.publish_feedback(f)`", "`goal.feedback(f)`", "publish_feedback"),
-    Word("`goal_handle.is_cancel_requested`", "the same; and cancelling raises `CancelledError` at an `await`"),
-    Word("`goal_handle.succeed()`", "return the result", "succeed"),
-    Word("`goal_handle.abort()`", "`raise Abort(reason)`", "abort"),
-    Word("`goal_handle.canceled()`", "let `CancelledError` pass; `goal.partial` is the result", "canceled"),
-    Word(
+    Equivalent("`cancel_goal_async()`", "`await sent.cancel()`", "cancel_goal_async cancel_goal"),
+    Equivalent("`ServerGoalHandle`, `ClientGoalHandle`", "the same; a handler's argument is annotated `Type.Handle`"),
+    Equivalent("`goal_handle.publish_feedback(f)`", "`goal.feedback(f)`", "publish_feedback"),
+    Equivalent(
+        "`goal_handle.is_cancel_requested`", "the same; cancellation also raises `CancelledError` at an `await`"
+    ),
+    Equivalent("`goal_handle.succeed()`", "return the result", "succeed"),
+    Equivalent("`goal_handle.abort()`", "`raise Abort(reason)`", "abort"),
+    Equivalent("`goal_handle.canceled()`", "let `CancelledError` propagate; `goal.partial` is the result", "canceled"),
+    Equivalent(
         "`LifecycleNode`, `on_configure(self, state)`",
-        "`LifecycleNode`, `async def on_configure(self)`; it succeeds by returning nothing",
+        "`LifecycleNode`, `async def on_configure(self)`; it succeeds by returning None",
         names="TransitionCallbackReturn LifecyclePublisher",
     ),
-    Word("`return TransitionCallbackReturn.FAILURE`", '`raise TransitionRefused("why")`; any other error is `ERROR`'),
-    Word(
+    Equivalent(
+        "`return TransitionCallbackReturn.FAILURE`", '`raise TransitionRefused("why")`; any other error is `ERROR`'
+    ),
+    Equivalent(
         "`create_lifecycle_publisher(...)`",
-        "`create_publisher(...)`, or a declared `Publisher`: in a `LifecycleNode` all are silent until it is active",
+        "`create_publisher(...)`, or a declared `Publisher`: in a `LifecycleNode` they send only while it is active",
         "create_lifecycle_publisher destroy_lifecycle_publisher add_managed_entity",
     ),
-    Word("`tf2_ros`", "in [code written for rclpy](rclpy.md); for native nodes not yet"),
-    Word("`use_sim_time`, `/clock`", "the same"),
-    Word(
+    Equivalent("`tf2_ros`", "in [code written for rclpy](rclpy.md); not yet in native nodes"),
+    Equivalent("`use_sim_time`, `/clock`", "the same"),
+    Equivalent(
         "`SubscriptionEventCallbacks`, `PublisherEventCallbacks`", "`on_event=` with a method that takes a `QosEvent`"
     ),
-    Word("`publisher.assert_liveliness()`", "the same"),
-    Word("`qos_profile_sensor_data` and so on", "`graphflow.qos.SENSOR_DATA` and so on"),
-    Word("`service.configure_introspection(...)`", 'the same, or `@service(..., introspection="contents")`'),
-    Word("code in `__init__` that opens devices", "`async def on_start(self)`, and `on_shutdown` at the end"),
-    Word("`rclpy.spin` in a thread, `wait_for_message`", "`async for message in self.chatter:` in a `@task`"),
+    Equivalent("`publisher.assert_liveliness()`", "the same"),
+    Equivalent("`qos_profile_sensor_data` and so on", "`graphflow.qos.SENSOR_DATA` and so on"),
+    Equivalent("`service.configure_introspection(...)`", 'the same, or `@service(..., introspection="contents")`'),
+    Equivalent("code in `__init__` that opens devices", "`async def on_start(self)`, and `on_shutdown` at the end"),
+    Equivalent("`rclpy.spin` in a thread, `wait_for_message`", "`async for message in self.chatter:` in a `@task`"),
 )
 
 
@@ -262,36 +270,36 @@ EXAMPLES = {
         'publish(String(data="hello"))',
     )
 } | {"Timer": "@timer(0.5), lower-case, above a method"}
-"""How a call is written whose arguments are wrong, by the name of the function."""
+"""Correct calls for errors about wrong arguments, by the function's name."""
 
 OF_PARTS = {
-    "publish": 'a publisher has it: words = Publisher(String, "words") in the class, self.words.publish(message)',
-    "call": 'a client has it: adder = Client(AddTwoInts, "add") in the class, await self.adder.call(request)',
-    "send_goal": "an ActionClient of the class has it",
-    "sleep": "the clock has it: await self.clock.sleep(0.5)",
-    "now": "the clock has it: self.clock.now()",
-    **{level: f"the logger has it: self.log.{level}(...)" for level in ("debug", "info", "warning", "error")},
-    "warn": "the logger has it: self.log.warning(...)",
-    "logger": "here it is self.log",
+    "publish": 'that is for publishers: words = Publisher(String, "words") in the class, self.words.publish(message)',
+    "call": 'that is for clients: adder = Client(AddTwoInts, "add") in the class, await self.adder.call(request)',
+    "send_goal": "that is for action clients, which the class declares",
+    "sleep": "that is for the clock: await self.clock.sleep(0.5)",
+    "now": "that is for the clock: self.clock.now()",
+    **{level: f"that is for the logger: self.log.{level}(...)" for level in ("debug", "info", "warning", "error")},
+    "warn": "that is for the logger: self.log.warning(...)",
+    "logger": "in graphflow it is self.log",
 }
-"""Attributes that are looked for on a node, and belong to what it holds."""
+"""Hints for attributes that users look up on a node and that belong to its parts."""
 
 Kind = Literal["attributes", "keywords", "names"]
 
 
 @cache
-def _by(kind: Kind) -> dict[str, Word]:
-    return {name: word for word in WORDS for name in getattr(word, kind).split()}
+def _by(kind: Kind) -> dict[str, Equivalent]:
+    return {name: word for word in EQUIVALENTS for name in getattr(word, kind).split()}
 
 
 def translation(name: str, kind: Kind = "attributes") -> str:
-    """What something of rclpy's is called here; empty for what is not rclpy's."""
+    """Return a hint with the graphflow equivalent of one of rclpy's names; "" for other names."""
     word = _by(kind).get(name)
-    return "" if word is None else f"here it is {word.here}".replace("`", "")
+    return "" if word is None else f"in graphflow it is {word.here}".replace("`", "")
 
 
-def in_our_words(function: Callable[P, T]) -> Callable[P, T]:
-    """A function that answers rclpy's keywords, and arguments that go by name here, with what to write."""
+def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
+    """Decorate a function: wrong arguments raise DeclarationError with the correct call or rclpy's equivalent."""
     parameters = inspect.signature(function).parameters.values()
     named = {p.name for p in parameters}
     first = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
@@ -309,7 +317,7 @@ def in_our_words(function: Callable[P, T]) -> Callable[P, T]:
                 way = f"leave out {args[1]!r}, the parameter has the name of its attribute; write Param({args[2]!r})"
                 raise DeclarationError(f"{here()}: {called} takes no name first: {way}")
             taken = ", ".join(name for name in first if name != "self")
-            more = f"; what follows goes by name: {', '.join(rest)}" if rest else ""
+            more = f"; pass the rest by keyword: {', '.join(rest)}" if rest else ""
             raise DeclarationError(f"{here()}: {called} takes {taken}{more}")
         try:
             return function(*args, **kwargs)
@@ -323,7 +331,7 @@ def in_our_words(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _fault(function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
-    """How arguments do not fit a function, after its name; empty if they do, and the error is another."""
+    """Describe how arguments do not fit a function; "" if they do, and the error has another cause."""
     signature = inspect.signature(function)
     try:
         signature.bind(*args, **kwargs)
@@ -345,10 +353,10 @@ def _fault(function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str
 
 
 class MadeByNodes:
-    """What nodes make: rclpy's constructors, which take the node first, are answered with what to write."""
+    """A class that nodes instantiate. A call as in rclpy, with the node first, raises an error with a hint."""
 
     MAKER: ClassVar[str] = ""
-    """How a node makes one: `create_timer(1.0, self.tick)`."""
+    """The call that creates one on a node: `create_timer(1.0, self.tick)`."""
 
     def __new__(cls, *args: object, **_: object) -> Self:
         if args and hasattr(type(args[0]), "create_subscription"):
@@ -356,23 +364,23 @@ class MadeByNodes:
         return super().__new__(cls)
 
 
-class SpeaksRos:
-    """A class of whose missing attributes reports say what rclpy's are called here; see `attribute_errors`."""
+class AttributeHints:
+    """A class with hints for missing attributes, including rclpy's; see `attribute_errors`."""
 
     __slots__ = ()
 
     def _hint(self, name: str) -> str:
-        """What else could be meant by an attribute that is not there."""
+        """Return a hint to append to the error about a missing attribute; "" if there is none."""
         return ""
 
     def _instead_of(self, name: str) -> str:
-        """The whole text about an attribute that is not there, where Python's own does not help; empty otherwise."""
+        """Return a text that replaces Python's error about a missing attribute; "" to keep Python's."""
         return ""
 
 
 def page() -> str:
-    """The table of the page."""
-    rows = (f"| {word.ros} | {word.here} |" for word in WORDS)
+    """Return the table as Markdown."""
+    rows = (f"| {word.ros} | {word.here} |" for word in EQUIVALENTS)
     return "\n".join(["| rclpy | graphflow |", "|---|---|", *rows])
 
 

@@ -36,7 +36,7 @@ class Repeats:
         if alike >= MANY and key not in self._told and (place := _place()) is not None:
             self._told.add(key)
             text = (
-                "%s is there %d times by now, made last in %s: make it once, in __init__, or close the former one first"
+                "%s exists %d times, created last in %s: create it once, in __init__, or close the previous one first"
             )
             self._host.log.warning(text, _name(part), alike, place)
 

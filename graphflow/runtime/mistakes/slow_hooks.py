@@ -26,11 +26,10 @@ SLOW = 5.0
 _BEGINNINGS = ("on_start", "on_configure", "on_activate")
 """Hooks before which no handler runs."""
 _NO_HANDLERS = (
-    "this node's handlers start when it has: what waits for them, or for nodes that wait for this one, belongs in a "
-    "@task"
+    "this node's handlers start when it has: waits for them, or for nodes that wait for this one, belong in a @task"
 )
-_ELSEWHERE = "what takes long or repeats belongs in on_start, a @timer or a @task"
-_NO_TRANSITION = "until it has, the node can make no other transition"
+_ELSEWHERE = "long or repeated work belongs in on_start, a @timer or a @task"
+_NO_TRANSITION = "until then, the node can make no other transition"
 
 
 def when_slow(host: Host, hook: str) -> Alarm:
@@ -38,10 +37,10 @@ def when_slow(host: Host, hook: str) -> Alarm:
     task, clock = asyncio.current_task(), host.context.clock
     then = _NO_HANDLERS if hook in _BEGINNINGS else _NO_TRANSITION
 
-    def say() -> None:
+    def warn() -> None:
         host.log.warning("%s has not returned for %.0f s %s; %s", hook, SLOW, place_of(task), then)
 
-    return clock.call_at(clock.monotonic_ns() + to_ns(SLOW), say)
+    return clock.call_at(clock.monotonic_ns() + to_ns(SLOW), warn)
 
 
 @contextmanager
@@ -49,7 +48,7 @@ def warn_slow_init(cls: type) -> Iterator[None]:
     """Warn with the current line if the block, which makes a node, takes long. On an event loop, the watchdog does."""
     thread = threading.get_ident()
 
-    def say() -> None:
+    def warn() -> None:
         frame = innermost(stack_of(thread))
         if frame is None:
             return
@@ -59,7 +58,7 @@ def warn_slow_init(cls: type) -> Iterator[None]:
             *(cls.__name__, SLOW_INIT, place, frame.f_code.co_name, _ELSEWHERE),
         )
 
-    timer = threading.Timer(SLOW_INIT, say)
+    timer = threading.Timer(SLOW_INIT, warn)
     timer.daemon = True
     if not _is_on_loop():
         timer.start()

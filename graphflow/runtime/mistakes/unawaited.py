@@ -22,7 +22,7 @@ _told: set[str] = set()
 
 
 _AWAIT = "write await before it, in an async def"
-_WAYS = {"GoalClient.send_goal": "write send in place of send_goal"}
+_WAYS = {"GoalClient.send_goal": "write send instead of send_goal"}
 """Advice on an `async with` that starts with such a call."""
 
 
@@ -46,7 +46,7 @@ def report(coroutine: Coroutine[Any, Any, Any]) -> None:
     _told.add(key)
     if place:
         logger.error(
-            "%s: `%s` does nothing, since %s is a coroutine; %s",
+            "%s: `%s` does nothing, since %s is a coroutine function; %s",
             place,
             text,
             name,
@@ -54,7 +54,7 @@ def report(coroutine: Coroutine[Any, Any, Any]) -> None:
         )
     else:
         logger.error(
-            "a call of %s did nothing, since it was not awaited; should it happen again, its line will be told", name
+            "a call of %s did nothing, since it was not awaited; if it happens again, its line will be logged", name
         )
 
 

@@ -28,7 +28,7 @@ class Unentered(AbstractAsyncContextManager[T]):
 
     def __del__(self) -> None:
         if not getattr(self, "_is_known", True):  # True if the constructor refused its arguments
-            logger.error("%s: this does nothing until it is entered; write %s", self._place, self._way)
+            logger.error("%s: this has no effect until it is entered; write %s", self._place, self._way)
 
     if not TYPE_CHECKING:  # type checkers must keep reporting unknown attributes
 

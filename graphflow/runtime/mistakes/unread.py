@@ -49,7 +49,7 @@ def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_progra
     value = value if value else words[1] if words[1:] and not words[1].startswith("-") else "VALUE"
     known = [param.name for cls in classes for param in cls.interface().params]
     if name.startswith("-") and _FILE.search(value) and name.lstrip("-").replace("_", "-") in _OF_FILES:
-        return f"nothing reads the option {name!r}; a file of parameters is given by --params-file {value}"
+        return f"nothing reads the option {name!r}; pass a parameter file with --params-file {value}"
     if (way := _OF_ROS.get(name)) is not None:
         return f"nothing reads the option {name!r}; write {way.replace('VALUE', value)}"
     near = nearest(name.lstrip("-").replace("-", "_"), known)

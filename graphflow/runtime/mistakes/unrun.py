@@ -71,6 +71,6 @@ def advice(file: Path, classes: list[str]) -> str:
         return ""
     what = str(file) if len(classes) == 1 else f"MODULE:{classes[0]}"
     return (
-        f"{file} defines {' and '.join(classes)}, and runs nothing: graphflow run {what}, "
+        f"{file} defines {' and '.join(classes)}, but runs nothing: graphflow run {what}, "
         f"or as its last line: graphflow.run({classes[0]})\n"
     )

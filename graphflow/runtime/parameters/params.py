@@ -95,7 +95,7 @@ class Parameters:
 
     def __getitem__(self, name: str) -> NoReturn:
         """Raise TypeError with the correct way to read a value."""
-        raise TypeError(f'a value is read by parameters.get("{name}"), or self.{name} where the class declares it')
+        raise TypeError(f'read a value with parameters.get("{name}"), or self.{name} where the class declares it')
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names())
@@ -133,7 +133,9 @@ class Parameters:
                 refused by a check. Nothing was changed.
         """
         if not isinstance(values, Mapping):
-            raise ParameterError(f'several are set at once, by name: parameters.set({{"rate": 2.0}}), not {values!r}')
+            raise ParameterError(
+                f'parameters are set by a dict of values: parameters.set({{"rate": 2.0}}), not {values!r}'
+            )
         fitted = {}
         for name, value in values.items():
             declared = self.describe(name)

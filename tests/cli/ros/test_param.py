@@ -169,7 +169,7 @@ def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> N
     )
     words = ("--params-file", "p.yaml", "-p", "count:=8", "-r", "__node:=arm", "-r", "__ns:=/left")
     text = ready(start(machine, tmp_path, *words)).text
-    assert "p.yaml:1:36: /left/arm has no parameter 'unknown'; it is left out" in text
+    assert "p.yaml:1:36: /left/arm has no parameter 'unknown'; it is ignored" in text
     assert machine.look("param", "get", "/left/arm", "gain") == "Double value is: 3.5\n"
     assert machine.look("param", "get", "/left/arm", "count") == "Integer value is: 8\n"
 

@@ -189,7 +189,7 @@ def test_a_command_before_it(machine: Machine) -> None:
         ),
         (["-r", "foo:=/news"], "error: the remap foo:=/news matches no name of this node; there is chatter"),
         (["-r", "**/chattr:=/news"], "error: the remap **/chattr:=/news matches no name of this node"),
-        (["-r", "__node:=my", "turtle"], "a value with a space in it goes into quotes: -r '__node:=my turtle'"),
+        (["-r", "__node:=my", "turtle"], "quote a value that contains a space: -r '__node:=my turtle'"),
         (["-r", "__node:=my turtle"], "'my turtle' is not a node name: use letters, digits and _, and do not begin"),
         (["-r", "rate:=5.0"], "to set the parameter write -p rate:=5.0"),
     ],

@@ -294,7 +294,7 @@ async def test_a_field_of_its_result_or_feedback(graph: Graph) -> None:
     with pytest.raises(AttributeError) as caught:
         _ = goal.sequence
     explain(caught.value)
-    assert str(caught.value).endswith("; that is the goal; its result is (await goal.result()).sequence")
+    assert str(caught.value).endswith("; that is the goal; its result has it: (await goal.result()).sequence")
     fields = [type("Of", (), {"__struct_fields__": names}) for names in (("distance",), ("elapsed",))]
     goal._client = SimpleNamespace(type=SimpleNamespace(Result=fields[0], Feedback=fields[1]))
     assert goal._hint("elapsed").endswith("async for feedback in goal.feedback():")

@@ -69,7 +69,7 @@ class Choosy(Node):
     ("answer", "reason"),
     [
         (False, "wants returned False"),
-        (None, "wants returned None: it has to return True, or False, or the reason why not"),
+        (None, "wants returned None: it must return True, False, or the reason for the rejection"),
         ("outside of the field", "outside of the field"),
         (Abort("too far"), "too far"),
         (ValueError("no map"), "wants failed: ValueError: no map"),
@@ -95,7 +95,7 @@ async def test_a_goal_that_is_wanted(graph: Graph) -> None:
 
 @pytest.mark.parametrize(
     ("policy", "goals", "reason"),
-    [("reject", 2, "another goal is under way, and policy='reject'"), ("queue", 18, "16 goals wait for their turn")],
+    [("reject", 2, "another goal is running, and policy='reject'"), ("queue", 18, "16 goals are waiting already")],
 )
 async def test_a_server_that_has_enough(graph: Graph, policy: Any, goals: int, reason: str) -> None:
     """It says what it does with one goal too many."""

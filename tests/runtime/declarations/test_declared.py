@@ -266,7 +266,7 @@ def test_the_name_of_a_node_that_is_given_none() -> None:
 
 def test_two_services_of_one_name() -> None:
     """A client would reach one of the two; an action likewise. Topics may be listened to twice."""
-    with pytest.raises(DeclarationError, match=r"two offers the service 'x', which one \(.*:\d+\) offers already"):
+    with pytest.raises(DeclarationError, match=r"two offers the service 'x', which one \(.*:\d+\) already offers"):
 
         class Twice(Node):
             @service(Empty, "x")
@@ -286,6 +286,6 @@ def test_the_annotated_results_of_handlers() -> None:
     async def own(self: Any, request: Empty.Request) -> Empty.Response | None: ...
 
     for fn, told in ((text, "str"), (other, "SetBool.Response")):
-        with pytest.raises(DeclarationError, match=f"returns Empty.Response, and is annotated to return {told}$"):
+        with pytest.raises(DeclarationError, match=f"returns Empty.Response, but is annotated to return {told}$"):
             service(Empty, "x")(fn)
     service(Empty, "x")(own)

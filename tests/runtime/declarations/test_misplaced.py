@@ -51,16 +51,19 @@ TICK = "@timer(1.0)\n    def tick(self): ..."
 @pytest.mark.parametrize(
     ("body", "told"),
     [
-        (f"@noisy\n    {TICK}", "tick would never run, as the decorator above hides it; @timer goes above @noisy, or"),
+        (
+            f"@noisy\n    {TICK}",
+            "tick would never run, because the decorator above hides it; @timer goes above @noisy, or",
+        ),
         (f"@Kept\n    {TICK}", "@timer goes above @Kept, or functools.wraps"),
         (f"@staticmethod\n    {TICK}", "@timer goes on a plain method; leave out @staticmethod"),
         (f"@property\n    {TICK}", "leave out @property"),
         (
             "rate = Param(1.0)\n    @noisy\n    @rate.check\n    def fits(self, value): ...",
-            "fits would never run, as the decorator above hides it; @rate.check goes above @noisy",
+            "fits would never run, because the decorator above hides it; @rate.check goes above @noisy",
         ),
-        ('out = Publisher(String, "x"),', ":15: out is a tuple, by the comma behind Publisher(...); leave it out"),
-        ('out: Publisher(String, "x")', ":15: out is only annotated; write = in place of the colon"),
+        ('out = Publisher(String, "x"),', ":15: out is a tuple because of the comma after Publisher(...); remove it"),
+        ('out: Publisher(String, "x")', ":15: out is only annotated; write = instead of the colon"),
         ("beat: timer(1.0)", ":15: @timer goes above a method; beat is only annotated"),
         (
             'outs = [Publisher(String, f"x{i}") for i in range(3)]',
@@ -89,7 +92,7 @@ def test_annotations_that_are_text() -> None:
 def test_a_handler_beside_the_class() -> None:
     """Is refused, unless some class has it as a method."""
     head = f"{HEAD}\n@timer(1.0)\ndef tick(self): ...\n\n"
-    with pytest.raises(DeclarationError, match="@timer goes on a method, and tick stands outside of a class"):
+    with pytest.raises(DeclarationError, match="@timer goes on a method, and tick is outside a class"):
         made("pass", head=head)
     made("beat = tick", head=head)
 
@@ -129,7 +132,7 @@ def test_a_declaration_in_a_method() -> None:
     with pytest.raises(DeclarationError) as caught:
         core_of(Late()).ensure_made()
     assert str(caught.value).endswith(
-        "self.words is no Publisher of the node; write words = Publisher(...) in the body of the class, "
+        "self.words is not a Publisher of the node; write words = Publisher(...) in the body of the class, "
         "or self.words = self.create_publisher(...) here"
     )
 

@@ -48,7 +48,7 @@ def test_once_and_skip_first(log: NodeLogger, clock: list[float], caplog: pytest
 
 def test_a_word_of_rclpy(log: NodeLogger) -> None:
     """Is told what it is called here."""
-    with pytest.raises(TypeError, match=r"not 'throttle_duration_sec'; here it is throttle=1.0"):
+    with pytest.raises(TypeError, match=r"not 'throttle_duration_sec'; in graphflow it is throttle=1.0"):
         log.warning("x", throttle_duration_sec=1.0)
 
 

@@ -497,7 +497,7 @@ async def test_a_hook_that_returns_something(graph: Graph, caplog: pytest.LogCap
 
     node = Habit()
     await graph.start(node)
-    with pytest.raises(TransitionFailed, match="on_configure returned True; it succeeds by returning nothing"):
+    with pytest.raises(TransitionFailed, match="on_configure returned True; a hook succeeds by returning None"):
         await node.trigger_configure()
 
 

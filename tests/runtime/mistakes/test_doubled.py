@@ -34,10 +34,10 @@ async def test_both_ways_at_once(graph: Graph, caplog: pytest.LogCaptureFixture)
     """Are told with both lines; for another topic, or with another period, a handler may be registered."""
     node = Listener()
     first, heard = Listener.__init__.__code__.co_firstlineno + 2, Listener.heard.__code__.co_firstlineno
-    text = "registers it already; leave out one of the two"
+    text = "already registers it; remove one of the two"
     assert [record.message for record in caplog.records if text in record.message] == [
-        f"{__file__}:{first}: heard is called twice for each message of /chatter, as @subscription in line {heard} "
+        f"{__file__}:{first}: heard is called twice for each message of /chatter, since @subscription in line {heard} "
         f"{text}",
-        f"{__file__}:{first + 1}: tick is called twice for each period, as @timer in line {heard + 3} {text}",
+        f"{__file__}:{first + 1}: tick is called twice for each period, since @timer in line {heard + 3} {text}",
     ]
     await graph.start(node)

@@ -106,7 +106,9 @@ async def test_a_thread_that_goes_on_after_the_end_is_told(graph: Graph) -> None
             await in_a_thread(late)
 
 
-WAY = "changes something of the event loop's, which notices it when something else wakes it, perhaps seconds later"
+WAY = (
+    "changes the event loop's state, which takes effect only when something else wakes the loop, perhaps seconds later"
+)
 
 
 @pytest.mark.skipif(is_portable(), reason="asyncio's own loop does not look")

@@ -36,8 +36,8 @@ async def test_runs_that_outlast_the_period(graph: Graph, caplog: pytest.LogCapt
     await graph.clock.advance(2.0)
     line = Control.control.__code__.co_firstlineno + 2
     assert told(caplog) == [
-        "timer control is due every 0.1 s, and its runs take longer (test_overruns.py:"
-        f"{line} in control); 28 periods were skipped in 3.0 s: give it a longer period, or start what takes long by "
+        "timer control is due every 0.1 s, but its runs take longer (test_overruns.py:"
+        f"{line} in control); 28 periods were skipped in 3.0 s: give it a longer period, or start the long work with "
         "self.spawn(...)"
     ]
     assert core_of(node).complaints() == told(caplog)

@@ -7,7 +7,7 @@ from typing import Any
 from graphflow import Node
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.mistakes.rclpy_words import WORDS, page, translation
+from graphflow.runtime.mistakes.rclpy_words import EQUIVALENTS, page, translation
 from tests.conftest import PROJECT
 
 NODE: Any = Node("n")
@@ -17,7 +17,7 @@ def test_no_word_is_ours() -> None:
     """An attribute that ours have too would never be translated."""
     client, publisher = NODE.create_client(AddTwoInts, "x"), NODE.create_publisher(String, "x")
     ours = {*dir(NODE), *dir(client), *dir(publisher)}
-    assert not [name for word in WORDS for name in word.attributes.split() if name in ours]
+    assert not [name for word in EQUIVALENTS for name in word.attributes.split() if name in ours]
     assert translation("subscribe") == ""
 
 

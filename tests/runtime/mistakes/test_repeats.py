@@ -28,7 +28,7 @@ class Forgetful(Node):
 
 
 def told(caplog: pytest.LogCaptureFixture) -> list[str]:
-    return [record.message for record in caplog.records if "by now" in record.message]
+    return [record.message for record in caplog.records if "created last in" in record.message]
 
 
 async def test_it_is_told_with_the_line(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
@@ -38,9 +38,9 @@ async def test_it_is_told_with_the_line(graph: Graph, caplog: pytest.LogCaptureF
     assert told(caplog) == []
     await graph.clock.advance(30.0)
     first, second = told(caplog)
-    assert first.startswith(f"publisher /chatter is there 10 times by now, made last in {__file__}:")
-    assert first.endswith(": make it once, in __init__, or close the former one first")
-    assert second.startswith("timer later is there 10 times by now")
+    assert first.startswith(f"publisher /chatter exists 10 times, created last in {__file__}:")
+    assert first.endswith(": create it once, in __init__, or close the previous one first")
+    assert second.startswith("timer later exists 10 times")
 
 
 async def test_what_is_closed_or_made_before_the_start(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:

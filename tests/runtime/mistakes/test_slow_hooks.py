@@ -20,7 +20,7 @@ from graphflow.testing import Graph
     [
         ("on_start", "this node's handlers start when it has"),
         ("on_activate", "this node's handlers start when it has"),
-        ("on_deactivate", "until it has, the node can make no other transition"),
+        ("on_deactivate", "until then, the node can make no other transition"),
     ],
 )
 async def test_what_waits_for_it_is_told(graph: Graph, caplog: pytest.LogCaptureFixture, hook: str, then: str) -> None:

@@ -44,14 +44,14 @@ def test_the_line_that_lacks_it(caplog: pytest.LogCaptureFixture) -> None:
     line = inspect.getsourcelines(forgets)[1] + 1
     [message] = caplog.messages
     assert message.startswith(f"{__file__}:{line}: `go()")
-    assert message.endswith("does nothing, since go is a coroutine; write await before it, in an async def")
+    assert message.endswith("does nothing, since go is a coroutine function; write await before it, in an async def")
 
 
 def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
     """Its line is known from the second time on."""
     keeps()
     assert caplog.messages == [
-        "a call of go did nothing, since it was not awaited; should it happen again, its line will be told"
+        "a call of go did nothing, since it was not awaited; if it happens again, its line will be logged"
     ]
     keeps()
     assert f"{__file__}:{inspect.getsourcelines(keeps)[1] + 1}: `kept = go()` does nothing" in caplog.messages[1]
@@ -80,4 +80,4 @@ def test_a_goal_that_is_sent_by_the_other_name(
     coroutine.__qualname__ = "GoalClient.send_goal"
     unawaited.report(coroutine)
     coroutine.close()
-    assert caplog.messages[0].endswith("is a coroutine; write send in place of send_goal")
+    assert caplog.messages[0].endswith("is a coroutine function; write send instead of send_goal")

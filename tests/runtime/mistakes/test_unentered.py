@@ -28,8 +28,10 @@ async def test_a_forgotten_async_with(graph: Graph, caplog: pytest.LogCaptureFix
     line = inspect.getsourcelines(Asker.forget)[1] + 1
     first, second = caplog.messages
     assert first.startswith(f"{__file__}:")
-    assert first.endswith("does nothing until it is entered; write async with graphflow.running(asker): ...")
-    assert second.startswith(f"{__file__}:{line}: this does nothing until it is entered; write `async with client.send")
+    assert first.endswith("has no effect until it is entered; write async with graphflow.running(asker): ...")
+    assert second.startswith(
+        f"{__file__}:{line}: this has no effect until it is entered; write `async with client.send"
+    )
 
 
 def test_other_ways_to_enter(caplog: pytest.LogCaptureFixture) -> None:
@@ -44,8 +46,8 @@ def test_other_ways_to_enter(caplog: pytest.LogCaptureFixture) -> None:
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (Asker, r"Asker is a class; make a node of it: Asker\(\)"),
-        ([], r"nodes are given one by one, as in running\(talker, listener\)"),
+        (Asker, r"Asker is a class; create a node:Asker\(\)"),
+        ([], r"pass nodes as separate arguments, as in running\(talker, listener\)"),
         ("asker", "'asker' is not a node"),
     ],
 )

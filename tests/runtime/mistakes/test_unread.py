@@ -13,7 +13,7 @@ import pytest
 from graphflow import Node
 from graphflow.runtime.mistakes.unread import unread
 
-FILE = "a file of parameters is given by --params-file"
+FILE = "pass a parameter file with --params-file"
 Make = Callable[[str], type[Node]]
 PLAIN = """\
 from graphflow import Node, Param
@@ -58,12 +58,12 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         (["--max-speed"], "nothing reads the option '--max-speed'; to set the parameter write -p max_speed:=VALUE"),
         (
             ["--params", "a.yaml"],
-            "nothing reads the option '--params'; a file of parameters is given by --params-file a.yaml",
+            "nothing reads the option '--params'; pass a parameter file with --params-file a.yaml",
         ),
-        (["-f", "a.yml"], "nothing reads the option '-f'; a file of parameters is given by --params-file a.yml"),
+        (["-f", "a.yml"], "nothing reads the option '-f'; pass a parameter file with --params-file a.yml"),
         (
             ["--params-file=a.yaml"],
-            "nothing reads the option '--params-file'; a file of parameters is given by --params-file a.yaml",
+            "nothing reads the option '--params-file'; pass a parameter file with --params-file a.yaml",
         ),
         (
             ["--config", "a.json"],

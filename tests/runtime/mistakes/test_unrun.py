@@ -27,7 +27,7 @@ def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
     """It is told how to run what it defines, unless it made a node or has words that run one."""
     (tmp_path / "talk.py").write_text(TALK + more)
     done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
-    told = "talk.py defines Talk, and runs nothing: graphflow run talk.py, or as its last line: graphflow.run(Talk)\n"
+    told = "talk.py defines Talk, but runs nothing: graphflow run talk.py, or as its last line: graphflow.run(Talk)\n"
     assert done.returncode == 0
     assert done.stderr == (told if is_told else "")
 

@@ -13,7 +13,7 @@ from types import CodeType, FrameType
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
 from graphflow.runtime.mistakes.errors import constructor_errors
-from graphflow.runtime.mistakes.rclpy_words import SpeaksRos, translation
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints, translation
 
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
@@ -46,7 +46,7 @@ def better_text(error: AttributeError) -> str:
         return ""
     if isinstance(thing, Message):
         return no_field(type(thing), name)
-    if not isinstance(thing, SpeaksRos):
+    if not isinstance(thing, AttributeHints):
         return ""
     if text := thing._instead_of(name):
         return text
@@ -63,7 +63,7 @@ def _setter(thing: object, name: str) -> str:
                 continue
             if any(step.opname == "STORE_ATTR" and step.argval == name for step in dis.get_instructions(code)):
                 where = short_place(code.co_filename, code.co_firstlineno)
-                return f"{code.co_name} ({where}) sets it, and has not run yet: begin with {name} = None in the class"
+                return f"{code.co_name} ({where}) sets it but has not run yet: start with {name} = None in the class"
     return ""
 
 

@@ -28,7 +28,7 @@ def better_text(error: TypeError) -> str:
     if unknown:
         return no_field(cls, unknown[1])
     example = f"{cls.SCHEMA.fields[0].name}=..." if cls.SCHEMA.fields else ""
-    return f"{name_of(cls)} takes its fields by name: {cls.__name__.rpartition('_')[2]}({example})"
+    return f"{name_of(cls)} takes its fields by keyword: {cls.__name__.rpartition('_')[2]}({example})"
 
 
 def _called(trace: TracebackType | None) -> Any:

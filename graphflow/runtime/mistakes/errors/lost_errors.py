@@ -48,5 +48,5 @@ class _LostErrors:
         times = self._times[key]
         if str(times).strip("0") == "1":  # 1, 10, 100 and so on
             again = f", {times} times by now" if times > 1 else ""
-            way = "await it, or start it by self.spawn(...), which ends the node by an error"
+            way = "await it, or start it with self.spawn(...), which ends the node on an error"
             report(logger, f"{name} failed, and nothing awaits it{again} ({way})", error)

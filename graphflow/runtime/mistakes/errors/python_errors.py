@@ -29,29 +29,31 @@ class Remark(NamedTuple):
 
 _AWAITED = r"await\s+(?:[\w.]*\.)?(?P<name>\w+)"
 _COROUTINE = r"^'coroutine' object |: 'coroutine' and |: '\w+' and 'coroutine'$"
-_SEND = "write send in place of send_goal: async with client.send(goal) as sent:"
+_SEND = "write send instead of send_goal: async with client.send(goal) as sent:"
 _SECONDS = "(int|float)"
 _SPANS = "(Time|Duration)"
 REMARKS = (
     # Python 3.14: "'NoneType' object can't be awaited"; before: "object NoneType can't be used in 'await' expression".
-    Remark(r"NoneType\b.* '?await", _AWAITED + r"\(", "{name} returns at once: leave out await"),
+    Remark(r"NoneType\b.* '?await", _AWAITED + r"\(", "{name} returns at once: remove await"),
     Remark(
         r"^'NoneType' object has no attribute '(?P<attribute>\w+)'",
         r"self\.(?P<name>\w+)\.\w",
         "self.{name} is None until something sets it: write if self.{name} is None: return",
     ),
-    Remark(r'can only concatenate str \(not "(int|float|bool)"\)', "", "make a text of it: str(value), or an f-string"),
+    Remark(
+        r'can only concatenate str \(not "(int|float|bool)"\)', "", "convert it with str(value), or use an f-string"
+    ),
     Remark(r"\b(method|function)\b.* '?await", _AWAITED, "call it: await {name}()"),
     Remark(
         r"\bTopicSubscription\b.* '?await",
         _AWAITED,
-        "messages come one by one: async for message in self.{name}",
+        "iterate over the messages: async for message in self.{name}",
     ),
     Remark("'(async_generator|TopicSubscription)' object is not iterable", r"\bfor\b", "write async for"),
     Remark(
         "'HandlerGroup' object does not support",
         r"\bwith self\.(?P<name>\w+)",
-        "a group is given to the handlers that share it: @timer(1.0, group={name})",
+        "handlers name the group that they share: @timer(1.0, group={name})",
     ),
     Remark(
         "'coroutine' object does not support the asynchronous context",
@@ -62,7 +64,9 @@ REMARKS = (
     Remark("object does not support the context manager", r"\bwith\b", "write async with"),
     Remark(_COROUTINE, "", "that is a coroutine: write await before the call"),
     Remark(
-        "a coroutine was expected, got <(bound method|function)", "", "call it, or let the node: self.spawn(self.work)"
+        "a coroutine was expected, got <(bound method|function)",
+        "",
+        "call it, or let the node run it: self.spawn(self.work)",
     ),
     Remark(
         r"asyncio\.run\(\) cannot be called|event loop is already running",
@@ -72,29 +76,29 @@ REMARKS = (
     Remark(
         r"^'(bool|int|float|str|bytes|list)' object has no attribute '(value|get_parameter_value)'",
         r"self\.\w+(\(.*\))?\.(value|get_parameter_value)",
-        "a parameter reads as its value: leave out .value",
+        "a parameter reads as its value: remove .value",
     ),
     Remark(
-        "'NodeLogger' object is not callable", "", 'the log has a method for each level: write self.log.info("...")'
+        "'NodeLogger' object is not callable", "", 'a logger has a method for each level: write self.log.info("...")'
     ),
     Remark("'TopicPublisher' object is not callable", r"self\.(?P<name>\w+)\(", "write self.{name}.publish(message)"),
     Remark("'ServiceClient' object is not callable", r"self\.(?P<name>\w+)\(", "write await self.{name}.call(request)"),
     Remark(
         "'(bool|int|float|str)' object is not callable",
         r"self\.(?P<name>\w+)\(",
-        "self.{name} is a value: leave out the parentheses",
+        "self.{name} is a value: remove the parentheses",
     ),
-    Remark(r"^'Parameters' object has no attribute '(?P<name>\w+)'", "", 'parameters.get("{name}") reads a value'),
-    Remark("^name 'self' is not defined", r"self\.(?P<name>\w+)", "the body of a class has no self: write {name}"),
+    Remark(r"^'Parameters' object has no attribute '(?P<name>\w+)'", "", 'parameters.get("{name}") returns a value'),
+    Remark("^name 'self' is not defined", r"self\.(?P<name>\w+)", "a class body has no self: write {name}"),
     Remark(
         f"-: 'Time' and '{_SECONDS}'",
         r"-\s*(?P<name>self\.\w+)",
-        "{name} is a number: begin with {name} = self.clock.now(); a span of seconds is Duration.of({name})",
+        "{name} is a number: initialize it by {name} = self.clock.now(), or write a time span as Duration.of({name})",
     ),
     Remark(
         f"'{_SPANS}' and '{_SECONDS}'|'{_SECONDS}' and '{_SPANS}'",
         "",
-        "a span of seconds is written Duration.of(0.5), and .seconds makes a number of one",
+        "write a time span as Duration.of(0.5); its .seconds is a number",
     ),
     Remark("^'Time' object has no attribute 'to_msg'", "", "leave it out: a Time can be put into a message"),
     Remark("Clock' object has no attribute 'create_rate'", "", "write async for n in self.clock.every(hz=10.0):"),
@@ -110,7 +114,7 @@ REMARKS = (
         r"\bin (?P<call>[\w.]+):",
         "call it: {call}(...)",
     ),
-    Remark(r"\basync_generator\b.* '?await", _AWAITED, "they come one by one: async for one in ....{name}(...)"),
+    Remark(r"\basync_generator\b.* '?await", _AWAITED, "iterate over it: async for item in ....{name}(...)"),
     Remark(
         "^'(function|method)' object has no attribute",
         r"\b(?P<goal>\w+)\.result\.",
@@ -125,21 +129,21 @@ REMARKS = (
     Remark(
         "^'numpy.ndarray' object has no attribute '(append|extend|insert)'",
         "",
-        "an array does not grow: fill a list, and assign that: message.data = numbers",
+        "arrays cannot grow: fill a list, then assign it: message.data = numbers",
     ),
-    Remark("argument 'feedback_callback'", "", "feedback is read: async for feedback in sent.feedback():"),
+    Remark("argument 'feedback_callback'", "", "read feedback with async for feedback in sent.feedback():"),
     Remark(
         r"^a coroutine was expected, got (?!<)",
         "",
         "spawn takes an `async def`; call a `def` itself, or await self.offload(it)",
     ),
-    Remark(r"^Node\.spawn\(\) got an unexpected keyword", "", "arguments go by position: self.spawn(self.work, 3)"),
+    Remark(r"^Node\.spawn\(\) got an unexpected keyword", "", "pass arguments by position: self.spawn(self.work, 3)"),
     Remark(
         "^'(?P<kind>Publisher|Subscription|Client|ActionClient|Group)' object has no attribute",
         r"self\.(?P<name>\w+)",
         "a {kind} is declared in the body of the class: {name} = {kind}(...)",
     ),
-    Remark("^descriptor '__init__' of 'super'", "", "write super().__init__(...), with parentheses behind super"),
+    Remark("^descriptor '__init__' of 'super'", "", "write super().__init__(...), with parentheses after super"),
     Remark("expected string or bytes-like", r"super\(\)\.__init__\(self", "leave out self: super().__init__()"),
     Remark("has no attribute 'node_name'", r"Node\.__init__\(", "write super().__init__(...)"),
     Remark("'<' not supported between", r"throttle=['\"]", "throttle= is in seconds, without quotes"),
@@ -151,7 +155,7 @@ REMARKS = (
     Remark(
         r"Param\.(?P<name>check|on_change)\(\) missing 1 .* 'fn'",
         "",
-        "write it behind the parameter, without parentheses: @rate.{name}",
+        "write it without parentheses: @rate.{name}",
     ),
     Remark(
         r"^Qos\.__init__\(\) got an unexpected keyword argument '(?P<name>deadline|lifespan)'",
@@ -166,7 +170,7 @@ REMARKS = (
     Remark(
         r"^object (?!coroutine)\w+ can't be used in 'await'|^'\w+' object can't be awaited",
         _AWAITED + r"\(",
-        "{name} is no `async def`, and returns at once: leave out await",
+        "{name} is not an `async def` and returns at once: remove await",
     ),
     Remark(
         r"^'(?!NoneType)[A-Z]\w*' object is not subscriptable",
@@ -188,7 +192,7 @@ OF_VALUES = (
     Remark(
         "^The truth value of an array with more than one element is ambiguous",
         "",
-        "whether there is anything in it says len(...) > 0",
+        "test for elements with len(...) > 0",
     ),
 )
 """The table for ValueErrors, which rarely concern a node."""

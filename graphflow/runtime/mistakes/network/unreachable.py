@@ -30,8 +30,8 @@ async def why_unreachable(host: Host, name: str, servers: Sequence[Entity], hash
     profiles = await _profiles(host)
     if refusal := net.refusal(name, profiles):
         return refusal
-    other = ", or the net profile of the other machine keeps calls back" if profiles else ""
-    return f"{name}: the server is announced, but does not take calls: its process is starting, or about to end{other}"
+    other = ", or the net profile of the other machine blocks calls" if profiles else ""
+    return f"{name}: the server is announced but does not accept calls: its process is starting or stopping{other}"
 
 
 async def _profiles(host: Host) -> list[NetToken]:

@@ -36,9 +36,9 @@ def ineffective(code: ast.AST) -> Iterator[tuple[int, str]]:
 def _instead(value: ast.expr) -> str:
     match value:
         case ast.Compare(left=left, ops=[ast.Eq()]) if isinstance(left, _PLACES):
-            return f"{ast.unparse(value)} compares and does nothing; write = to set it"
+            return f"{ast.unparse(value)} compares without effect; write = to set it"
         case ast.BinOp(left=left, op=op, right=ast.Constant(value=int() | float())) if isinstance(left, _PLACES):
             sign = _SIGNS.get(type(op))
             set_ = f"{ast.unparse(left)} {sign}= {ast.unparse(value.right)}"
-            return f"{ast.unparse(value)} computes and does nothing; write {set_}" if sign else ""
+            return f"{ast.unparse(value)} computes without effect; write {set_}" if sign else ""
     return ""

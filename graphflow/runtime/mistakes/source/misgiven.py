@@ -47,10 +47,10 @@ def misgiven(code: ast.AST, starts: str = "self.spawn({})") -> Iterator[tuple[in
         elif name := _of_loop(given):
             if isinstance(made, ast.Lambda):
                 written = f"lambda {ast.unparse(_with_default(made.args, name))}: ..."
-                yield made.lineno, f"each lambda of this line sees the last {name} of the loop; write {written}"
+                yield made.lineno, f"each lambda on this line sees the last {name} of the loop; write {written}"
             else:
                 written = f"def {made.name}({ast.unparse(_with_default(made.args, name))}):"
-                yield made.lineno, f"each {made.name} of this loop sees the last {name}; write {written}"
+                yield made.lineno, f"each {made.name} in this loop sees the last {name}; write {written}"
 
 
 _THREADS = {"to_thread": 0, "run_in_executor": 1, "submit": 0, "Timer": 1, "Thread": None}
@@ -69,7 +69,7 @@ def _in_threads(code: ast.AST, methods: dict[str, FunctionNode], starts: str) ->
             if isinstance(methods.get(name), ast.AsyncFunctionDef):
                 shown = ast.unparse(value)
                 awaited = f"await {shown}(...)" if word in ("to_thread", "run_in_executor") else starts.format(shown)
-                yield node.lineno, f"{name} is an `async def`, which a thread does not run; write {awaited}"
+                yield node.lineno, f"{name} is an `async def`, which a thread cannot run; write {awaited}"
 
 
 def _all_given(code: ast.AST) -> Iterator[_Given]:
@@ -118,7 +118,7 @@ def _given_back(made: ast.Lambda, methods: dict[str, FunctionNode]) -> str:
                 way = f"{shown} in place of the lambda"
             else:
                 way = f"{ast.unparse(made)}(...)"
-            return f"the lambda gives back the method {shown} and does not call it; write {way}"
+            return f"the lambda returns the method {shown} instead of calling it; write {way}"
     return ""
 
 

@@ -25,7 +25,7 @@ def owner_of(error: NameError) -> str:
         for base in _bases(frame):
             parent = _value(base, frame)
             if isinstance(parent, type) and inspect.getattr_static(parent, name, None) is not None:
-                return f"the body of a class does not see its parent's names: write {ast.unparse(base)}.{name}"
+                return f"a class body does not see its parent's names: write {ast.unparse(base)}.{name}"
         return ""
     node = frame.f_locals.get("self")
     if node is not None and not name.startswith("__") and inspect.getattr_static(node, name, None) is not None:

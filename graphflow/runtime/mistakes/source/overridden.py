@@ -17,8 +17,8 @@ from graphflow.runtime.declarations.declare import Subscription
 from graphflow.runtime.declarations.handlers import MARK, Handler
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 
-_LOST = {"subscription": "which nothing hears any more", "service": "which nothing answers any more"}
-_LOST |= {"action": "which nothing answers any more"}
+_LOST = {"subscription": "which is no longer received", "service": "which is no longer answered"}
+_LOST |= {"action": "which is no longer answered"}
 
 
 def overridden(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
@@ -43,8 +43,8 @@ def overridden(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]
             continue
         place = short_place(lost.place.file, lost.place.line)
         is_typed = (own.kind, own.name) == (lost.kind, lost.name)
-        names = f"{method.name} {_shown(own, is_typed)} takes the place of {method.name} {_shown(lost, is_typed)}"
-        why = _LOST.get(lost.kind, "which runs no more")
+        names = f"{method.name} {_shown(own, is_typed)} replaces {method.name} {_shown(lost, is_typed)}"
+        why = _LOST.get(lost.kind, "which no longer runs")
         yield method.lineno, f"{names} ({place}), {why}; if both are meant, give it another name"
 
 

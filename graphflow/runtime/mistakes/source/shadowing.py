@@ -67,7 +67,7 @@ def _check_body(definition: ast.ClassDef, file: str) -> None:
         if before != line and (is_declared or was_declared):
             raise DeclarationError(
                 f"{Place(file, line)}: {definition.name} has another {name!r} in line {before}, which is lost; "
-                "one of the two needs another name"
+                "rename one of the two"
             )
 
 
@@ -106,6 +106,5 @@ def _check_assignments(definition: ast.ClassDef, file: str, names: Collection[st
                     )
                 if name in names:
                     raise DeclarationError(
-                        f"{place}: self.{name} is what {definition.name} declares by that name; "
-                        "call the attribute something else"
+                        f"{place}: self.{name} hides the declaration {definition.name}.{name}; rename the attribute"
                     )

@@ -45,7 +45,7 @@ def slips(cls: type) -> tuple[str, ...]:
     try:
         return tuple(_slips(cls))
     except Exception as error:  # a bug in these checks must not keep a node from running
-        logger.debug("the source of %s was not looked at", cls.__name__, exc_info=error)
+        logger.debug("the source of %s was not checked", cls.__name__, exc_info=error)
         return ()
 
 
@@ -212,7 +212,7 @@ def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterato
                     ast.Call(func=ast.Attribute(value=ast.Attribute(attr=name) as changed, attr=way))
                     | ast.Subscript(value=ast.Attribute(attr=name) as changed, ctx=ast.Store() | ast.Del(), slice=way)
                 ) if name in lists and is_own(changed) and (way in _CHANGING or isinstance(way, ast.expr)):
-                    text = f"{ast.unparse(node)} changes the list of a parameter unseen by its checks and by every tool"
+                    text = f"{ast.unparse(node)} changes a parameter's list without its checks, and no tool sees it"
                     yield f"{Place(file, node.lineno)}: {text}; set a new one, as in self.{name} = [*self.{name}, ...]"
 
 

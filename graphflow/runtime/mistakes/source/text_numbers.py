@@ -31,9 +31,9 @@ def text_for_number(error: TypeError, line: str) -> str:
         if isinstance(declared, Param):
             number = _number(declared.parameter.default)
             if number:
-                return f"self.{name} is the text {declared.parameter.default!r}: write {name} = Param({number})"
+                return f"self.{name} is the string {declared.parameter.default!r}: write {name} = Param({number})"
         elif number := _number(value := inspect.getattr_static(node, name, None)):
-            return f"self.{name} is the text {value!r}: write {number}, without quotes"
+            return f"self.{name} is the string {value!r}: write {number}, without quotes"
     return ""
 
 

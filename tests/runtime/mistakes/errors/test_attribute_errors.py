@@ -27,7 +27,7 @@ NODE: Any = Node("n")
         (lambda: NODE.destroy_node(), "self.shutdown() ends the node from within"),
         (lambda: NODE.create_client(AddTwoInts, "x").call_async(), "await client.call(request, timeout=2.0)"),
         (lambda: NODE.create_client(AddTwoInts, "x").wait_for_service(), "await client.wait_ready(1.0)"),
-        (lambda: NODE.create_publisher(String, "x").topic_name, "here it is .name"),
+        (lambda: NODE.create_publisher(String, "x").topic_name, "in graphflow it is .name"),
     ],
 )
 def test_what_it_is_called_here(use: Any, here: str) -> None:
@@ -157,7 +157,7 @@ class Follower(Node):
 def test_attributes_that_a_method_sets_later() -> None:
     """The method is named, unless it has run long ago."""
     node = Follower()
-    later = "; moved (test_attribute_errors.py:{}) sets it, and has not run yet: begin "
+    later = "; moved (test_attribute_errors.py:{}) sets it but has not run yet: start "
     for name, text in (("pose", later), ("unmade", "")):
         with pytest.raises(AttributeError) as caught:
             getattr(node, name)

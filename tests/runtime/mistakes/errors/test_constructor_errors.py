@@ -37,11 +37,11 @@ def report(folder: Path, line: str) -> str:
     [
         ("String(dat='x')", "String has no field 'dat'; did you mean 'data'?"),
         ("print('é', String(\n    dat='é',\n))", "String has no field 'dat'; did you mean 'data'?"),
-        ("String('x')", "String takes its fields by name: String(data=...)"),
-        ("Empty(1)", "Empty takes its fields by name: Empty()"),
-        ("geometry_msgs.Point(1.0, y=2.0)", "Point takes its fields by name: Point(x=...)"),
+        ("String('x')", "String takes its fields by keyword: String(data=...)"),
+        ("Empty(1)", "Empty takes its fields by keyword: Empty()"),
+        ("geometry_msgs.Point(1.0, y=2.0)", "Point takes its fields by keyword: Point(x=...)"),
         ("Fibonacci.Goal(ordr=3)", "Fibonacci.Goal has no field 'ordr'; did you mean 'order'?"),
-        ("Fibonacci.Goal(3)", "Fibonacci.Goal takes its fields by name: Goal(order=...)"),
+        ("Fibonacci.Goal(3)", "Fibonacci.Goal takes its fields by keyword: Goal(order=...)"),
         # A class that only code of the user's could tell:
         ("twice[0](dat='x')", "Unexpected keyword argument 'dat'"),
         ("Mine.message(dat='x')", "Unexpected keyword argument 'dat'"),

@@ -40,7 +40,7 @@ async def test_they_are_told(graphflow_runner: asyncio.Runner, caplog: pytest.Lo
     finally:
         loop.set_exception_handler(None)
     first, second, other, callback = [r.message for r in caplog.records if r.levelno >= logging.ERROR]
-    assert first.startswith("fail failed, and nothing awaits it (await it, or start it by self.spawn(...)")
+    assert first.startswith("fail failed, and nothing awaits it (await it, or start it with self.spawn(...)")
     assert first.endswith(": ValueError: boom")
     assert second.startswith("fail failed, and nothing awaits it, 10 times by now")
     assert other == "something else"

@@ -29,13 +29,13 @@ def test_groups_that_are_named(row: Any) -> None:
     assert {*re.findall(r"{(\w+)}", row.remark)} <= known
 
 
-PUBLISH, TICK = "publish returns at once: leave out await", "call it: await tick()"
-GROUP = "a group is given to the handlers that share it: @timer(1.0, group=motion)"
-SEND = "write send in place of send_goal: async with client.send(goal) as sent:"
-FEEDBACK = "they come one by one: async for one in ....feedback(...)"
+PUBLISH, TICK = "publish returns at once: remove await", "call it: await tick()"
+GROUP = "handlers name the group that they share: @timer(1.0, group=motion)"
+SEND = "write send instead of send_goal: async with client.send(goal) as sent:"
+FEEDBACK = "iterate over it: async for item in ....feedback(...)"
 RESULT = "wait for it first: result = await g.result()"
-HEARD, WITH = "messages come one by one: async for message in self.heard", "write async with"
-LOG = 'the log has a method for each level: write self.log.info("...")'
+HEARD, WITH = "iterate over the messages: async for message in self.heard", "write async with"
+LOG = 'a logger has a method for each level: write self.log.info("...")'
 NO_HANDLER = (
     "messages are read from a Subscription(Type, topic) in the body of the class, not from their handler; an async "
     "generator is called: self.moved(...)"
@@ -52,12 +52,12 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         (
             EXPRESSION.format("int"),
             "x = await self.compute(3)",
-            "compute is no `async def`, and returns at once: leave out await",
+            "compute is not an `async def` and returns at once: remove await",
         ),
         (
             "'float' object can't be awaited",
             "await total(3)",
-            "total is no `async def`, and returns at once: leave out await",
+            "total is not an `async def` and returns at once: remove await",
         ),
         (
             "'AddTwoInts_Response' object is not subscriptable",
@@ -68,7 +68,7 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         (
             "unsupported operand type(s) for -: 'Time' and 'int'",
             "dt = self.clock.now() - self.last",
-            "self.last is a number: begin with self.last = self.clock.now(); a span of seconds is "
+            "self.last is a number: initialize it by self.last = self.clock.now(), or write a time span as "
             "Duration.of(self.last)",
         ),
         ("'method' object can't be awaited", "await self.tick", TICK),
@@ -86,7 +86,7 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         (
             EXPRESSION.format("async_generator"),
             "await sent.feedback()",
-            "they come one by one: async for one in ....feedback(...)",
+            "iterate over it: async for item in ....feedback(...)",
         ),
         (
             "'async for' requires an object with __aiter__ method, got method",
@@ -103,7 +103,7 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         ("'NodeLogger' object is not callable", 'self.log("x")', LOG),
         ("'TopicPublisher' object is not callable", "self.words(message)", "write self.words.publish(message)"),
         ("'ServiceClient' object is not callable", "await self.add(r)", "write await self.add.call(request)"),
-        ("'float' object is not callable", "print(self.rate())", "self.rate is a value: leave out the parentheses"),
+        ("'float' object is not callable", "print(self.rate())", "self.rate is a value: remove the parentheses"),
     ],
 )
 def test_the_line_and_the_words_of_several_versions(

@@ -30,8 +30,8 @@ def announce(session: Session, name: str, type_name: str, hash_: str) -> None:
             ["/spawn"],
             "/add does not pass the net profile /lab.yaml, which allows /spawn; if its node is on another",
         ),
-        (["/add"], "/add: the server is announced, but does not take calls: .*, or the net profile of the other mach"),
-        ([], "/add: the server is announced, but does not take calls: its process is starting, or about to end$"),
+        (["/add"], "/add: the server is announced but does not accept calls: .*, or the net profile of the other mach"),
+        ([], "/add: the server is announced but does not accept calls: its process is starting or stopping$"),
     ],
 )
 async def test_who_keeps_calls_back(graph: Graph, allow: list[str], told: str) -> None:
@@ -69,5 +69,5 @@ async def test_an_action(graph: Graph) -> None:
     sending = asyncio.ensure_future(asker.order(1))
     await graph.clock.advance(1.0)
 
-    with pytest.raises(ServiceUnavailable, match="/fibonacci/_action/send_goal: the server is announced, but does not"):
+    with pytest.raises(ServiceUnavailable, match="/fibonacci/_action/send_goal: the server is announced but does not"):
         await sending

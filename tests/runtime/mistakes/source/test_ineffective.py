@@ -12,13 +12,13 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ('self.state == "MOVE"', "self.state == 'MOVE' compares and does nothing; write = to set it"),
-        ("if pose.x > 9:\n        state == 1", "state == 1 compares and does nothing; write = to set it"),
-        ("self.goals[0] == pose", "self.goals[0] == pose compares and does nothing; write = to set it"),
-        ("self.count + 1", "self.count + 1 computes and does nothing; write self.count += 1"),
+        ('self.state == "MOVE"', "self.state == 'MOVE' compares without effect; write = to set it"),
+        ("if pose.x > 9:\n        state == 1", "state == 1 compares without effect; write = to set it"),
+        ("self.goals[0] == pose", "self.goals[0] == pose compares without effect; write = to set it"),
+        ("self.count + 1", "self.count + 1 computes without effect; write self.count += 1"),
         (
             "try:\n        self.state == 1\n        self.go()\n    finally:\n        pass",
-            "self.state == 1 compares and does nothing; write = to set it",
+            "self.state == 1 compares without effect; write = to set it",
         ),
     ],
 )

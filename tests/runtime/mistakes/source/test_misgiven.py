@@ -19,8 +19,8 @@ class Lamp(Node):
     def made(self):
 """
 FIRST = METHODS.count("\n") + 1
-BACK = "the lambda gives back the method {0} and does not call it; write {1}"
-LAST = "each lambda of this line sees the last {0} of the loop; write lambda {1}: ..."
+BACK = "the lambda returns the method {0} instead of calling it; write {1}"
+LAST = "each lambda on this line sees the last {0} of the loop; write lambda {1}: ..."
 
 
 def told(body: str) -> list[str]:
@@ -64,7 +64,7 @@ def test_lambdas_that_call_nothing(body: str, text: str) -> None:
         ("self.ts = [self.create_timer(1.0, lambda: self.show(i)) for i in range(3)]", LAST.format("i", "i=i")),
         (
             "for i in range(3):\n    def cb(m):\n        self.at(i, m)\n    self.create_subscription(P, 'p', cb, 10)",
-            "each cb of this loop sees the last i; write def cb(m, i=i):",
+            "each cb in this loop sees the last i; write def cb(m, i=i):",
         ),
         ("for i in range(3):\n    self.create_timer(1.0, lambda i=i: self.show(i))", ""),
         ("for i in range(3):\n    self.create_timer(1.0, partial(self.show, i))", ""),
@@ -111,5 +111,5 @@ def test_the_line() -> None:
 )
 def test_coroutines_in_threads(body: str, way: str) -> None:
     """Are told with what runs them."""
-    text = f"work is an `async def`, which a thread does not run; write {way}"
+    text = f"work is an `async def`, which a thread cannot run; write {way}"
     assert told(body) == ([text] if way else [])

@@ -21,7 +21,7 @@ class Base(Node):
 class Bases:
     Base = Base
 """
-PARENT = "the body of a class does not see its parent's names: write {}.motion"
+PARENT = "a class body does not see its parent's names: write {}.motion"
 
 
 def remark(tmp_path: Path, more: str) -> str:

@@ -63,20 +63,20 @@ def robot(tmp_path: Path) -> Iterator[Callable[[str], type[Node]]]:
     [
         (
             HEARD + "self.goal = message",
-            "heard on 'goal' takes the place of heard on 'pose' (overridden_module.py:9), which nothing hears any more",
+            "heard on 'goal' replaces heard on 'pose' (overridden_module.py:9), which is no longer received",
         ),
         (
             HEARD.replace("String", "Int32").replace("goal", "pose") + "print(message)",
-            "heard on 'pose' of Int32 takes the place of heard on 'pose' of String (overridden_module.py:9), "
-            "which nothing hears any more",
+            "heard on 'pose' of Int32 replaces heard on 'pose' of String (overridden_module.py:9), "
+            "which is no longer received",
         ),
         (
             '@subscription(String, "goal")\nasync def tick(self, message: String) -> None: ...',
-            "tick on 'goal' takes the place of tick (a timer) (overridden_module.py:13), which runs no more",
+            "tick on 'goal' replaces tick (a timer) (overridden_module.py:13), which no longer runs",
         ),
         (
             '@service(AddTwoInts, "sum")\nasync def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response: ...',
-            "add on 'sum' takes the place of add on 'add' (overridden_module.py:17), which nothing answers any more",
+            "add on 'sum' replaces add on 'add' (overridden_module.py:17), which is no longer answered",
         ),
     ],
 )

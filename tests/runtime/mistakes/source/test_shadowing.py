@@ -58,10 +58,10 @@ def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], 
             '@graphflow.subscription(String, "b")\ndef callback(self, m): ...',
             ":12: N has another 'callback' in line 10, which is lost",
         ),
-        (f"{SERVICE}\ndef go(self):\n    self.enable = True", ":12: self.enable is what N declares by that name"),
+        (f"{SERVICE}\ndef go(self):\n    self.enable = True", ":12: self.enable hides the declaration N.out"),
         (
             'out = Publisher(String, "out")\ndef go(self):\n    self.out = String()',
-            ":11: self.out is what N declares by that name",
+            ":11: self.out hides the declaration N.out",
         ),
     ],
 )

@@ -68,7 +68,7 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ),
         (
             "tags = Param(['a'])\ndef work(self):\n    self.tags.append('b')",
-            "self.tags.append('b') changes the list of a parameter unseen by its checks and by every tool; "
+            "self.tags.append('b') changes a parameter's list without its checks, and no tool sees it; "
             "set a new one, as in self.tags = [*self.tags, ...]",
         ),
         (

@@ -20,7 +20,7 @@ class Robot(Node):
     limit: Any = "1e3"
 
 
-GAIN = "self.gain is the text '5.0': write gain = Param(5.0)"
+GAIN = "self.gain is the string '5.0': write gain = Param(5.0)"
 
 
 @pytest.mark.parametrize(
@@ -32,7 +32,7 @@ GAIN = "self.gain is the text '5.0': write gain = Param(5.0)"
         ("-self.gain", GAIN),
         ("1.0 < self.gain", GAIN),
         ("math.sin(self.gain)", GAIN),
-        ("self.count - 1", "self.count is the text '3': write count = Param(3)"),
+        ("self.count - 1", "self.count is the string '3': write count = Param(3)"),
         ("self.limit - 1", "self.limit is the text '1e3': write 1000.0, without quotes"),
         ("self.word - 1", ""),
         ("self.rate - self.word", ""),

@@ -46,7 +46,7 @@ def test_a_method_without_parentheses(
     found = [record.getMessage() for record in caplog.records if record.getMessage().startswith("lamp.py")]
     assert found == [
         "lamp.py:3: timer.cancel without parentheses calls nothing; write: timer.cancel()",
-        "lamp.py:5: timer.state == 'on' compares and does nothing; write = to set it",
+        "lamp.py:5: timer.state == 'on' compares without effect; write = to set it",
     ]
 
 
