@@ -22,6 +22,7 @@ from graphflow.executor.runner import Runner
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
 from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.runtime.actions.goal_reasons import Reasons
+from graphflow.runtime.callables import name_of
 from graphflow.runtime.endpoints.direct_calls import Switchboard
 from graphflow.runtime.endpoints.intra_process import IntraProcess
 from graphflow.runtime.endpoints.shared_memory import Readers
@@ -91,7 +92,7 @@ class Context:
         """The waits of this process's handlers."""
         self.noticed: Callable[[BaseException], object] = id
         """Called with each error that a node reported and survived; tests replace it."""
-        self._offloads, self._is_full_told = asyncio.Semaphore(OFFLOAD_LIMIT), False
+        self._offloads, self._has_warned_full = asyncio.Semaphore(OFFLOAD_LIMIT), False
         self.search = Search(self, deadlock)
         self._inspection = Inspection(self, self.search)
         self._ids = itertools.count()
@@ -213,7 +214,7 @@ class Context:
                 if ended is not None:
                     self.loop.call_soon_threadsafe(ended)
 
-        name = f"graphflow-{getattr(fn, '__name__', 'thread')}"
+        name = f"graphflow-{name_of(fn, 'thread')}"
         try:
             thread = THREADS.run(lambda: context.run(fn, *args), done, name)
         except RuntimeError:  # no thread can be started
@@ -238,16 +239,15 @@ class Context:
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
         """Run `fn(*args)` in a thread, at most `OFFLOAD_LIMIT` at a time."""
-        if self._offloads.locked() and not self._is_full_told:
-            self._is_full_told = True
-            name = getattr(fn, "__name__", fn)
-            logger.warning("offload: %s waits, since %d offloaded functions are running", name, OFFLOAD_LIMIT)
+        if self._offloads.locked() and not self._has_warned_full:
+            self._has_warned_full = True
+            logger.warning("offload: %s waits, since %d offloaded functions are running", name_of(fn), OFFLOAD_LIMIT)
         await self._offloads.acquire()
         return await self.in_thread(fn, *args, ended=self._offload_ended)
 
     def _offload_ended(self) -> None:
         self._offloads.release()
-        self._is_full_told = False
+        self._has_warned_full = False
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
         """Call `listener` for every node or endpoint that appears or leaves; returns a function that stops this."""
@@ -272,7 +272,7 @@ class Context:
             return
         future = self.loop.create_future()
 
-        def look(_: GraphChange) -> None:
+        def check(_: GraphChange) -> None:
             if future.done():
                 return
             try:
@@ -281,7 +281,7 @@ class Context:
             except Exception as error:  # belongs to the waiting caller, not to other listeners of the graph
                 future.set_exception(error)
 
-        stop = self.on_change(look)
+        stop = self.on_change(check)
         try:
             await future
         finally:

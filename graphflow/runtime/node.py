@@ -21,6 +21,7 @@ from graphflow.runtime import node_options
 from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.actions.server import ActionServer
 from graphflow.runtime.call_site import here
+from graphflow.runtime.callables import written_at
 from graphflow.runtime.context import Context
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.checks import (
@@ -32,7 +33,6 @@ from graphflow.runtime.declarations.checks import (
     check_qos,
     check_text,
     check_type,
-    written_at,
 )
 from graphflow.runtime.declarations.declare import Group, Param
 from graphflow.runtime.declarations.misplaced import check_hooks, check_misplaced, check_module
@@ -131,7 +131,7 @@ class Node(AttributeHints):
         check_names(cls)  # type: ignore[arg-type]
         return with_made(cls, declared.interface_of(cls))
 
-    def __init_subclass__(cls, **kwargs: Any) -> None:
+    def __init_subclass__(cls, **kwargs: object) -> None:
         super().__init_subclass__(**kwargs)
         if "__firstlineno__" not in vars(cls):
             cls.__firstlineno__ = declared.class_line()
@@ -217,7 +217,7 @@ class Node(AttributeHints):
         """The node's endpoints on the network; an action counts as the services and topics it consists of."""
         return self._core.endpoints
 
-    def statistics(self) -> dict[str, dict[str, Any]]:
+    def statistics(self) -> dict[str, dict[str, object]]:
         """Return counters since the start, by the name of each handler, endpoint and group."""
         return self._core.statistics()
 
@@ -385,7 +385,7 @@ class Node(AttributeHints):
     def create_timer(
         self,
         period: float,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         *,
         group: Group | HandlerGroup | None = None,
         thread: bool = False,
@@ -435,7 +435,7 @@ class Node(AttributeHints):
         check_plain(fn, "offload")
         return await self.context.offload(fn, *args)
 
-    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
+    def spawn(self, fn: Callable[..., Coroutine[object, object, object]], *args: Any) -> None:
         """Run the coroutine function `fn(*args)` in the background until the node stops; from any thread.
 
         An error in it ends the node.

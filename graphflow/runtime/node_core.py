@@ -23,6 +23,7 @@ from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs import registry
 from graphflow.names import Resolver
 from graphflow.qos import PARAMETERS, SERVICES, Qos
+from graphflow.runtime.callables import name_of
 from graphflow.runtime.context import Context
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.binding import Binding, Creator
@@ -84,9 +85,9 @@ class NodeCore:
         self.log = node_logger(self.full_name)
         self.parameters = Parameters(overrides)
         self.groups = Groups(declared.groups(cls), cls.default_group, concurrency)
-        self.starting: asyncio.Task[Any] | None = None
+        self.starting: asyncio.Task[object] | None = None
         """The task that runs `on_start`, until it returns."""
-        self.tasks: set[asyncio.Task[Any]] = set()
+        self.tasks: set[asyncio.Task[object]] = set()
         """Running tasks that `spawn` has started."""
         self.runners: list[Runner] = []
         self.refuses_unused = False
@@ -176,7 +177,7 @@ class NodeCore:
     def serves(self, service: str) -> bool:
         return any(e.kind is Kind.SERVICE and e.name == service for e in self.endpoints)
 
-    def statistics(self) -> dict[str, dict[str, Any]]:
+    def statistics(self) -> dict[str, dict[str, object]]:
         """Return counters since the start, by the name of each handler, endpoint and group."""
         found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
         return found | {part.title: part.statistics() for part in self.parts if part.title}
@@ -204,7 +205,7 @@ class NodeCore:
             self.serve("set_logger_levels", "rcl_interfaces/srv/SetLoggerLevels", levels.set, SERVICES)
         self._binding.bind()
 
-    def serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
+    def serve(self, name: str, type_name: str, callback: Callable[[Any], object], qos: Qos) -> None:
         """Offer one of the services that every node has; they exist before `on_start` runs."""
         type_: Any = registry.interface_class(type_name)
         self._own_services.add(f"~/{name}")
@@ -232,7 +233,7 @@ class NodeCore:
             self._late.remove(part)
 
     def place(
-        self, callback: Callable[..., Any] | None, otherwise: str, group: Group | HandlerGroup | None, thread: bool
+        self, callback: Callable[..., object] | None, otherwise: str, group: Group | HandlerGroup | None, thread: bool
     ) -> tuple[str, Any, HandlerGroup | None]:
         """Return a handler's label, the function to call, and the group whose slots its runs take.
 
@@ -240,15 +241,15 @@ class NodeCore:
             callback: None for a subscription that is iterated.
             otherwise: The label of a handler without a name, such as a lambda.
         """
-        name = getattr(callback, "__name__", "")
-        label = name if name and name != "<lambda>" else otherwise
+        name = name_of(callback, otherwise)
+        label = otherwise if name == "<lambda>" else name
         if callback is None:
             return label, None, None
         place = self.groups.place(label, group)
         threaded = thread or (place.is_threaded and not inspect.iscoroutinefunction(callback))
         return label, self._in_thread(callback) if threaded else callback, place.group
 
-    def _in_thread(self, fn: Callable[..., Any]) -> Callable[..., Coroutine[Any, Any, Any]]:
+    def _in_thread(self, fn: Callable[..., object]) -> Callable[..., Coroutine[object, object, object]]:
         if inspect.iscoroutinefunction(fn):
             raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
 
@@ -399,7 +400,7 @@ class NodeCore:
         """Keep the parts from starting more work; returns the runners to cancel."""
         return [*(part.begin_to_stop() for part in self.parts), *self._binding.runners()]
 
-    async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[Any]]) -> None:
+    async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[object]]) -> None:
         """Cancel runs and tasks, and give them `STOP_LIMIT` seconds to clean up."""
         ending: dict[asyncio.Future[Any], str] = {r.cancel(): r.name for r in runners if r is not None}
         for task in {*tasks} - {asyncio.current_task()}:
@@ -416,7 +417,7 @@ class NodeCore:
             await self.limited("on_shutdown", self.instance.on_shutdown)
         await self.limited("exiting context managers", self.entered.aclose)
 
-    async def limited(self, what: str, work: Callable[[], Coroutine[Any, Any, Any]]) -> None:
+    async def limited(self, what: str, work: Callable[[], Coroutine[object, object, object]]) -> None:
         """Run one step of stopping; its failure or timeout does not prevent the next ones."""
         try:
             async with asyncio.timeout(STOP_LIMIT):
@@ -426,15 +427,15 @@ class NodeCore:
         except Exception as error:
             self.report_error(what, error)
 
-    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
+    def spawn(self, fn: Callable[..., Coroutine[object, object, object]], *args: Any) -> asyncio.Task[object]:
         """Run `fn(*args)` in the background until the node stops. An error in it ends the node."""
-        task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
+        task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{name_of(fn, 'task')}")
         self.tasks.add(task)
         task.add_done_callback(self._task_done)
         self.context.search.arm()
         return task
 
-    def _task_done(self, task: asyncio.Task[Any]) -> None:
+    def _task_done(self, task: asyncio.Task[object]) -> None:
         self.tasks.discard(task)
         if task.cancelled() or (error := task.exception()) is None:
             return

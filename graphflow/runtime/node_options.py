@@ -17,6 +17,7 @@ from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
 from graphflow.names import Remap, Resolver, did_you_mean, whole_rule
 from graphflow.runtime.args import is_number_or_truth
+from graphflow.runtime.callables import code_of
 from graphflow.runtime.mistakes.slow_hooks import warn_slow_init
 
 T = TypeVar("T")
@@ -84,7 +85,7 @@ def take(node: object) -> NodeOptions:
 def why_not(cls: type) -> str:
     """Return the reason why nodes of a class cannot be made, as a sentence; "" if they can."""
     init = inspect.unwrap(cls.__init__)  # type: ignore[misc]
-    code = getattr(init, "__code__", None)
+    code = code_of(init)
     is_ours = init.__module__.startswith("graphflow.")
     if code is not None and not is_ours and not {"super", "__init__"} & {*code.co_names, *code.co_freevars}:
         return f"{cls.__name__}.__init__ must call super().__init__(...)"

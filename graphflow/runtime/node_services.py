@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import InterfaceError
 from graphflow.msgs import registry
@@ -19,6 +19,7 @@ from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import referenced, type_id
 
 if TYPE_CHECKING:
+    from graphflow.msgs.rcl_interfaces import srv as rcl_srv
     from graphflow.msgs.type_description_interfaces import msg as description
     from graphflow.msgs.type_description_interfaces import srv
 
@@ -99,7 +100,7 @@ class LoggerLevels:
         is_ours = name == self._own or name.startswith(f"{self._own}.")
         return logging.getLogger(f"{ROOT}.{name}") if is_ours else None
 
-    def get(self, request: Any) -> Any:
+    def get(self, request: rcl_srv.GetLoggerLevels_Request) -> rcl_srv.GetLoggerLevels_Response:
         from graphflow.msgs.rcl_interfaces.msg import LoggerLevel
         from graphflow.msgs.rcl_interfaces.srv import GetLoggerLevels
 
@@ -110,7 +111,7 @@ class LoggerLevels:
             levels.append(LoggerLevel(name=name, level=level))
         return GetLoggerLevels.Response(levels=levels)
 
-    def set(self, request: Any) -> Any:
+    def set(self, request: rcl_srv.SetLoggerLevels_Request) -> rcl_srv.SetLoggerLevels_Response:
         from graphflow.msgs.rcl_interfaces.msg import SetLoggerLevelsResult
         from graphflow.msgs.rcl_interfaces.srv import SetLoggerLevels
 

@@ -87,7 +87,7 @@ class Part(AttributeHints, ABC):
         """The part's endpoints."""
         return ()
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         """Return counters since the start."""
         return {}
 

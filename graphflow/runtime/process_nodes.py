@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from graphflow.runtime.context import Context
 from graphflow.runtime.ending import StopRequest
@@ -84,7 +83,7 @@ class Company:
             Exception: A node failed to start; the others are cancelled.
         """
         starting = {asyncio.create_task(core_of(node).start(self._context)): node for node in nodes}
-        left: set[asyncio.Task[Any]] = {asked, *starting}
+        left: set[asyncio.Task[object]] = {asked, *starting}
         try:
             while asked in left and len(left) > 1:
                 done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)

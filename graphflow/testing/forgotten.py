@@ -7,7 +7,7 @@ import linecache
 import sys
 from collections.abc import Callable, Coroutine
 from functools import wraps
-from typing import Any, NamedTuple, ParamSpec, TypeVar
+from typing import NamedTuple, ParamSpec, TypeVar
 
 from graphflow.errors import Place
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class _Call(NamedTuple):
-    coroutine: Coroutine[Any, Any, Any]
+    coroutine: Coroutine[object, object, object]
     place: Place
 
 
@@ -24,11 +24,11 @@ _calls: list[_Call] = []
 """Calls that had not started when the last one was made."""
 
 
-def awaited(method: Callable[P, Coroutine[Any, Any, T]]) -> Callable[P, Coroutine[Any, Any, T]]:
+def awaited(method: Callable[P, Coroutine[object, object, T]]) -> Callable[P, Coroutine[object, object, T]]:
     """Track the calls of a method of the fixture until they start."""
 
     @wraps(method)
-    def call(*args: P.args, **kwargs: P.kwargs) -> Coroutine[Any, Any, T]:
+    def call(*args: P.args, **kwargs: P.kwargs) -> Coroutine[object, object, T]:
         caller = sys._getframe(1)
         _calls[:] = filter(_has_not_begun, _calls)
         coroutine = method(*args, **kwargs)

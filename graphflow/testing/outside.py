@@ -14,6 +14,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from graphflow.executor.ledger import Ledger
+from graphflow.runtime.callables import name_of
 
 _followed: WeakKeyDictionary[asyncio.AbstractEventLoop, Outside] = WeakKeyDictionary()
 
@@ -54,7 +55,7 @@ class Outside:
             while isinstance(called, functools.partial):  # `asyncio.to_thread` passes its function to Context.run
                 called = called.args[0] if called.args and callable(called.args[0]) else called.func
             kind = "a thread" if executor is None else type(executor).__name__
-            self._futures[future] = f"{getattr(called, '__name__', called)} in {kind}"
+            self._futures[future] = f"{name_of(called)} in {kind}"
             future.add_done_callback(self._futures.pop)
             return future
 

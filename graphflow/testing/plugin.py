@@ -20,7 +20,7 @@ import pytest
 if TYPE_CHECKING:
     from graphflow.testing.graph import Graph
 
-Test: TypeAlias = Callable[..., Coroutine[Any, Any, None]]
+Test: TypeAlias = Callable[..., Coroutine[object, object, None]]
 
 LIMIT = 60.0
 """Longest duration of an asynchronous test, in seconds of real time."""

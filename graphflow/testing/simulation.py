@@ -135,7 +135,7 @@ class World:
 
 
 def simulate(
-    story: Callable[[World], Coroutine[Any, Any, Any]],
+    story: Callable[[World], Coroutine[object, object, object]],
     seed: int = 0,
     *,
     delay: tuple[float, float] = (0.0, 0.0),

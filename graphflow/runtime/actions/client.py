@@ -476,7 +476,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
                 await self._take(goal, await self._get.call(request))
 
-    def _in_background(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+    def _in_background(self, work: Coroutine[object, object, None]) -> asyncio.Task[None]:
         task = self.host.context.loop.create_task(work, name=f"{self.host.full_name}: {self.name}")
         self._followers.add(task)
         task.add_done_callback(self._followers.discard)

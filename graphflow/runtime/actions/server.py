@@ -28,6 +28,7 @@ from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRec
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, made_as, name_of
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.callables import name_of as callable_name
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.endpoints.services import ServiceServer
@@ -182,7 +183,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def endpoints(self) -> tuple[RawPublisher | TopicPublisher[Any] | ServiceServer[Any, Any], ...]:
         return (self._status, self._feedback, *self._services)
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         """Return the numbers of goals started, failed, running and waiting for a slot."""
         runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
         return {"runs": runs, "errors": errors, "active": self.book.active(), "waiting": len(self._waiting)}
@@ -274,7 +275,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         if self._accept is None:
             return ""
         limit = self.rules.accept_limit
-        name = getattr(self._accept, "__name__", "accept")
+        name = callable_name(self._accept, "accept")
         try:
             async with asyncio.timeout(limit):
                 answer = self._accept(goal)

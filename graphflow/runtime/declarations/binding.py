@@ -29,25 +29,25 @@ class Creator(Protocol):
     """The methods of a node that create its endpoints."""
 
     @property
-    def create_publisher(self) -> Callable[..., Any]: ...
+    def create_publisher(self) -> Callable[..., object]: ...
 
     @property
-    def create_subscription(self) -> Callable[..., Any]: ...
+    def create_subscription(self) -> Callable[..., object]: ...
 
     @property
-    def create_service(self) -> Callable[..., Any]: ...
+    def create_service(self) -> Callable[..., object]: ...
 
     @property
-    def create_client(self) -> Callable[..., Any]: ...
+    def create_client(self) -> Callable[..., object]: ...
 
     @property
-    def create_action_server(self) -> Callable[..., Any]: ...
+    def create_action_server(self) -> Callable[..., object]: ...
 
     @property
-    def create_action_client(self) -> Callable[..., Any]: ...
+    def create_action_client(self) -> Callable[..., object]: ...
 
     @property
-    def create_timer(self) -> Callable[..., Any]: ...
+    def create_timer(self) -> Callable[..., Timer]: ...
 
 
 class Binding:
@@ -58,7 +58,7 @@ class Binding:
     """
 
     def __init__(self, node: Creator, host: Host, parameters: Parameters) -> None:
-        self.held: dict[str, Any] = {}
+        self.held: dict[str, object] = {}
         self._node, self._host, self._parameters = node, host, parameters
         self._class = type(node)
         self._timers: list[tuple[Rate, Timer]] = []
@@ -83,7 +83,7 @@ class Binding:
         for attribute, handler in declared.handlers(self._class).items():
             self._bind_handler(getattr(self._node, attribute), handler)
 
-    def _create(self, item: Held) -> Any:
+    def _create(self, item: Held) -> object:
         node = self._node
         match item:
             case Publisher():
@@ -106,7 +106,7 @@ class Binding:
             return fn
         return getattr(self._node, fn.__name__) if hasattr(self._class, fn.__name__) else MethodType(fn, self._node)
 
-    def _bind_handler(self, method: Callable[..., Any], handler: Handler) -> None:
+    def _bind_handler(self, method: Callable[..., object], handler: Handler) -> None:
         node = self._node
         options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
         if handler.kind == "subscription":
@@ -191,7 +191,7 @@ _turn: ContextVar[_Turn | None] = ContextVar("turn", default=None)
 class _Follower:
     """The calls of one `on_change` method, one at a time."""
 
-    def __init__(self, host: Host, method: Callable[[Any, Any], Any], parameter: str) -> None:
+    def __init__(self, host: Host, method: Callable[[object, object], Any], parameter: str) -> None:
         self._host, self._method, self._parameter = host, method, parameter
         self._turns: deque[_Turn] = deque()
         spec = RunnerSpec(method.__name__, self._invoke, self._finished, host.full_name)
@@ -212,7 +212,7 @@ class _Follower:
         else:
             self.runner.wake()
 
-    def _invoke(self, turn: _Turn) -> Any:
+    def _invoke(self, turn: _Turn) -> object:
         if inspect.iscoroutinefunction(self._method):
             return self._invoke_async(turn)
         token = _turn.set(turn)
@@ -225,7 +225,7 @@ class _Follower:
         _turn.set(turn)
         await self._method(turn.change.old, turn.change.new)
 
-    def _finished(self, turn: _Turn, result: Any, error: BaseException | None) -> None:
+    def _finished(self, turn: _Turn, result: object, error: BaseException | None) -> None:
         turn.is_over = True  # tasks it has started inherit the context variable, and start a new chain
         if error is not None:
             self._host.handler_failed(self._method.__name__, error)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Mapping
-from typing import Any, get_args
+from collections.abc import Callable, Mapping
+from typing import get_args
 
 from graphflow.errors import DeclarationError, InvalidName, Place
 from graphflow.interface import OnError
@@ -31,7 +31,7 @@ def check_node(node: object) -> None:
         raise DeclarationError(f"{node!r} is not a node: an object of a class that derives from graphflow.Node")
 
 
-def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
+def check_type(type_: object, kind: type, what: str, place: Place) -> None:
     """Check that `type_` is a message, service or action class."""
     if not (isinstance(type_, type) and issubclass(type_, kind)):
         hint = _text_hint(type_) if isinstance(type_, str) else _kind_hint(type_, kind)
@@ -48,7 +48,7 @@ def _text_hint(text: str) -> str:
     return f"; write from graphflow.msgs.{package}.{kind} import {name}, and then {name} without quotes"
 
 
-def _kind_hint(type_: Any, kind: type) -> str:
+def _kind_hint(type_: object, kind: type) -> str:
     """Return a hint for a class of another kind of interface."""
     if not isinstance(type_, type):
         return ""
@@ -65,17 +65,18 @@ def _kind_hint(type_: Any, kind: type) -> str:
     )
 
 
-def check_text(name: Any, what: str, place: Place) -> None:
-    """Check that the argument `name` is text."""
+def check_text(name: object, what: str, place: Place) -> str:
+    """Return the argument `name` if it is text."""
     if not isinstance(name, str):
         raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is not a name")
+    return name
 
 
-def check_name(name: Any, what: str, place: Place) -> None:
+def check_name(name: object, what: str, place: Place) -> None:
     """Check that a name is legal."""
-    check_text(name, what, place)
+    text = check_text(name, what, place)
     try:
-        expand(name, "/", "node")
+        expand(text, "/", "node")
     except InvalidName as error:
         raise DeclarationError(f"{place}: {what}: {error}") from None
 
@@ -96,7 +97,7 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
         raise DeclarationError(f"{place}: {error}") from None
 
 
-def positional(fn: Any) -> tuple[list[str], int] | None:
+def positional(fn: Callable[..., object]) -> tuple[list[str], int] | None:
     """Return the required positional arguments' names and the most accepted; None if there is no limit."""
     try:
         parameters = inspect.signature(fn).parameters.values()
@@ -108,13 +109,7 @@ def positional(fn: Any) -> tuple[list[str], int] | None:
     return [p.name for p in taken if p.default is p.empty], len(taken)
 
 
-def written_at(fn: Any) -> str:
-    """Return the place of a function as `file:line`; "" if it is not written in Python."""
-    code = getattr(inspect.unwrap(fn), "__code__", None)
-    return "" if code is None else str(Place(code.co_filename, code.co_firstlineno))
-
-
-def check_function(fn: Any, what: str, example: str) -> None:
+def check_function(fn: object, what: str, example: str) -> None:
     """Check that `fn` is a function rather than the result of a call, as in `spawn(self.work())`.
 
     Args:
@@ -129,7 +124,7 @@ def check_function(fn: Any, what: str, example: str) -> None:
     raise DeclarationError(f"{what} takes the function itself, then its arguments: {example}, not {shown}")
 
 
-def check_plain(fn: Any, what: str) -> None:
+def check_plain(fn: object, what: str) -> None:
     """Check that a function for a thread is a `def`."""
     if inspect.iscoroutinefunction(fn):
         name = fn.__name__
@@ -138,7 +133,7 @@ def check_plain(fn: Any, what: str) -> None:
         )
 
 
-def check_callback(callback: Any, arguments: range, what: str, place: Place, hint: str = "") -> int:
+def check_callback(callback: object, arguments: range, what: str, place: Place, hint: str = "") -> int:
     """Check that a handler accepts one of these numbers of arguments; returns the number."""
     if not callable(callback):
         if inspect.iscoroutine(callback):
@@ -159,7 +154,7 @@ def check_callback(callback: Any, arguments: range, what: str, place: Place, hin
     return fitting[0]
 
 
-def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: Place) -> None:
+def check_annotations(fn: Callable[..., object], expected: Mapping[str, type], what: str, place: Place) -> None:
     """Check that a function's annotations agree with the messages that it receives.
 
     Args:
@@ -177,7 +172,7 @@ def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: P
             )
 
 
-def check_returned(fn: Any, called: str, wanted: type, what: str, place: Place) -> None:
+def check_returned(fn: Callable[..., object], called: str, wanted: type, what: str, place: Place) -> None:
     """Check that a handler's return annotation agrees with the type that it must return.
 
     Args:
@@ -185,17 +180,18 @@ def check_returned(fn: Any, called: str, wanted: type, what: str, place: Place) 
     """
     annotation = inspect.signature(fn).return_annotation
     found = _annotated(fn, annotation)
-    is_message = isinstance(found, type) and issubclass(found, Message) and not issubclass(wanted, found)
-    plain = next((kind for kind in _PLAIN if annotation in (kind, kind.__name__)), None)
-    if is_message or plain is not None:
-        name = (plain or found).__name__.replace("_", ".")
+    wrong: type | None = next((kind for kind in _PLAIN if annotation in (kind, kind.__name__)), None)
+    if wrong is None and isinstance(found, type) and issubclass(found, Message) and not issubclass(wanted, found):
+        wrong = found
+    if wrong is not None:
+        name = wrong.__name__.replace("_", ".")
         raise DeclarationError(f"{place}: {what}: {fn.__name__} returns {called}, but is annotated to return {name}")
 
 
 _PLAIN = (str, int, float, bool, bytes, list, dict, tuple)
 
 
-def _annotated(fn: Any, annotation: Any) -> Any:
+def _annotated(fn: Callable[..., object], annotation: object) -> object:
     """Return the class that an annotation names; None for text that the function's module does not define."""
     if not isinstance(annotation, str):
         return annotation
@@ -206,7 +202,7 @@ def _annotated(fn: Any, annotation: Any) -> Any:
     return found
 
 
-def check_on_event(on_event: Any, what: str, place: Place) -> None:
+def check_on_event(on_event: object, what: str, place: Place) -> None:
     """Check that `on_event` is a method."""
     if on_event is not None and not inspect.isfunction(on_event):
         raise DeclarationError(
@@ -216,21 +212,23 @@ def check_on_event(on_event: Any, what: str, place: Place) -> None:
     check_hook(on_event, "on_event", "event", what, place)
 
 
-def check_hook(hook: Any, word: str, argument: str, what: str, place: Place) -> None:
+def check_hook(hook: object, word: str, argument: str, what: str, place: Place) -> None:
     """Check that a hook, a method called outside of any handler, accepts its arguments."""
-    takes = positional(hook) if inspect.isfunction(hook) else None
+    if not inspect.isfunction(hook):
+        return
+    takes = positional(hook)
     if takes is not None and not len(takes[0]) <= 2 <= takes[1]:
         has = ", ".join(takes[0])
         raise DeclarationError(f"{place}: {what}: {word}= calls {hook.__name__}(self, {argument}), which takes ({has})")
 
 
-def check_group(group: Any, kind: type | tuple[type, ...], what: str, place: Place) -> None:
+def check_group(group: object, kind: type | tuple[type, ...], what: str, place: Place) -> None:
     """Check that `group` is a declared group."""
     if group is not None and not isinstance(group, kind):
         raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
 
 
-def check_on_error(on_error: Any, place: Place) -> None:
+def check_on_error(on_error: object, place: Place) -> None:
     """Check that `on_error` is a known policy."""
     if on_error not in get_args(OnError):
         raise DeclarationError(f"{place}: on_error must be one of {', '.join(get_args(OnError))}, not {on_error!r}")

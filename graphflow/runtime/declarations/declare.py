@@ -30,7 +30,7 @@ from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 
 M = TypeVar("M", bound=Message)
 V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float], list[str])
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 _NUMBERS = ("int", "float", "list[int]", "list[float]")
 
@@ -134,7 +134,7 @@ class Publisher(Held, Generic[M]):
         qos: Qos | int = 10,
         *,
         depth: int | None = None,
-        on_event: Callable[..., Any] | None = None,
+        on_event: Callable[..., object] | None = None,
     ) -> None:
         self.place = here()
         check_type(type, Message, "Publisher", self.place)
@@ -169,7 +169,7 @@ class Subscription(Held, Generic[M]):
         *,
         depth: int | None = None,
         ignore_local: bool = False,
-        on_event: Callable[..., Any] | None = None,
+        on_event: Callable[..., object] | None = None,
     ) -> None:
         self.place = here()
         check_type(type, Message, "Subscription", self.place)

@@ -20,6 +20,7 @@ from graphflow.interface import (
     Interface,
     Parameter,
 )
+from graphflow.runtime.callables import code_of
 from graphflow.runtime.declarations.declare import (
     HOOK_MARK,
     ActionClient,
@@ -130,8 +131,8 @@ def check_attributes(cls: type, node: type) -> None:
     taken = reserved(node)
     found: dict[str, object] = {**held(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
-        function = getattr(value, "__func__", value)  # unwraps classmethod and staticmethod
-        is_override = inspect.isfunction(function) and "super" in function.__code__.co_names
+        code = code_of(value)
+        is_override = code is not None and "super" in code.co_names
         is_meant = is_override or isinstance(value, property) or not is_users_module(cls.__module__)
         if not attribute.startswith("_") and not is_meant:
             found.setdefault(attribute, value)
@@ -139,10 +140,11 @@ def check_attributes(cls: type, node: type) -> None:
         hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
         if attribute == "name" and isinstance(declared, str):
             hint = f"; to name the nodes of the class write node_name = {declared!r}"
-        code = getattr(getattr(declared, "__func__", declared), "__code__", None)
-        place = getattr(declared, "place", None) or (
-            Place(code.co_filename, code.co_firstlineno) if code is not None else place_of(cls)
-        )
+        code = code_of(declared)
+        if isinstance(declared, (Held, Handler)):
+            place = declared.place
+        else:
+            place = Place(code.co_filename, code.co_firstlineno) if code is not None else place_of(cls)
         raise DeclarationError(f"{place}: every node has {attribute!r}; choose another name{hint}")
 
 
@@ -282,7 +284,7 @@ def _check_patterns(place: Place, patterns: Iterable[str]) -> None:
 def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerInfo:
     # A subclass may have replaced only the body, by an `async def` or a `def` in another place.
     function = inspect.unwrap(getattr(cls, attribute))
-    code = getattr(function, "__code__", None)
+    code = code_of(function)
     place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)
     group = None if handler.kind == "task" else handler.group or cls.default_group
     is_async = inspect.iscoroutinefunction(function)

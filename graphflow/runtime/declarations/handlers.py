@@ -32,7 +32,7 @@ from graphflow.runtime.endpoints.service_events import Introspection
 from graphflow.runtime.mistakes.rclpy_words import with_argument_hints
 
 M = TypeVar("M", bound=Message)
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 MARK = "__graphflow__"
 
@@ -50,7 +50,7 @@ class Handler:
     qos: Qos = field(default_factory=Qos)
     takes_info: bool = False
     ignore_local: bool = False
-    on_event: Callable[..., Any] | None = None
+    on_event: Callable[..., object] | None = None
     introspection: Introspection = "off"
     rate: Rate | None = None
     on_error: OnError = "budget"
@@ -62,8 +62,8 @@ class ActionOptions:
     """An action's policies: see `Node.create_action_server`. Functions are methods of the class body."""
 
     policy: GoalPolicy
-    accept: Callable[..., Any] | None
-    cancellable: bool | Callable[..., Any]
+    accept: Callable[..., object] | None
+    cancellable: bool | Callable[..., object]
     on_client_loss: OnClientLoss
     cleanup_timeout: float
 
@@ -103,9 +103,9 @@ class Rate:
 
 
 def _mark(fn: F, handler: Handler, arguments: range) -> F:
-    name = getattr(fn, "__name__", repr(fn))
     if not inspect.isfunction(fn):
         raise DeclarationError(f"{handler.place}: @{handler.kind} goes on a method, not on {fn!r}")
+    name = fn.__name__
     other = getattr(fn, MARK, None)
     if isinstance(other, Handler):
         kinds = f"@{other.kind} and @{handler.kind}"
@@ -156,7 +156,7 @@ def subscription(
     group: Group | None = None,
     thread: bool = False,
     ignore_local: bool = False,
-    on_event: Callable[..., Any] | None = None,
+    on_event: Callable[..., object] | None = None,
     on_error: OnError = "budget",
 ) -> Callable[[F], F]:
     """Call the method with each message on a topic: `async def heard(self, msg: String) -> None`.
@@ -254,8 +254,8 @@ def action(
     group: Group | None = None,
     thread: bool = False,
     policy: GoalPolicy = "reject",
-    accept: Callable[..., Any] | None = None,
-    cancellable: bool | Callable[..., Any] = True,
+    accept: Callable[..., object] | None = None,
+    cancellable: bool | Callable[..., object] = True,
     on_client_loss: OnClientLoss = "continue",
     cleanup_timeout: float = 10.0,
 ) -> Callable[[F], F]:
@@ -294,6 +294,7 @@ def action(
 def task(fn: F) -> F:
     """Run the method in the background once the node is up. An error in it ends the node."""
     place = here()
-    if not inspect.iscoroutinefunction(fn):
+    is_async = inspect.iscoroutinefunction(fn)
+    if not is_async:
         raise DeclarationError(f"{place}: @task goes on an `async def` method, without parentheses")
     return _mark(fn, Handler("task", place), range(1, 2))

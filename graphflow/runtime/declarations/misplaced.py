@@ -8,8 +8,7 @@ import functools
 import inspect
 import sys
 from collections.abc import Collection, Iterator, Mapping
-from types import CodeType
-from typing import Any
+from types import CellType, CodeType, FunctionType
 
 from graphflow.errors import DeclarationError, Place
 from graphflow.runtime.declarations import declared
@@ -42,7 +41,7 @@ def check_misplaced(cls: type) -> None:
             raise DeclarationError(f"{place} is only annotated, as {value}; write = instead of the colon")
 
 
-def _declares(annotation: str, space: Mapping[str, Any]) -> bool:
+def _declares(annotation: str, space: Mapping[str, object]) -> bool:
     """Whether the text of an annotation is a declaration, such as `Publisher(String, "chatter")`."""
     try:
         expression = ast.parse(annotation, mode="eval").body
@@ -55,10 +54,11 @@ def _declares(annotation: str, space: Mapping[str, Any]) -> bool:
     return isinstance(found, type) and issubclass(found, Held)
 
 
-def _wrapped_by(value: Any) -> Iterator[Any]:
+def _wrapped_by(value: object) -> Iterator[object]:
     """Return marked functions that an attribute wraps instead of being one itself."""
     if hasattr(value, MARK) or hasattr(value, HOOK_MARK) or isinstance(value, (Held, type)):
         return
+    inner: list[object]
     if isinstance(value, property):
         inner = [value.fget, value.fset]
     elif isinstance(value, (staticmethod, classmethod)):
@@ -72,21 +72,21 @@ def _wrapped_by(value: Any) -> Iterator[Any]:
     yield from (fn for fn in inner if inspect.isfunction(fn) and (hasattr(fn, MARK) or hasattr(fn, HOOK_MARK)))
 
 
-def _content(cell: Any) -> Any:
+def _content(cell: CellType) -> object:
     try:
         return cell.cell_contents
     except ValueError:  # an empty cell
         return None
 
 
-def _handlers_in(value: Any) -> Iterator[Handler]:
+def _handlers_in(value: object) -> Iterator[Handler]:
     """Return the handlers that a decorator such as `timer(1.0)` would set as marks."""
-    for cell in getattr(value, "__closure__", None) or ():
+    for cell in (value.__closure__ or ()) if isinstance(value, FunctionType) else ():
         if isinstance(found := _content(cell), Handler):
             yield found
 
 
-def _refuse_wrapped(attribute: str, value: Any, inner: Any) -> None:
+def _refuse_wrapped(attribute: str, value: object, inner: object) -> None:
     mark: Handler | ParamHook = getattr(inner, MARK, None) or getattr(inner, HOOK_MARK)
     own = f"@{mark.kind}" if isinstance(mark, Handler) else f"@{mark.param.attribute}.{mark.kind}"
     if isinstance(value, (property, staticmethod, classmethod)):
@@ -97,7 +97,7 @@ def _refuse_wrapped(attribute: str, value: Any, inner: Any) -> None:
     raise DeclarationError(f"{mark.place}: {attribute} would never run, because the decorator above hides it; {way}")
 
 
-def _refuse_collected(attribute: str, value: Any, known: Collection[int]) -> None:
+def _refuse_collected(attribute: str, value: Collection[object], known: Collection[int]) -> None:
     for item in value.values() if isinstance(value, dict) else value:
         if not isinstance(item, Held) or id(item) in known:
             continue

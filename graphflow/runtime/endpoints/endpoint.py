@@ -6,7 +6,6 @@ from abc import abstractmethod
 from asyncio import Future
 from collections import Counter, deque
 from collections.abc import Callable
-from typing import Any
 
 from graphflow.errors import ClosedError, DecodeError
 from graphflow.executor.runner import Runner, RunnerSpec
@@ -75,7 +74,7 @@ class Endpoint(Part):
     def title(self) -> str:
         return f"{self.kind.name.lower()} {self.name}"
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         return {
             "matched": len(self.matched),
             **{kind: n for kind, n in self._event_totals.items() if kind != "matched"},
@@ -212,7 +211,7 @@ class Endpoint(Part):
             self._events.append(QosEvent(kind, total, more if change is None else change, current, detail))
             self._event_runner.wake()
 
-    def _event_handled(self, event: QosEvent, result: Any, error: BaseException | None) -> None:
+    def _event_handled(self, event: QosEvent, result: object, error: BaseException | None) -> None:
         if error is not None:
             self.host.handler_failed(f"event {event.kind} of {self.name}", error)
 

@@ -6,7 +6,7 @@ Source: rmw's event types; DDS 1.4, 2.2.4.1 (statuses).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from graphflow.executor.clock import Alarm, Clock
 
@@ -35,7 +35,7 @@ class QosEvent(NamedTuple):
     """The counterpart's node, or the incompatible policies."""
 
 
-OnEvent = Callable[[QosEvent], Any]
+OnEvent = Callable[[QosEvent], object]
 
 
 class SilenceTimer:

@@ -103,7 +103,7 @@ class RawSubscription(Endpoint):
         if items:
             self.host.context.loop.call_soon(self._arrived)
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         return {"received": self.received, "dropped": self.dropped, **super().statistics()}
 
     def close(self) -> None:
@@ -157,7 +157,7 @@ class RawPublisher(Endpoint):
         if self._sender is not None and self._sender.is_wanted:
             self._sender.put(payload, attachment=attachment.pack(*fields))
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         return {"published": self.published, **super().statistics()}
 
     def close(self) -> None:

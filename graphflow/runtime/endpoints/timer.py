@@ -36,7 +36,7 @@ class Timer(Part):
         self,
         host: Host,
         period_ns: int,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         label: str,
         group: HandlerGroup | None = None,
         *,
@@ -71,7 +71,7 @@ class Timer(Part):
     def title(self) -> str:
         return f"timer {self._label}"
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         """Return the numbers of runs, failed runs and skipped periods since the start."""
         runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
         return {"runs": runs, "errors": errors, "skipped": self.skipped}
@@ -143,7 +143,7 @@ class Timer(Part):
     def _invoke(self, info: TimerInfo) -> Any:
         return self._callback(info) if self._takes_info else self._callback()
 
-    def _finished(self, info: TimerInfo, result: Any, error: BaseException | None) -> None:
+    def _finished(self, info: TimerInfo, result: object, error: BaseException | None) -> None:
         if error is not None:
             self.host.handler_failed(self._label, error, self._on_error)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import sys
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import GraphflowError, uncoloured
 from graphflow.names import did_you_mean
@@ -139,7 +139,7 @@ class Rosout(Part):
     def title(self) -> str:
         return "log"
 
-    def statistics(self) -> dict[str, Any]:
+    def statistics(self) -> dict[str, object]:
         """Return the numbers of records logged and aggregated, and the recent rates of both per second."""
         log = self._host.log
         gathered, lately = getattr(log, "gathered", 0), getattr(log, "gathered_lately", None)

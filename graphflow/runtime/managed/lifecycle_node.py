@@ -34,7 +34,7 @@ class LifecycleNode(Node):
     _core_class = ManagedCore
     is_managed = True
 
-    def __init_subclass__(cls, **kwargs: Any) -> None:
+    def __init_subclass__(cls, **kwargs: object) -> None:
         super().__init_subclass__(**kwargs)
         declared.check_attributes(cls, LifecycleNode)
         for name in HOOKS:

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from contextlib import AsyncExitStack
 from functools import partial
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from graphflow.errors import TransitionFailed, TransitionRefused
 from graphflow.executor.runner import Runner
@@ -27,6 +27,9 @@ from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.node_core import NodeCore
 from graphflow.runtime.part import Part
 
+if TYPE_CHECKING:
+    from graphflow.msgs.lifecycle_msgs import msg, srv
+
 P = TypeVar("P", bound=Part)
 
 LABEL_SHOWN = 40
@@ -40,7 +43,7 @@ class _Level:
         self.below = below
         """The exit stack of the level below."""
         self.parts: list[Part] = []
-        self.tasks: list[asyncio.Task[Any]] = []
+        self.tasks: list[asyncio.Task[object]] = []
 
 
 class ManagedCore(NodeCore):
@@ -94,7 +97,7 @@ class ManagedCore(NodeCore):
             if part in level.parts:
                 level.parts.remove(part)
 
-    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
+    def spawn(self, fn: Callable[..., Coroutine[object, object, object]], *args: Any) -> asyncio.Task[object]:
         task = super().spawn(fn, *args)
         if self._levels:
             tasks = self._levels[-1].tasks
@@ -256,7 +259,7 @@ class ManagedCore(NodeCore):
                 part.idle_because = self._why()
         assert self._event is not None
         if self._event.is_wanted:
-            self._event.publish(self._told(transition))
+            self._event.publish(self._transition_event(transition))
         if self.state.is_primary:
             self.on_state(self.state)
 
@@ -272,7 +275,7 @@ class ManagedCore(NodeCore):
 
     # services
 
-    async def _change_state(self, request: Any) -> Any:
+    async def _change_state(self, request: srv.ChangeState_Request) -> srv.ChangeState_Response:
         from graphflow.msgs.lifecycle_msgs.srv import ChangeState
 
         try:
@@ -282,23 +285,23 @@ class ManagedCore(NodeCore):
             return ChangeState.Response(success=False)
         return ChangeState.Response(success=True)
 
-    def _get_state(self, request: Any) -> Any:
+    def _get_state(self, request: object) -> srv.GetState_Response:
         from graphflow.msgs.lifecycle_msgs.srv import GetState
 
         return GetState.Response(current_state=_state(self.state))
 
-    def _get_states(self, request: Any) -> Any:
+    def _get_states(self, request: object) -> srv.GetAvailableStates_Response:
         from graphflow.msgs.lifecycle_msgs.srv import GetAvailableStates
 
         return GetAvailableStates.Response(available_states=[_state(state) for state in LifecycleState])
 
-    def _get_transitions(self, request: Any) -> Any:
+    def _get_transitions(self, request: object) -> srv.GetAvailableTransitions_Response:
         return _described(available(self.state))
 
-    def _get_graph(self, request: Any) -> Any:
+    def _get_graph(self, request: object) -> srv.GetAvailableTransitions_Response:
         return _described(list(TRANSITIONS))
 
-    def _told(self, transition: Transition) -> Any:
+    def _transition_event(self, transition: Transition) -> Any:
         from graphflow.msgs.lifecycle_msgs.msg import Transition as TransitionMessage
 
         assert self._event is not None
@@ -319,13 +322,13 @@ def _nothing(state: LifecycleState) -> None:
     """Ignore the state."""
 
 
-def _state(state: LifecycleState) -> Any:
+def _state(state: LifecycleState) -> msg.State:
     from graphflow.msgs.lifecycle_msgs.msg import State
 
     return State(id=int(state), label=state.label)
 
 
-def _described(transitions: list[Transition]) -> Any:
+def _described(transitions: list[Transition]) -> srv.GetAvailableTransitions_Response:
     from graphflow.msgs.lifecycle_msgs.msg import Transition as TransitionMessage
     from graphflow.msgs.lifecycle_msgs.msg import TransitionDescription
     from graphflow.msgs.lifecycle_msgs.srv import GetAvailableTransitions

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable
-from typing import Any
 
 from graphflow.errors import Place
 from graphflow.runtime.declarations.handlers import MARK, Handler
@@ -12,7 +11,7 @@ from graphflow.runtime.part import Part
 
 
 def warn_doubled(
-    log: logging.Logger, callback: Callable[..., Any] | None, place: Place, what: str, alike: Iterable[Part]
+    log: logging.Logger, callback: Callable[..., object] | None, place: Place, what: str, alike: Iterable[Part]
 ) -> None:
     """Warn of a method that is registered for the same purpose as its decorator has registered it.
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from graphflow.analysis.user_code import is_users
 from graphflow.errors import ClosedError, Place
+from graphflow.runtime.callables import name_of
 from graphflow.runtime.part import Host
 
 TOLD_BOUND = 100
@@ -33,7 +34,7 @@ def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> N
         ClosedError: The node is not running.
         TypeError: `fn` is a coroutine function.
     """
-    name = getattr(fn, "__name__", str(fn))
+    name = name_of(fn)
     if inspect.iscoroutinefunction(fn):
         raise TypeError(f"call_soon calls functions; {name} is a coroutine function: spawn({name}) runs it")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from graphflow.deadlock.startup_waits import place_of
 from graphflow.runtime.part import Host
@@ -43,7 +42,7 @@ class Overruns:
             self._runs = self._skipped = 0
             self._text = ""
 
-    def in_the_way(self, runs: Iterable[Any], skipped: int, now_ns: int, period_ns: int) -> None:
+    def in_the_way(self, runs: Iterable[object], skipped: int, now_ns: int, period_ns: int) -> None:
         """Note that a run has outlasted a period and continues.
 
         Args:

@@ -330,7 +330,7 @@ def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
     return checked
 
 
-def _fault(function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
+def _fault(function: Callable[..., object], args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
     """Describe how arguments do not fit a function; "" if they do, and the error has another cause."""
     signature = inspect.signature(function)
     try:

@@ -9,7 +9,7 @@ from typing import Any
 
 from graphflow.analysis.user_code import users_frame
 from graphflow.errors import Place
-from graphflow.runtime.declarations.checks import written_at
+from graphflow.runtime.callables import name_of, written_at
 from graphflow.runtime.declarations.handlers import MARK
 from graphflow.runtime.part import Host, Part
 
@@ -64,7 +64,7 @@ def _place() -> Place | None:
     return None if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
 
 
-def warn_duplicate(host: Host, parts: Iterable[Part], made: Part, callback: Callable[..., Any] | None) -> None:
+def warn_duplicate(host: Host, parts: Iterable[Part], made: Part, callback: Callable[..., object] | None) -> None:
     """Warn of a handler that is called twice for each message, since two of the node's subscriptions call it.
 
     Args:
@@ -78,8 +78,7 @@ def warn_duplicate(host: Host, parts: Iterable[Part], made: Part, callback: Call
     for other in parts:
         if type(other) is type(made) and _calls(other) == _calls(made):
             text = "%s calls %s (%s) twice for each message: keep one"
-            called = getattr(callback, "__name__", repr(callback))
-            host.log.warning(text, _name(made), called, written_at(callback))
+            host.log.warning(text, _name(made), name_of(callback), written_at(callback))
             return
 
 

@@ -32,7 +32,7 @@ def watch() -> None:
     warnings._warn_unawaited_coroutine = report  # type: ignore[attr-defined]
 
 
-def report(coroutine: Coroutine[Any, Any, Any]) -> None:
+def report(coroutine: Coroutine[object, object, object]) -> None:
     """Log that a coroutine was never awaited, with the line that called its function, if known."""
     name = getattr(coroutine, "__qualname__", repr(coroutine))
     frame = inspect.currentframe()  # there is no caller when C code finalizes the coroutine, as at interpreter exit

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import ParameterError
 from graphflow.interface import TYPE_IDS, Parameter, type_id
+from graphflow.msgs.base import Message
 from graphflow.qos import PARAMETER_EVENTS
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
@@ -20,11 +21,12 @@ from graphflow.runtime.part import Host, Part
 
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces import msg as rcl
+    from graphflow.msgs.rcl_interfaces import srv
 
 _INT64 = range(-(2**63), 2**63)
 
 
-def type_number(parameter: Parameter, value: Any) -> int:
+def type_number(parameter: Parameter, value: object) -> int:
     """Return the rcl_interfaces/msg/ParameterType number of a parameter with `value`."""
     return type_id(value) if parameter.dynamic else TYPE_IDS[parameter.type]
 
@@ -73,7 +75,7 @@ class ParameterServices:
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
 
-    def handlers(self) -> Iterable[tuple[str, str, Callable[[Any], Any]]]:
+    def handlers(self) -> Iterable[tuple[str, str, Callable[[Any], Message]]]:
         """List the services: (name below the node, service type in rcl_interfaces, handler)."""
         yield "get_parameters", "GetParameters", self.get
         yield "get_parameter_types", "GetParameterTypes", self.get_types
@@ -85,7 +87,7 @@ class ParameterServices:
     def _type(self, name: str) -> int:
         return type_number(self._parameters.describe(name), self._parameters.get(name))
 
-    def get(self, request: Any) -> Any:
+    def get(self, request: srv.GetParameters_Request) -> srv.GetParameters_Response:
         from graphflow.msgs.rcl_interfaces.msg import ParameterValue
         from graphflow.msgs.rcl_interfaces.srv import GetParameters
 
@@ -96,13 +98,13 @@ class ParameterServices:
             ]
         )
 
-    def get_types(self, request: Any) -> Any:
+    def get_types(self, request: srv.GetParameterTypes_Request) -> srv.GetParameterTypes_Response:
         from graphflow.msgs.rcl_interfaces.srv import GetParameterTypes
 
         known = self._parameters
         return GetParameterTypes.Response(types=[self._type(n) if n in known else 0 for n in request.names])
 
-    def describe(self, request: Any) -> Any:
+    def describe(self, request: srv.DescribeParameters_Request) -> srv.DescribeParameters_Response:
         from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor
         from graphflow.msgs.rcl_interfaces.srv import DescribeParameters
 
@@ -113,7 +115,7 @@ class ParameterServices:
             ]
         )
 
-    def list(self, request: Any) -> Any:
+    def list(self, request: srv.ListParameters_Request) -> srv.ListParameters_Response:
         from graphflow.msgs.rcl_interfaces.msg import ListParametersResult
         from graphflow.msgs.rcl_interfaces.srv import ListParameters
 
@@ -121,17 +123,17 @@ class ParameterServices:
         prefixes = {name.rpartition(".")[0] for name in names if "." in name}
         return ListParameters.Response(result=ListParametersResult(names=names, prefixes=sorted(prefixes)))
 
-    def set(self, request: Any) -> Any:
+    def set(self, request: srv.SetParameters_Request) -> srv.SetParameters_Response:
         from graphflow.msgs.rcl_interfaces.srv import SetParameters
 
         return SetParameters.Response(results=[self._set([p]) for p in request.parameters])
 
-    def set_atomically(self, request: Any) -> Any:
+    def set_atomically(self, request: srv.SetParametersAtomically_Request) -> srv.SetParametersAtomically_Response:
         from graphflow.msgs.rcl_interfaces.srv import SetParametersAtomically
 
         return SetParametersAtomically.Response(result=self._set(request.parameters))
 
-    def _set(self, parameters: Iterable[Any]) -> Any:
+    def _set(self, parameters: Iterable[rcl.Parameter]) -> rcl.SetParametersResult:
         from graphflow.msgs.rcl_interfaces.msg import SetParametersResult
 
         try:

@@ -8,10 +8,11 @@ from __future__ import annotations
 import dis
 import linecache
 import re
-from types import CodeType, FrameType
+from types import FrameType
 
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
+from graphflow.runtime.callables import code_of
 from graphflow.runtime.mistakes.errors import constructor_errors
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints, translation
 
@@ -58,8 +59,8 @@ def _setter(thing: object, name: str) -> str:
     """Return a hint with the method that sets an attribute and has not run yet; "" if there is none."""
     for cls in type(thing).__mro__:
         for method in vars(cls).values():
-            code = getattr(method, "__code__", None)
-            if not isinstance(code, CodeType) or code.co_name == "__init__" or not is_users(code.co_filename):
+            code = code_of(method)
+            if code is None or code.co_name == "__init__" or not is_users(code.co_filename):
                 continue
             if any(step.opname == "STORE_ATTR" and step.argval == name for step in dis.get_instructions(code)):
                 where = short_place(code.co_filename, code.co_firstlineno)

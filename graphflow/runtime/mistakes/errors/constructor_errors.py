@@ -9,7 +9,6 @@ import ast
 import linecache
 import re
 from types import FrameType, ModuleType, TracebackType
-from typing import Any
 
 from graphflow.msgs.base import Action, Message, Service, name_of, no_field
 
@@ -31,7 +30,7 @@ def better_text(error: TypeError) -> str:
     return f"{name_of(cls)} takes its fields by keyword: {cls.__name__.rpartition('_')[2]}({example})"
 
 
-def _called(trace: TracebackType | None) -> Any:
+def _called(trace: TracebackType | None) -> object:
     """Return the object whose call raised an error, if it has a name; else None."""
     if trace is None:
         return None
@@ -53,7 +52,7 @@ def _called(trace: TracebackType | None) -> Any:
     return _named(call.func, trace.tb_frame) if isinstance(call, ast.Call) else None
 
 
-def _named(expression: ast.expr, frame: FrameType) -> Any:
+def _named(expression: ast.expr, frame: FrameType) -> object:
     """Return the value of a possibly dotted name in a module, without running user code."""
     match expression:
         case ast.Name(name):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import Counter
-from typing import Any
 
 from graphflow.analysis.user_code import place_in
 from graphflow.errors import ClosedError
@@ -29,11 +28,12 @@ class _LostErrors:
     def __init__(self) -> None:
         self._times: Counter[tuple[str, str]] = Counter()
 
-    def __call__(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    def __call__(self, loop: asyncio.AbstractEventLoop, context: dict[str, object]) -> None:
         error, future = context.get("exception"), context.get("future") or context.get("task")
-        if error is not None:
+        if isinstance(error, BaseException):
             explain(error)
-        if error is None or future is None or "never retrieved" not in context.get("message", ""):
+        is_lost = "never retrieved" in str(context.get("message"))
+        if not isinstance(error, BaseException) or future is None or not is_lost:
             loop.default_exception_handler(context)
             return
         if isinstance(error, ClosedError):  # its node has stopped in the meantime
