@@ -159,7 +159,7 @@ def _begin(program: Program) -> None:
         if hiding.hides_what_it_imports(program.file):
             hiding.warn(program.file)
         runpy.run_path(str(program.file), run_name="__main__")
-        unrun.tell(program.file)
+        unrun.report(program.file)
         return
     called: object = import_module(program.entry.module)
     owner = called

@@ -10,7 +10,6 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from graphflow.errors import GraphFileError, GraphflowError, InvalidName
 from graphflow.interface import Interface
@@ -42,7 +41,7 @@ class RosArgs:
     """The parsed ROS 2 arguments of one command line."""
 
     remaps: list[Remap] = field(default_factory=list)
-    params: list[tuple[str | None, str, Any, str]] = field(default_factory=list)
+    params: list[tuple[str | None, str, object, str]] = field(default_factory=list)
     """(node or None for all, parameter, value, source of the value)."""
     params_files: list[str] = field(default_factory=list)
     log_level: str = "info"
@@ -57,7 +56,7 @@ class RosArgs:
     unknown: list[str] = field(default_factory=list)
     """Unrecognized arguments after `--ros-args`, if the caller allows them."""
 
-    def params_for(self, interface: Interface) -> dict[str, tuple[Any, str]]:
+    def params_for(self, interface: Interface) -> dict[str, tuple[object, str]]:
         """Return the parameter values for a node of a class: name to (value, source of the value).
 
         Raises:
@@ -66,7 +65,7 @@ class RosArgs:
         full_name = Resolver(interface.node_name, "/", self.remaps).full_name
         if self.params_files:
             from graphflow.graph import params_file  # and with it PyYAML, which most processes never need
-        found: dict[str, tuple[Any, str]] = {}
+        found: dict[str, tuple[object, str]] = {}
         for file in self.params_files:
             sections = params_file.read(Path(file), file)
             if not any(s.fits(full_name) for s in sections):

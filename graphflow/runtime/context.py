@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from contextvars import copy_context
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
 
 from graphflow.deadlock.inspection import Inspection
 from graphflow.deadlock.protocols import Elsewhere, Subject
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from graphflow.transport.takeover import Takeover
 
 T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
 
 logger = logging.getLogger("graphflow")
 
@@ -195,7 +196,7 @@ class Context:
         return next(self._ids)
 
     async def in_thread(
-        self, fn: Callable[..., T], *args: Any, stays: bool = False, ended: Callable[[], None] | None = None
+        self, fn: Callable[[*Ts], T], *args: *Ts, stays: bool = False, ended: Callable[[], None] | None = None
     ) -> T:
         """Run `fn(*args)` in a thread, which cannot be cancelled.
 
@@ -237,7 +238,7 @@ class Context:
             name = threading.current_thread().name
             raise WrongThread(f"{what} may not be used from the thread {name!r}, only on the event loop; {instead}")
 
-    async def offload(self, fn: Callable[..., T], *args: Any) -> T:
+    async def offload(self, fn: Callable[[*Ts], T], *args: *Ts) -> T:
         """Run `fn(*args)` in a thread, at most `OFFLOAD_LIMIT` at a time."""
         if self._offloads.locked() and not self._has_warned_full:
             self._has_warned_full = True
@@ -319,7 +320,7 @@ class Context:
         await self.session.close()
 
 
-async def _seen_through(future: asyncio.Future[Any]) -> None:
+async def _seen_through(future: asyncio.Future[T]) -> None:
     """Wait for a thread to end even if the wait is cancelled; then raise the cancellation."""
     cancelled: asyncio.CancelledError | None = None
     while not future.done():

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import replace
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar, TypeVarTuple
 
 from graphflow.analysis.static_entities import with_made
 from graphflow.errors import DeclarationError
@@ -14,7 +14,7 @@ from graphflow.executor.clock import Clock, period_ns
 from graphflow.executor.groups import HandlerGroup
 from graphflow.interface import GoalPolicy, GroupChange, Interface, OnClientLoss, OnError
 from graphflow.machines.goal import GoalRules
-from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
+from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, ServerGoalHandle, Service
 from graphflow.names import Remap, Resolution, Resolver
 from graphflow.qos import SERVICES, Qos
 from graphflow.runtime import node_options
@@ -57,6 +57,7 @@ from graphflow.wire.attachment import MessageInfo
 
 M = TypeVar("M", bound=Message)
 T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
 
 
 class Node(AttributeHints):
@@ -97,12 +98,12 @@ class Node(AttributeHints):
         *,
         namespace: str = "/",
         remap: Sequence[Remap | str] = (),
-        overrides: Mapping[str, tuple[Any, str]] | None = None,
+        overrides: Mapping[str, tuple[object, str]] | None = None,
         concurrency: Mapping[str, GroupChange] | None = None,
         start_parameter_services: bool = True,
         enable_rosout: bool = True,
         enable_logger_service: bool = True,
-        **params: Any,
+        **params: object,
     ) -> None:
         unrun.made()
         given = node_options.take(self)
@@ -237,7 +238,7 @@ class Node(AttributeHints):
         self,
         type_: type[M],
         name: str,
-        callback: Callable[[M], Any] | Callable[[M, MessageInfo], Any] | None,
+        callback: Callable[[M], object] | Callable[[M, MessageInfo], object] | None,
         qos: Qos | int = 10,
         *,
         group: Group | HandlerGroup | None = None,
@@ -272,8 +273,13 @@ class Node(AttributeHints):
         same = (part for part in core.parts if isinstance(part, TopicSubscription) and part.name == resolved)
         warn_doubled(core.log, callback, place, f"each message of {resolved}", same)
         label, call, slots = core.place(callback, f"subscription {name}", group, thread)
-        options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
-        made = TopicSubscription(core, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
+        made = TopicSubscription(
+            *(core, type_, resolved, Qos.of(qos), call, label, slots),
+            takes_info=takes_info,
+            ignore_local=ignore_local,
+            on_event=on_event,
+            on_error=on_error,
+        )
         warn_duplicate(core, core.parts, made, callback)
         return core.add(made, late=callback is not None)
 
@@ -282,7 +288,7 @@ class Node(AttributeHints):
         self,
         type_: type[Service[Request, Response]],
         name: str,
-        callback: Callable[[Request], Any] | Callable[[Request, Response], Any],
+        callback: Callable[[Request], object] | Callable[[Request, Response], object],
         *,
         qos: Qos | int = SERVICES,
         group: Group | HandlerGroup | None = None,
@@ -304,8 +310,11 @@ class Node(AttributeHints):
         arguments = check_callback(callback, range(1, 3), what, place)
         core, resolved = self._core, self._core.names.resolve(name, "service")
         label, call, slots = core.place(callback, f"service {name}", group, thread)
-        takes: dict[str, Any] = {"takes_response": arguments == 2, "place": written_at(callback)}
-        made = ServiceServer(core, type_, resolved, Qos.of(qos), call, label, slots, **takes)
+        made = ServiceServer(
+            *(core, type_, resolved, Qos.of(qos), call, label, slots),
+            takes_response=arguments == 2,
+            place=written_at(callback),
+        )
         for other in core.parts:
             if isinstance(other, ServiceServer) and other.name == resolved:
                 servers = [part for one in (other, made) for part in (one.handler_title, one.place)]
@@ -342,13 +351,13 @@ class Node(AttributeHints):
         self,
         type_: type[Action[Goal, Result, Feedback]],
         name: str,
-        callback: Callable[[Any], Any],
+        callback: Callable[[ServerGoalHandle[Goal, Result, Feedback]], object],
         *,
         group: Group | HandlerGroup | None = None,
         thread: bool = False,
         policy: GoalPolicy = "reject",
-        accept: Callable[[Goal], Any] | None = None,
-        cancellable: bool | Callable[[Any], bool] = True,
+        accept: Callable[[Goal], object] | None = None,
+        cancellable: bool | Callable[[ServerGoalHandle[Goal, Result, Feedback]], bool] = True,
         on_client_loss: OnClientLoss = "continue",
         cleanup_timeout: float = 10.0,
     ) -> ActionServer[Goal, Result, Feedback]:
@@ -369,8 +378,10 @@ class Node(AttributeHints):
         core, resolved = self._core, self._core.names.resolve(name, "service")
         label, call, slots = core.place(callback, f"action {name}", group, thread)
         rules = GoalRules(policy, on_client_loss, cleanup_timeout=cleanup_timeout)
-        options: dict[str, Any] = {"rules": rules, "accept": accept, "cancellable": cancellable}
-        return core.add(ActionServer(core, type_, resolved, call, label, slots, **options), late=True)
+        made = ActionServer(
+            core, type_, resolved, call, label, slots, rules=rules, accept=accept, cancellable=cancellable
+        )
+        return core.add(made, late=True)
 
     @with_argument_hints
     def create_action_client(
@@ -426,7 +437,7 @@ class Node(AttributeHints):
         """Remove a parameter made by `declare_parameter`. Raises ParameterError if it is unknown or read-only."""
         self.parameters.undeclare(name)
 
-    async def offload(self, fn: Callable[..., T], *args: Any) -> T:
+    async def offload(self, fn: Callable[[*Ts], T], *args: *Ts) -> T:
         """Run the blocking function `fn(*args)` in a worker thread. It cannot be cancelled.
 
         At most 32 run at a time in a process; further calls wait.
@@ -435,7 +446,7 @@ class Node(AttributeHints):
         check_plain(fn, "offload")
         return await self.context.offload(fn, *args)
 
-    def spawn(self, fn: Callable[..., Coroutine[object, object, object]], *args: Any) -> None:
+    def spawn(self, fn: Callable[[*Ts], Coroutine[object, object, object]], *args: *Ts) -> None:
         """Run the coroutine function `fn(*args)` in the background until the node stops; from any thread.
 
         An error in it ends the node.
@@ -446,7 +457,7 @@ class Node(AttributeHints):
         else:
             call_soon(self._core, self._core.spawn, (fn, *args))
 
-    def call_soon(self, fn: Callable[..., object], *args: Any) -> None:
+    def call_soon(self, fn: Callable[[*Ts], object], *args: *Ts) -> None:
         """Call `fn(*args)` on the event loop from any thread, such as a driver's callback thread.
 
         An error in it is logged.

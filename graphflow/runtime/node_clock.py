@@ -16,7 +16,7 @@ TIMELESS = (
     "it uses simulated time (use_sim_time), but there is no message on /clock: its timers stand still. Start the "
     "simulator, or play a bag with --clock, or set use_sim_time to false"
 )
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds that simulated time has to start before a warning."""
 
 
@@ -56,14 +56,14 @@ class NodeClock:
 
             clock = SimClock(self._host.context.loop)
 
-            def told(message: ClockMessage) -> None:
+            def advance(message: ClockMessage) -> None:
                 clock.set_time(message.clock.sec * NANOSECONDS + message.clock.nanosec)
 
-            heard = TopicSubscription(self._host, ClockMessage, self._resolve("/clock"), CLOCK, told)
-            heard.is_inner = True
-            self._simulated = (clock, self._add(heard))
+            subscription = TopicSubscription(self._host, ClockMessage, self._resolve("/clock"), CLOCK, advance)
+            subscription.is_inner = True
+            self._simulated = (clock, self._add(subscription))
             real = self._host.context.clock
-            self._alarm = real.call_at(real.monotonic_ns() + to_ns(TELL_AFTER), self._tell)
+            self._alarm = real.call_at(real.monotonic_ns() + to_ns(WARN_AFTER), self._warn)
         elif not is_simulated and former is not None:
             self._simulated = None
             if self._alarm is not None:
@@ -71,6 +71,6 @@ class NodeClock:
             former[1].close()
             former[0].retire(self.current)
 
-    def _tell(self) -> None:
+    def _warn(self) -> None:
         for text in self.complaints() if self._host.is_running else ():
             self._host.log.warning("%s", text)

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Mapping
 from contextlib import AsyncExitStack
 from functools import cache
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, TypeVar, TypeVarTuple
 
 from graphflow.deadlock import races
 from graphflow.deadlock.protocols import Unopened
@@ -26,13 +26,13 @@ from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime.callables import name_of
 from graphflow.runtime.context import Context
 from graphflow.runtime.declarations import declared
-from graphflow.runtime.declarations.binding import Binding, Creator
+from graphflow.runtime.declarations.binding import Binding, Instance
 from graphflow.runtime.declarations.checks import check_node
 from graphflow.runtime.declarations.declare import Group
 from graphflow.runtime.declarations.misplaced import check_made
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.services import ServiceServer
-from graphflow.runtime.failures import ErrorBudget, Failures, report
+from graphflow.runtime.failures import Failures, report
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import Rosout
 from graphflow.runtime.mistakes.other_threads import call_soon
@@ -45,22 +45,14 @@ from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
 from graphflow.runtime.parameters.services import ParameterEvents, ParameterServices
 from graphflow.runtime.part import Part
+from graphflow.transport.base import Closable
 from graphflow.wire.liveliness import Entity, Kind
 
 P = TypeVar("P", bound=Part)
+Ts = TypeVarTuple("Ts")
 
 STOP_LIMIT = 2.0
 """Seconds that cancelled handlers and tasks have for cleanup."""
-
-
-class Instance(declared.NodeClass, Creator, Protocol):
-    """The user's node object, as its core sees it."""
-
-    error_budget: ClassVar[ErrorBudget | None]
-
-    async def on_start(self) -> None: ...
-
-    async def on_shutdown(self) -> None: ...
 
 
 class NodeCore:
@@ -75,7 +67,7 @@ class NodeCore:
         self,
         instance: Instance,
         names: Resolver,
-        overrides: Mapping[str, tuple[Any, str]],
+        overrides: Mapping[str, tuple[object, str]],
         concurrency: Regrouping,
     ) -> None:
         cls = type(instance)
@@ -98,7 +90,7 @@ class NodeCore:
         """Whether a caller has waited for the node's end."""
         self.entered = AsyncExitStack()
         """Context managers to exit after `on_shutdown`."""
-        self._made: dict[str, Any] = {}
+        self._made: dict[str, object] = {}
         """The attributes that `Node.__init__` has set on the instance."""
         self._context: Context | None = None
         self._ended: asyncio.Future[None] | None = None
@@ -108,7 +100,7 @@ class NodeCore:
         self._binding = Binding(instance, self, self.parameters)
         self._failures = Failures(self, instance.error_budget, self._fail)
         self._repeats = Repeats(self)
-        self._token: Any = None
+        self._token: Closable | None = None
         self._own_services: set[str] = set()
         self._rosout: Rosout | None = None
         self._parameter_events: ParameterEvents | None = None
@@ -150,7 +142,7 @@ class NodeCore:
     # contents
 
     @property
-    def held(self) -> Mapping[str, Any]:
+    def held(self) -> Mapping[str, object]:
         """The runtime objects of the class's declarations, by attribute."""
         return self._binding.held
 
@@ -253,7 +245,7 @@ class NodeCore:
         if inspect.iscoroutinefunction(fn):
             raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
 
-        async def run(*args: Any) -> Any:
+        async def run(*args: object) -> object:
             # A thread cannot be cancelled: the run, and with it the slot, lasts until the thread has ended.
             return await self.context.in_thread(fn, *args, stays=True)
 
@@ -329,7 +321,7 @@ class NodeCore:
         context.search.arm()
         try:
             await self.instance.on_start()
-        except Exception as error:
+        except Exception as error:  # of the user's hook: reported, then raised
             self.refuses_unused = False
             self.warn_unused_remaps()  # an unused rule may have caused the error
             self.failure = error
@@ -424,10 +416,10 @@ class NodeCore:
                 await work()
         except TimeoutError:
             self.log.warning("%s took more than %.0f s and was cancelled", what, STOP_LIMIT)
-        except Exception as error:
+        except Exception as error:  # of a hook or context manager: the next steps run all the same
             self.report_error(what, error)
 
-    def spawn(self, fn: Callable[..., Coroutine[object, object, object]], *args: Any) -> asyncio.Task[object]:
+    def spawn(self, fn: Callable[[*Ts], Coroutine[object, object, object]], *args: *Ts) -> asyncio.Task[object]:
         """Run `fn(*args)` in the background until the node stops. An error in it ends the node."""
         task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{name_of(fn, 'task')}")
         self.tasks.add(task)
@@ -471,7 +463,7 @@ class NodeCore:
         if "use_sim_time" in changes:
             self._follow_sim_time()
         if self._parameter_events is not None:
-            self._parameter_events.tell(changes)
+            self._parameter_events.publish(changes)
 
     def _follow_sim_time(self) -> None:
         """Follow /clock or the context's clock, as the parameter `use_sim_time` selects."""
@@ -488,7 +480,7 @@ def _services(part: Part) -> tuple[str, ...]:
 
 
 @cache
-def _handlers(cls: Any) -> frozenset[str]:
+def _handlers(cls: type[Instance]) -> frozenset[str]:
     return frozenset(handler.name for handler in cls.interface().handlers)
 
 

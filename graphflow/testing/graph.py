@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Coroutine, Iterator, Sequence
 from typing import Any, Generic, TypeVar
 
 from graphflow.interface import DeadlockPolicy
@@ -140,7 +140,7 @@ class Graph(AttributeHints):
         *,
         namespace: str | None = None,
         remap: Sequence[Remap | str] = (),
-        **parameters: Any,
+        **parameters: object,
     ) -> N:
         """Make a node as a graph file does, even if the class's `__init__(self)` takes no parameters; then `start` it.
 
@@ -258,7 +258,7 @@ class Graph(AttributeHints):
         return self._contexts[-1]
 
 
-def _run_now(coroutine: Any) -> None:
+def _run_now(coroutine: Coroutine[object, object, object]) -> None:
     try:
         coroutine.send(None)
     except StopIteration:

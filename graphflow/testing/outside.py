@@ -8,13 +8,19 @@ from __future__ import annotations
 
 import asyncio
 import functools
-from collections.abc import Iterator
+from collections.abc import Callable, Coroutine, Iterator
+from concurrent.futures import Executor
 from contextlib import suppress
-from typing import Any
+from typing import Any, TypeAlias, TypeVar, TypeVarTuple
 from weakref import WeakKeyDictionary
 
 from graphflow.executor.ledger import Ledger
 from graphflow.runtime.callables import name_of
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+Start: TypeAlias = Callable[..., Coroutine[object, object, tuple[asyncio.SubprocessTransport, object]]]
+"""`loop.subprocess_exec` or `loop.subprocess_shell`."""
 
 _followed: WeakKeyDictionary[asyncio.AbstractEventLoop, Outside] = WeakKeyDictionary()
 
@@ -49,9 +55,9 @@ class Outside:
         """Track the work that a loop starts from now on; loops that are not written in Python cannot be tracked."""
         run_in_executor = loop.run_in_executor
 
-        def follow_future(executor: Any, fn: Any, *args: Any) -> asyncio.Future[Any]:
-            future: asyncio.Future[Any] = run_in_executor(executor, fn, *args)
-            called = fn
+        def follow_future(executor: Executor | None, fn: Callable[[*Ts], T], *args: *Ts) -> asyncio.Future[T]:
+            future: asyncio.Future[T] = run_in_executor(executor, fn, *args)
+            called: object = fn
             while isinstance(called, functools.partial):  # `asyncio.to_thread` passes its function to Context.run
                 called = called.args[0] if called.args and callable(called.args[0]) else called.func
             kind = "a thread" if executor is None else type(executor).__name__
@@ -59,9 +65,11 @@ class Outside:
             future.add_done_callback(self._futures.pop)
             return future
 
-        def follow_processes(start: Any) -> Any:
+        def follow_processes(start: Start) -> Start:
             @functools.wraps(start)
-            async def started(factory: Any, program: Any, *args: Any, **options: Any) -> Any:
+            async def started(
+                factory: object, program: object, *args: object, **options: object
+            ) -> tuple[asyncio.SubprocessTransport, object]:
                 transport, protocol = await start(factory, program, *args, **options)
                 self._processes.append((transport, str(program)))
                 return transport, protocol

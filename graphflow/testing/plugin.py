@@ -56,7 +56,7 @@ def graph(graphflow_runner: asyncio.Runner) -> Iterator[Graph]:
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     """Limit the duration of `async def` tests that use `graph` or `graphflow_runner`, whichever plugin runs them."""
     if not isinstance(item, pytest.Function) or "graphflow_runner" not in item.fixturenames:
         return (yield)
@@ -77,7 +77,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[Any]) -> Generator[None, Any, Any]:
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[object]) -> Generator[None, object, object]:
     """Add advice to the reports of AttributeErrors, as in the logs of nodes."""
     errors = sys.modules.get("graphflow.runtime.mistakes.errors.attribute_errors")
     if call.excinfo is not None and errors is not None:
@@ -108,7 +108,8 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     """Run an `async def` test, unless another plugin does."""
     if "graphflow_runner" not in pyfuncitem.fixturenames or "anyio_backend" in pyfuncitem.fixturenames:
         return None
-    runner: Any = pyfuncitem.funcargs["graphflow_runner"]
+    runner = pyfuncitem.funcargs["graphflow_runner"]
+    assert isinstance(runner, asyncio.Runner)
     if inspect.iscoroutinefunction(pyfuncitem.obj):
         runner.run(pyfuncitem.obj(**{name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}))
         return True
@@ -116,7 +117,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     if generated is not None and inspect.iscoroutinefunction(test := generated.inner_test):
 
         @functools.wraps(test)
-        def run(*args: Any, **kwargs: Any) -> None:
+        def run(*args: object, **kwargs: object) -> None:
             runner.run(test(*args, **kwargs))
 
         generated.inner_test = run
@@ -125,12 +126,13 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
 
 def _limited(item: pytest.Function, test: Test) -> Test:
     """Wrap a test so that it ends when it takes too long or stands still."""
-    runner: Any = item.funcargs["graphflow_runner"]
+    runner = item.funcargs["graphflow_runner"]
+    assert isinstance(runner, asyncio.Runner)
     made: Any = item.funcargs.get("graph")
 
     @functools.wraps(test)
-    async def limited(*args: Any, **kwargs: Any) -> None:
-        graph = kwargs.get("graph", made)
+    async def limited(*args: object, **kwargs: Any) -> None:
+        graph: Graph | None = kwargs.get("graph", made)
         loop = asyncio.get_running_loop()
         if graph is not None and graph.loop not in (None, loop):
             raise RuntimeError(
@@ -147,7 +149,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                         graph.raise_failed()
                         await asyncio.sleep(0)  # lets new tasks start
                         _raise_forgotten()
-                except (Exception, pytest.fail.Exception) as error:
+                except (Exception, pytest.fail.Exception) as error:  # any failure of the test, reported and raised
                     if graph is not None and graph.loop is loop and not _is_of_a_line(error):
                         await _report_unmet(item, graph)
                     raise
@@ -216,7 +218,7 @@ def _by_examples(item: pytest.Function, test: Test) -> Test:
     decorated._hypothesis_internal_use_settings = settings(given, suppress_health_check=allowed)
 
     @functools.wraps(test)
-    async def example(*args: Any, **kwargs: Any) -> None:
+    async def example(*args: object, **kwargs: object) -> None:
         from graphflow.testing.graph import Graph
 
         await limited(*args, **kwargs | {"graph": Graph()})

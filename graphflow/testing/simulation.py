@@ -18,7 +18,7 @@ import selectors
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from random import Random
-from typing import Any
+from typing import Any, TypeVar
 
 from graphflow.executor.clock import Alarm, Clock
 from graphflow.interface import DeadlockPolicy
@@ -26,6 +26,8 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.transport.memory import MemorySession, Network
+
+T = TypeVar("T")
 
 START_NS = 1_700_000_000_000_000_000
 """The time of day, in nanoseconds, at which every simulation starts."""
@@ -135,14 +137,14 @@ class World:
 
 
 def simulate(
-    story: Callable[[World], Coroutine[object, object, object]],
+    story: Callable[[World], Coroutine[object, object, T]],
     seed: int = 0,
     *,
     delay: tuple[float, float] = (0.0, 0.0),
     loss: float = 0.0,
     reorders: bool = False,
     deadlock: DeadlockPolicy = "raise",
-) -> Any:
+) -> T:
     """Run a story to its end; returns its result.
 
     Args:
@@ -155,7 +157,7 @@ def simulate(
     random = Random(seed)  # noqa: S311 - to be the same every time is what it is for
     network = Network(Seeded(random, delay, loss, reorders=reorders))
 
-    async def run() -> Any:
+    async def run() -> T:
         world = World(network, random, deadlock)
         try:
             return await story(world)

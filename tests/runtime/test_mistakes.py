@@ -247,7 +247,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """Where modules are imported from; what is imported is forgotten, and so are forgotten awaits that were told."""
     monkeypatch.syspath_prepend(str(tmp_path))
     former = warnings._warn_unawaited_coroutine  # type: ignore[attr-defined]
-    unawaited._told.clear()
+    unawaited._reported.clear()
     unawaited.watch()
     yield tmp_path
     warnings._warn_unawaited_coroutine = former  # type: ignore[attr-defined]

@@ -8,7 +8,7 @@ from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import AsyncIterator, Coroutine
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias
 
 from graphflow.errors import (
     CallError,
@@ -31,6 +31,7 @@ from graphflow.machines.goal import CancelCode, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.serialized import RawSubscription
 from graphflow.runtime.endpoints.service_client import DISCOVERY_GRACE, ServiceClient
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
@@ -44,6 +45,8 @@ from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.goal_status import states_in
 from graphflow.wire.liveliness import Kind
 
+AnyClient: TypeAlias = ServiceClient[Any, Any]
+"""A client of a service whose classes are derived from an action's."""
 CANCEL_TIMEOUT = 2.0
 """Seconds to wait for a goal's end when its block exits."""
 _STATES = frozenset(state for state in GoalStatus if state >= 0)
@@ -139,7 +142,7 @@ class ClientGoalHandle(AttributeHints, PendingGoal, Generic[Goal, Result, Feedba
         """
         return await self._client.cancel(self, timeout=timeout)
 
-    def heard(self, feedback: Feedback) -> None:
+    def receive(self, feedback: Feedback) -> None:
         """Receive feedback. Called by the client."""
         self.latest = feedback
         for queue in [queue for queue, _ in self._readers] or [self._unread]:
@@ -203,31 +206,31 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     def __init__(self, host: Host, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
         self.host, self.type, self.name = host, type_, name
-        self._goal_class: type[Any] = registry.interface_class(f"{type_.NAME}_Goal")
+        self._goal_class: type[Goal] = registry.interface_class(f"{type_.NAME}_Goal")
         self._goals: dict[bytes, ClientGoalHandle[Goal, Result, Feedback]] = {}
         self._running = set[bytes]()
         """Ids of goals that have not ended, and of some that ended since the last status message."""
         self._followers: set[asyncio.Task[None]] = set()
         self._unserved = Unserved(host, self._nobody)
-        self._send: ServiceClient[Any, Any] = self._service("send_goal", f"{type_.NAME}_SendGoal")
-        self._cancel: ServiceClient[Any, Any] = self._service("cancel_goal", "action_msgs/srv/CancelGoal")
-        self._get: ServiceClient[Any, Any] = self._service("get_result", f"{type_.NAME}_GetResult")
+        self._send = self._service("send_goal", f"{type_.NAME}_SendGoal")
+        self._cancel = self._service("cancel_goal", "action_msgs/srv/CancelGoal")
+        self._get = self._service("get_result", f"{type_.NAME}_GetResult")
         feedback: Any = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         at = f"{name}/_action"
-        self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._heard)
+        self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._feedback_received)
         self._feedback.in_order = True
         status = "action_msgs/msg/GoalStatusArray"
-        self._status = RawSubscription(host, status, f"{at}/status", ACTION_STATUS, self._told)
+        self._status = RawSubscription(host, status, f"{at}/status", ACTION_STATUS, self._status_received)
 
     def __repr__(self) -> str:
         return f"<GoalClient {self.name} [{self.type.NAME}]>"
 
-    def _service(self, part: str, type_name: str) -> ServiceClient[Any, Any]:
+    def _service(self, part: str, type_name: str) -> AnyClient:
         type_: Any = registry.interface_class(type_name)
         return ServiceClient(self.host, type_, f"{self.name}/_action/{part}", SERVICES)
 
     @property
-    def endpoints(self) -> tuple[RawSubscription | TopicSubscription[Any] | ServiceClient[Any, Any], ...]:
+    def endpoints(self) -> tuple[Endpoint, ...]:
         return (self._feedback, self._status, self._get, self._cancel, self._send)
 
     def open(self) -> None:
@@ -431,7 +434,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self._running.discard(goal.goal_id)
 
     def _end(
-        self, goal: ClientGoalHandle[Goal, Result, Feedback], status: GoalStatus, result: Any, reason: str
+        self, goal: ClientGoalHandle[Goal, Result, Feedback], status: GoalStatus, result: Result, reason: str
     ) -> None:
         error: GoalError | None = None
         if goal.done:
@@ -444,12 +447,12 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             status, error = GoalStatus.LOST, GoalLost(f"{self.name} does not know the goal: its server was replaced")
         goal.end(status, result, error)
 
-    def _heard(self, message: Any) -> None:
+    def _feedback_received(self, message: Any) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid))
         if goal is not None:
-            goal.heard(message.feedback)
+            goal.receive(message.feedback)
 
-    def _told(self, payload: bytes, _: MessageInfo) -> None:
+    def _status_received(self, payload: bytes, _: MessageInfo) -> None:
         try:
             self._running = {goal_id for goal_id in self._running if not self._goals[goal_id].done}
             states = states_in(payload, self._running)

@@ -60,18 +60,18 @@ class Reasons:
         """Query another process for a goal's reason; returns "" if it has none."""
         if zid == self._session.zid:
             return self._by_goal.get(goal_id, "")
-        told: asyncio.Future[Answer | None] = asyncio.get_running_loop().create_future()
+        replied: asyncio.Future[Answer | None] = asyncio.get_running_loop().create_future()
 
         def answered(answer: Answer | None) -> None:
-            if not told.done():
-                told.set_result(answer)
+            if not replied.done():
+                replied.set_result(answer)
 
         caller = self._session.open_caller(answer_key(self._domain, GOALS, zid), lambda: None)
         try:
             give_up = caller.call(goal_id, attachment.pack(0, 0, bytes(_ID_SIZE)), answered)
             try:
                 async with asyncio.timeout(PATIENCE):
-                    answer = await told
+                    answer = await replied
             except TimeoutError:
                 give_up()
                 return ""

@@ -14,10 +14,10 @@ from __future__ import annotations
 import asyncio
 from asyncio import CancelledError, Future
 from collections import deque
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from functools import partial
 from inspect import isawaitable
-from typing import Any, Generic
+from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.analysis.swallowed import where_caught
 from graphflow.errors import Abort, EncodeError
@@ -26,19 +26,21 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
 from graphflow.msgs import registry
-from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, made_as, name_of
-from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, Service, made_as, name_of
+from graphflow.qos import ACTION_STATUS, Qos
+from graphflow.runtime.actions.goal_service import Answer, GoalService
 from graphflow.runtime.callables import name_of as callable_name
+from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
-from graphflow.runtime.endpoints.services import ServiceServer
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
 from graphflow.runtime.part import Host, Part
 from graphflow.times import NANOSECONDS, to_ns
-from graphflow.wire import attachment
 from graphflow.wire.goal_status import GoalStates
-from graphflow.wire.liveliness import Entity
+
+if TYPE_CHECKING:
+    from graphflow.msgs.action_msgs.srv import CancelGoal_Request
 
 RESULT_KEPT = 900.0
 """Seconds that a result is kept after the goal's end."""
@@ -121,17 +123,17 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         host: Host,
         type_: type[Action[Goal, Result, Feedback]],
         name: str,
-        callback: Callable[[Any], Any],
+        callback: Callable[[ServerGoalHandle[Goal, Result, Feedback]], object],
         label: str,
         group: HandlerGroup | None = None,
         *,
         rules: GoalRules | None = None,
-        accept: Callable[[Any], bool | Awaitable[bool]] | None = None,
-        cancellable: bool | Callable[[Any], bool] = True,
+        accept: Callable[[Goal], object] | None = None,
+        cancellable: bool | Callable[[ServerGoalHandle[Goal, Result, Feedback]], bool] = True,
     ) -> None:
         self.host, self.type, self.name = host, type_, name
         self.rules = GoalRules() if rules is None else rules
-        self.result_class: type[Any] = registry.interface_class(f"{type_.NAME}_Result")
+        self.result_class: type[Result] = registry.interface_class(f"{type_.NAME}_Result")
         self._results = registry.codec(f"{type_.NAME}_Result")
         self.book = GoalBook(self.rules, to_ns(RESULT_KEPT), to_ns(STATUS_KEPT), RESULTS_KEPT)
         self.goals: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
@@ -141,13 +143,13 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         """Whether a handler has not ended in time after its cancellation."""
         self._callback, self._label, self._group = callback, label, group
         self._accept, self._cancellable = accept, cancellable
-        self._waiting: deque[Any] = deque()
+        self._waiting: deque[ServedGoal[Goal, Result, Feedback]] = deque()
         self._deciding: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
         """Goals being accepted or rejected, by id."""
         self._clock: Clock
         """Kept for handlers that outlive the node's stop."""
         self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
-        self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
+        self._feedback_class: type[Feedback] = registry.interface_class(f"{type_.NAME}_Feedback")
         send: Any = registry.interface_class(f"{type_.NAME}_SendGoal")
         get: Any = registry.interface_class(f"{type_.NAME}_GetResult")
         cancel: Any = registry.interface_class("action_msgs/srv/CancelGoal")
@@ -157,10 +159,10 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         self._status = RawPublisher(host, "action_msgs/msg/GoalStatusArray", f"{name}/_action/status", ACTION_STATUS)
         self._feedback: TopicPublisher[Any] = self._topic("feedback", f"{type_.NAME}_FeedbackMessage", Qos())
         # The service that clients use first is announced last: a client that can send a goal can also do the rest.
-        self._send_service = _GoalService(self, send, "send_goal", self._send_goal)
+        self._send_service = self._service(send, "send_goal", self._send_goal)
         self._services = (
-            _GoalService(self, get, "get_result", self._get_result),
-            _GoalService(self, cancel, "cancel_goal", self._cancel_goal),
+            self._service(get, "get_result", self._get_result),
+            self._service(cancel, "cancel_goal", self._cancel_goal),
             self._send_service,
         )
 
@@ -171,6 +173,10 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         message: Any = registry.interface_class(type_name)
         return TopicPublisher(self.host, message, f"{self.name}/_action/{part}", qos)
 
+    def _service(self, type_: type[Service[Any, Any]], part: str, answer: Answer) -> GoalService:
+        name, label = f"{self.name}/_action/{part}", f"{self._label} {part}"
+        return GoalService(self.host, type_, name, answer, label, self.client_gone)
+
     @property
     def handler_title(self) -> str:
         return title_of("action", self._label)
@@ -180,7 +186,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return f"action {self.name}"
 
     @property
-    def endpoints(self) -> tuple[RawPublisher | TopicPublisher[Any] | ServiceServer[Any, Any], ...]:
+    def endpoints(self) -> tuple[Endpoint, ...]:
         return (self._status, self._feedback, *self._services)
 
     def statistics(self) -> dict[str, object]:
@@ -227,7 +233,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     # requests of clients
 
-    async def _send_goal(self, request: Any, client: bytes) -> Any:
+    async def _send_goal(self, request: Any, client: bytes) -> object:
         goal_id = bytes(request.goal_id.uuid)
         if goal_id in self._deciding:  # a repeated request, from a client that has not received the response
             await self._deciding[goal_id].decided.wait()
@@ -284,7 +290,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             return f"{name} took more than {limit:g} s to decide"
         except Abort as error:
             return str(error) or f"{name} refused it"
-        except Exception as error:
+        except Exception as error:  # raised by the user's `accept`, which thereby rejects the goal
             self.host.report_error(f"{self._label}: {name}", error)
             return f"{name} failed: {type(error).__name__}: {error}"
         if isinstance(answer, str):
@@ -293,7 +299,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             return f"{name} returned None: it must return True, False, or the reason for the rejection"
         return "" if answer else f"{name} returned {answer!r}"
 
-    def _cancel_goal(self, request: Any, client: bytes) -> Any:
+    def _cancel_goal(self, request: CancelGoal_Request, client: bytes) -> object:
         info = request.goal_info
         stamp = info.stamp.sec * NANOSECONDS + info.stamp.nanosec
         asked = bytes(info.goal_id.uuid)
@@ -312,11 +318,11 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             return self._cancellable
         try:
             return bool(self._cancellable(goal))
-        except Exception as error:
+        except Exception as error:  # raised by the user's `cancellable`, which thereby refuses
             self.host.report_error(f"{self._label}: cancellable", error)
             return False
 
-    async def _get_result(self, request: Any, client: bytes) -> Any:
+    async def _get_result(self, request: Any, client: bytes) -> object:
         goal = self.goals.get(bytes(request.goal_id.uuid))
         if goal is None:
             return self._get_response(status=int(GoalStatus.UNKNOWN))
@@ -334,7 +340,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     # life of a goal
 
-    def _step(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any = None) -> None:
+    def _step(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Result | None = None) -> None:
         """Apply an event to a goal's state machine and carry out the effects.
 
         Args:
@@ -396,7 +402,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 self.host.log.warning("%s: its client has gone; %r is cancelled", self._label, goal)
             self._step(goal, GoalEvent.CLIENT_AWAY)
 
-    def _run(self, goal: ServedGoal[Goal, Result, Feedback]) -> Any:
+    def _run(self, goal: ServedGoal[Goal, Result, Feedback]) -> object:
         self._step(goal, GoalEvent.BEGUN)
         return self._callback(goal)
 
@@ -428,20 +434,20 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
                 self.host.log.warning("%s: aborted: %s", self._label, goal.reason)
             self._step(goal, GoalEvent.FAILED, given if given.__class__ is self.result_class else None)
 
-    def _why_no_result(self, returned: Any) -> Exception | None:
+    def _why_no_result(self, returned: object) -> Exception | None:
         """Return the error that keeps a handler's return value from being sent as the result; None if it can be."""
         if returned.__class__ is not self.result_class:
             return TypeError(f"it returned {returned!r}, not {name_of(self.result_class)}(...)")
         return self._why_unfit(returned)
 
-    def _why_unfit(self, result: Any) -> Exception | None:
+    def _why_unfit(self, result: object) -> Exception | None:
         try:
             self._results.encode(result)
         except (EncodeError, AttributeError) as error:
             return error
         return None
 
-    def _fit_result(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any) -> Any:
+    def _fit_result(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Result) -> Result:
         """Return a goal's final result: an empty one if the partial result cannot be encoded."""
         if event is GoalEvent.RETURNED or (wrong := self._why_unfit(result)) is None:
             return result
@@ -454,7 +460,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     # messages to clients
 
-    def send_feedback(self, goal_id: bytes, feedback: Any) -> None:
+    def send_feedback(self, goal_id: bytes, feedback: Feedback) -> None:
         """Publish feedback of a goal.
 
         Raises:
@@ -472,27 +478,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             self._status.publish(self._states.to_bytes())
 
 
-class _GoalService(ServiceServer[Any, Any]):
-    """One of an action's services; its callback also takes the client's GID."""
-
-    def __init__(self, server: ActionServer[Any, Any, Any], type_: Any, part: str, callback: Any) -> None:
-        name = f"{server.name}/_action/{part}"
-        lane = HandlerGroup(None, part)
-        label = f"{server._label} {part}"
-        super().__init__(server.host, type_, name, SERVICES, callback, label, lane, is_inner=True)
-        self._server = server
-
-    def _invoke(self, request: Any) -> Any:
-        asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
-        return self._callback(self._requests.decode(request.payload), asked.gid)
-
-    def _matched(self, other: Entity, alive: bool) -> None:
-        super()._matched(other, alive)
-        if not alive:
-            self._server.client_gone(other.gid)
-
-
-def _info(goal: ServedGoal[Any, Any, Any]) -> dict[str, Any]:
+def _info(goal: ServedGoal[Goal, Result, Feedback]) -> dict[str, object]:
     """Return the fields of an `action_msgs/msg/GoalInfo`."""
     return {"goal_id": {"uuid": list(goal.goal_id)}, "stamp": _stamp(goal.record.accepted_ns)}
 

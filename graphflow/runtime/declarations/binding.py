@@ -8,15 +8,16 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass
 from types import MethodType
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from graphflow.errors import ParameterError
 from graphflow.executor.runner import Runner, RunnerSpec
-from graphflow.interface import COMMON_PARAMETERS
+from graphflow.interface import COMMON_PARAMETERS, Interface
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import ActionClient, Client, Held, Param, Publisher, Subscription
 from graphflow.runtime.declarations.handlers import Handler, Rate
 from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
 from graphflow.runtime.part import Host
 from graphflow.times import to_ns
@@ -48,6 +49,19 @@ class Creator(Protocol):
 
     @property
     def create_timer(self) -> Callable[..., Timer]: ...
+
+
+class Instance(declared.NodeClass, Creator, Protocol):
+    """The user's node object, as its core sees it."""
+
+    error_budget: ClassVar[ErrorBudget | None]
+
+    @classmethod
+    def interface(cls) -> Interface: ...
+
+    async def on_start(self) -> None: ...
+
+    async def on_shutdown(self) -> None: ...
 
 
 class Binding:
@@ -97,7 +111,7 @@ class Binding:
                 return node.create_action_client(item.type, item.name)
         raise TypeError(f"{item!r} cannot be made")
 
-    def _method(self, fn: Any) -> Any:
+    def _method(self, fn: object) -> object:
         """Return a function of the class body as the node's method, which a subclass may have overridden.
 
         A function that is not an attribute of the class, such as a lambda, is bound as it is.
@@ -108,7 +122,7 @@ class Binding:
 
     def _bind_handler(self, method: Callable[..., object], handler: Handler) -> None:
         node = self._node
-        options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
+        options: dict[str, object] = {"group": handler.group, "thread": handler.thread}
         if handler.kind == "subscription":
             options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
             options |= {"on_event": self._method(handler.on_event), "on_error": handler.on_error}

@@ -39,7 +39,7 @@ class _Core(Protocol):
     """A node's runtime objects, as its declarations read them."""
 
     @property
-    def held(self) -> Mapping[str, Any]:
+    def held(self) -> Mapping[str, object]:
         """Endpoints and parameter values, by attribute."""
 
     @property
@@ -147,7 +147,7 @@ class Publisher(Held, Generic[M]):
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
     def __get__(self, node: Bound, owner: type) -> TopicPublisher[M]: ...
-    def __get__(self, node: Bound | None, owner: type) -> Any:
+    def __get__(self, node: Bound | None, owner: type) -> object:
         return self if node is None else node._core.held[self.attribute]
 
 
@@ -186,7 +186,7 @@ class Subscription(Held, Generic[M]):
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
     def __get__(self, node: Bound, owner: type) -> TopicSubscription[M]: ...
-    def __get__(self, node: Bound | None, owner: type) -> Any:
+    def __get__(self, node: Bound | None, owner: type) -> object:
         return self if node is None else node._core.held[self.attribute]
 
 
@@ -220,7 +220,7 @@ class Client(Held, Generic[Request, Response]):
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
     def __get__(self, node: Bound, owner: type) -> ServiceClient[Request, Response]: ...
-    def __get__(self, node: Bound | None, owner: type) -> Any:
+    def __get__(self, node: Bound | None, owner: type) -> object:
         return self if node is None else node._core.held[self.attribute]
 
 
@@ -240,7 +240,7 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
     def __get__(self, node: Bound, owner: type) -> GoalClient[Goal, Result, Feedback]: ...
-    def __get__(self, node: Bound | None, owner: type) -> Any:
+    def __get__(self, node: Bound | None, owner: type) -> object:
         return self if node is None else node._core.held[self.attribute]
 
 
@@ -275,17 +275,22 @@ class Param(Held, Generic[V]):
         lt: float | None = None,
         read_only: bool = False,
         step: float = 0.0,
-        choices: Sequence[Any] = (),
+        choices: Sequence[object] = (),
         name: str = "",
     ) -> None:
         self.place = here()
         self._name = name
-        limits: dict[str, Any] = {"ge": ge, "le": le, "gt": gt, "lt": lt, "step": step}
         try:
             if isinstance(default, (list, tuple)) and not default:
                 raise ParameterError("an empty list has no type: give it an element, as in [0.0]")
             self.parameter = Parameter(
-                name or "unnamed", type_of(default), default, self.place, unit, doc, read_only=read_only, **limits
+                *(name or "unnamed", type_of(default), default, self.place, unit, doc),
+                ge=ge,
+                le=le,
+                gt=gt,
+                lt=lt,
+                step=step,
+                read_only=read_only,
             )
             if choices:
                 self.parameter = replace(self.parameter, choices=self._choices(choices))
@@ -300,7 +305,7 @@ class Param(Held, Generic[V]):
             text = str(error).replace("parameter 'unnamed'", "the default")
             raise DeclarationError(f"{self.place}: {text}") from None
 
-    def _choices(self, choices: Sequence[Any]) -> tuple[Any, ...]:
+    def _choices(self, choices: Sequence[object]) -> tuple[object, ...]:
         """Convert the choices to the declared type. Raises ParameterError if they do not fit it."""
         if not isinstance(choices, (list, tuple)):
             raise ParameterError(f"choices= takes a list of values, not {choices!r}")
@@ -315,7 +320,7 @@ class Param(Held, Generic[V]):
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
     def __get__(self, node: Bound, owner: type) -> V: ...
-    def __get__(self, node: Bound | None, owner: type) -> Any:
+    def __get__(self, node: Bound | None, owner: type) -> object:
         return self if node is None else node._core.parameters.get(self.parameter.name)
 
     def __set__(self, node: Bound, value: V) -> None:

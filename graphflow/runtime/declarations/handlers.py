@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeAlias, TypeVar, get_args
 
 from graphflow.errors import DeclarationError, Place
 from graphflow.executor.clock import period_ns
@@ -33,6 +33,9 @@ from graphflow.runtime.mistakes.rclpy_words import with_argument_hints
 
 M = TypeVar("M", bound=Message)
 F = TypeVar("F", bound=Callable[..., object])
+
+Number: TypeAlias = "float | Param[float] | Param[int]"
+"""A period or a frequency, or the parameter with it."""
 
 MARK = "__graphflow__"
 
@@ -71,7 +74,7 @@ class ActionOptions:
 class Rate:
     """The rate of a timer: a period in seconds or a frequency in Hz, either of which may be a parameter."""
 
-    def __init__(self, period: float | Param[Any] | None, hz: float | Param[Any] | None) -> None:
+    def __init__(self, period: Number | None, hz: Number | None) -> None:
         self._sources = (period, hz)
 
     def parameters(self) -> list[str]:
@@ -85,7 +88,7 @@ class Rate:
             ValueError: As for `clock.period_ns`.
         """
 
-        def plain(source: float | Param[Any] | None) -> float | None:
+        def plain(source: Number | None) -> float | None:
             if not isinstance(source, Param):
                 if source is not None and not isinstance(source, (int, float)):
                     hook = getattr(source, HOOK_MARK, None)
@@ -184,16 +187,20 @@ def subscription(
     check_group(group, Group, "@subscription", place)
     check_on_event(on_event, "@subscription", place)
     profile = check_qos(qos, depth, place)
-    options: dict[str, Any] = {"ignore_local": ignore_local, "on_event": on_event, "on_error": on_error}
-    handler = Handler("subscription", place, group, thread, type, name, profile, **options)
+    handler = Handler(
+        *("subscription", place, group, thread, type, name, profile),
+        ignore_local=ignore_local,
+        on_event=on_event,
+        on_error=on_error,
+    )
     return lambda fn: _mark(fn, handler, range(2, 4))
 
 
 @with_argument_hints
 def timer(
-    period: float | Param[Any] | None = None,
+    period: Number | None = None,
     *,
-    hz: float | Param[Any] | None = None,
+    hz: Number | None = None,
     group: Group | None = None,
     thread: bool = False,
     on_error: OnError = "budget",

@@ -132,7 +132,7 @@ class TopicPublisher(Endpoint, Generic[M]):
                 else:
                     order.number += 1
                     put(payload, attachment=_pack(order.number, now_ns(), 16, gid))
-            except Exception as error:
+            except Exception as error:  # any, since the node may stop on another thread: see `_not_sent`
                 raise self._not_sent(error) from None
             finally:
                 order.is_sending = False
@@ -199,7 +199,7 @@ class TopicPublisher(Endpoint, Generic[M]):
                 else:
                     self._order.number += 1
                     self._put(payload, attachment=_pack(self.published, self._now_ns(), 16, self._gid))
-            except Exception as error:
+            except Exception as error:  # any, since the node may stop on another thread: see `_not_sent`
                 raise self._not_sent(error) from None
             finally:
                 order.is_sending = False
@@ -241,7 +241,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             if payload is not None:
                 try:
                     self._put(payload, attachment=attachment.pack(*fields))
-                except Exception as error:
+                except Exception as error:  # any, since the node may stop on another thread: see `_not_sent`
                     raise self._not_sent(error) from None
 
     @contextmanager

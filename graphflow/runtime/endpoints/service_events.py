@@ -15,6 +15,8 @@ from graphflow.runtime.part import Host
 if TYPE_CHECKING:
     from graphflow.msgs.base import Message, Service
 
+    AnyService = type[Service[Any, Any]]
+
 Introspection = Literal["off", "metadata", "contents"]
 """Content of the events of a call: nothing, metadata (the caller and the times), or the messages as well."""
 
@@ -28,14 +30,14 @@ class ServiceEvent(IntEnum):
     RESPONSE_RECEIVED = 3
 
 
-def _event_class(type_: type[Service[Any, Any]]) -> Any:
+def _event_class(type_: AnyService) -> Any:
     return type_.Event
 
 
 class ServiceEvents:
     """The topic `<service>/_service_event` of one client or server."""
 
-    def __init__(self, host: Host, type_: type[Service[Any, Any]], name: str) -> None:
+    def __init__(self, host: Host, type_: AnyService, name: str) -> None:
         self._host, self._event, self._name = host, _event_class(type_), name
         self._level: Introspection = "off"
         self._qos = DEFAULT

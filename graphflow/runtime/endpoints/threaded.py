@@ -68,7 +68,7 @@ class ThreadedPublisher(TopicPublisher[Any]):
             if sender.is_wanted:
                 try:
                     sender.put(payload, attachment=attachment.pack(*fields))
-                except Exception as error:
+                except Exception as error:  # any, since the node may stop on another thread: see `_not_sent`
                     raise self._not_sent(error) from None
         for timer in (self._deadline, self._lease):
             if timer is not None:

@@ -187,7 +187,7 @@ class NodeLogger(OwnLogger):
             super()._log(level, f"{unsaid} more lines from {code.co_filename}:{line} were not shown", (), stacklevel=2)
 
 
-def _fitted(msg: object, args: Any, site: _Site) -> tuple[object, Any]:
+def _fitted(msg: object, args: object, site: _Site) -> tuple[object, Any]:
     """Return a text and its values; where they do not match, one line that reports it in place of a traceback."""
     try:
         str(msg) % args

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from contextlib import AsyncExitStack
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
 
 from graphflow.errors import TransitionFailed, TransitionRefused
 from graphflow.executor.runner import Runner
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from graphflow.msgs.lifecycle_msgs import msg, srv
 
 P = TypeVar("P", bound=Part)
+Ts = TypeVarTuple("Ts")
 
 LABEL_SHOWN = 40
 """Longest excerpt of an unknown label in messages, in characters: it may come from any client."""
@@ -97,7 +98,7 @@ class ManagedCore(NodeCore):
             if part in level.parts:
                 level.parts.remove(part)
 
-    def spawn(self, fn: Callable[..., Coroutine[object, object, object]], *args: Any) -> asyncio.Task[object]:
+    def spawn(self, fn: Callable[[*Ts], Coroutine[object, object, object]], *args: *Ts) -> asyncio.Task[object]:
         task = super().spawn(fn, *args)
         if self._levels:
             tasks = self._levels[-1].tasks
@@ -244,7 +245,7 @@ class ManagedCore(NodeCore):
         except TransitionRefused as error:
             self.log.warning("%s refused: %s", hook, error)
             return Outcome.FAILURE, f"{hook} refused: {error}"
-        except Exception as error:
+        except Exception as error:  # of the user's hook: leads to `on_error`
             self.report_error(hook, error)
             return Outcome.ERROR, f"{hook} failed: {type(error).__name__}: {error}"
         finally:

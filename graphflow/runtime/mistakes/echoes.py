@@ -20,20 +20,20 @@ class Echo:
 
     Args:
         received: Returns the number of messages received so far.
-        tell: Called once, with the messages per second.
+        warn: Called once, with the messages per second.
     """
 
-    def __init__(self, clock: Clock, received: Callable[[], int], tell: Callable[[int], None]) -> None:
-        self._clock, self._received, self._tell = clock, received, tell
+    def __init__(self, clock: Clock, received: Callable[[], int], warn: Callable[[int], None]) -> None:
+        self._clock, self._received, self._warn = clock, received, warn
         self._alarm: Alarm | None = None
         self._last = 0
-        self._is_told = self._was_fast = False
+        self._has_warned = self._was_fast = False
 
     def follow(self, *, is_alone: bool) -> None:
         """Start the check while the node's own publisher is the only one, or stop it."""
         if not is_alone:
             self.stop()
-        elif self._alarm is None and not self._is_told:
+        elif self._alarm is None and not self._has_warned:
             self._last, self._was_fast = self._received(), False
             self._arm()
 
@@ -44,14 +44,14 @@ class Echo:
             self._alarm = None
 
     def _arm(self) -> None:
-        self._alarm = self._clock.call_at(self._clock.monotonic_ns() + NANOSECONDS, self._look)
+        self._alarm = self._clock.call_at(self._clock.monotonic_ns() + NANOSECONDS, self._check)
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         self._alarm, received = None, self._received()
         rate, self._last = received - self._last, received
         if rate >= LOOP and self._was_fast:
-            self._is_told = True
-            self._tell(rate)
+            self._has_warned = True
+            self._warn(rate)
         else:
             self._was_fast = rate >= LOOP
             self._arm()

@@ -12,14 +12,13 @@ import threading
 from collections.abc import Callable
 from pathlib import PurePath
 from types import FrameType
-from typing import Any
 
 from graphflow.analysis.user_code import is_users
 from graphflow.errors import ClosedError, Place
 from graphflow.runtime.callables import name_of
 from graphflow.runtime.part import Host
 
-TOLD_BOUND = 100
+PLACES_BOUND = 100
 """Lines of code remembered, so that each is reported once."""
 _ASYNCIO = str(PurePath(asyncio.__file__).parent)
 _CALL = re.compile(r"([\w.]+\.(?:put_nowait|get_nowait|set|set_result|set_exception|cancel|notify|release))\((.*)")
@@ -27,7 +26,7 @@ _STARTS = re.compile(r"\b(create_task|ensure_future)\(")
 logger = logging.getLogger("graphflow")
 
 
-def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> None:
+def call_soon(host: Host, fn: Callable[..., object], args: tuple[object, ...]) -> None:
     """Call `fn(*args)` on a node's event loop, from any thread. An error in it is logged.
 
     Raises:
@@ -41,7 +40,7 @@ def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> N
     def call() -> None:
         try:
             fn(*args)
-        except Exception as error:
+        except Exception as error:  # raised by the user's function: no caller could receive it
             host.report_error(f"call_soon of {name}", error)
 
     try:
@@ -53,11 +52,11 @@ def call_soon(host: Host, fn: Callable[..., object], args: tuple[Any, ...]) -> N
 def report_foreign_calls(loop: asyncio.AbstractEventLoop) -> None:
     """Report asyncio calls that another thread makes, such as `queue.put_nowait` and `future.set_result`."""
     if hasattr(loop, "stranger"):
-        told = set[Place]()
-        loop.stranger = lambda: _tell(told, sys._getframe(2))
+        reported = set[Place]()
+        loop.stranger = lambda: _report(reported, sys._getframe(2))
 
 
-def _tell(told: set[Place], frame: FrameType | None) -> None:
+def _report(reported: set[Place], frame: FrameType | None) -> None:
     """Report a call if user code made it.
 
     Args:
@@ -68,17 +67,17 @@ def _tell(told: set[Place], frame: FrameType | None) -> None:
     if frame is None or not is_users(frame.f_code.co_filename):
         return
     place = Place(frame.f_code.co_filename, frame.f_lineno)
-    if place in told or len(told) >= TOLD_BOUND:
+    if place in reported or len(reported) >= PLACES_BOUND:
         return
-    told.add(place)
+    reported.add(place)
     text = (
         "%s: thread %r changes the event loop's state, which takes effect only when something else wakes the loop, "
         "perhaps seconds later; write %s"
     )
-    logger.error(text, place, threading.current_thread().name, _way(linecache.getline(place.file, place.line)))
+    logger.error(text, place, threading.current_thread().name, _correction(linecache.getline(place.file, place.line)))
 
 
-def _way(line: str) -> str:
+def _correction(line: str) -> str:
     """Return the correct form of a line."""
     if _STARTS.search(line):
         return "self.spawn(fn, ...)"

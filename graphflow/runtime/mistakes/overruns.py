@@ -30,7 +30,7 @@ class Overruns:
         """Periods skipped since the first of them."""
         self._since_ns = 0
         self._text = ""
-        self._is_told = False
+        self._has_warned = False
 
     def begins(self, skipped: int) -> None:
         """Note the start of a run.
@@ -63,8 +63,8 @@ class Overruns:
             f"{self._title} is due every {every}, but its runs take longer{place and ' '}{place}; "
             f"{self._skipped} periods were skipped in {seconds:.1f} s: {_WAY}"
         )
-        if not self._is_told:
-            self._is_told = True
+        if not self._has_warned:
+            self._has_warned = True
             self._host.log.warning("%s", self._text)
 
     def complaints(self) -> list[str]:

@@ -24,7 +24,7 @@ class Repeats:
         self._host = host
         self._made: dict[Part, Hashable] = {}
         self._alike: Counter[Hashable] = Counter()
-        self._told: set[Hashable] = set()
+        self._reported: set[Hashable] = set()
 
     def made(self, part: Part) -> None:
         """Count a part, and warn if there are many like it."""
@@ -33,8 +33,8 @@ class Repeats:
         self._made[part] = key = _key(part)
         self._alike[key] += 1
         alike = self._alike[key]
-        if alike >= MANY and key not in self._told and (place := _place()) is not None:
-            self._told.add(key)
+        if alike >= MANY and key not in self._reported and (place := _place()) is not None:
+            self._reported.add(key)
             text = (
                 "%s exists %d times, created last in %s: create it once, in __init__, or close the previous one first"
             )

@@ -16,9 +16,9 @@ from graphflow.analysis.user_code import innermost, is_users
 
 logger = logging.getLogger("graphflow")
 
-TOLD_BOUND = 1000
+PLACES_BOUND = 1000
 """Lines of code remembered, so that each is reported once."""
-_told: set[str] = set()
+_reported: set[str] = set()
 
 
 _AWAIT = "write await before it, in an async def"
@@ -41,9 +41,9 @@ def report(coroutine: Coroutine[object, object, object]) -> None:
         # From here on, Python records where each coroutine is created, at 0.15 us each.
         sys.set_coroutine_origin_tracking_depth(1)
     key = place or name
-    if key in _told or len(_told) >= TOLD_BOUND:
+    if key in _reported or len(_reported) >= PLACES_BOUND:
         return
-    _told.add(key)
+    _reported.add(key)
     if place:
         logger.error(
             "%s: `%s` does nothing, since %s is a coroutine function; %s",

@@ -33,7 +33,7 @@ def watch() -> None:
     file = getattr(sys.modules.get("__main__"), "__file__", None)  # the attribute is gone at exit
     if file and _file is None and not (_has_run or sys.flags.interactive or is_ours(file) or is_installed(file)):
         _file = file
-        atexit.register(_tell)
+        atexit.register(_at_exit)
 
 
 def made() -> None:
@@ -42,15 +42,15 @@ def made() -> None:
     _has_run = True
 
 
-def _tell() -> None:
+def _at_exit() -> None:
     error = getattr(sys, "last_value", None)
     if isinstance(error, AttributeError) and error.name is not None and (better := better_text(error)):
         sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has printed the error itself
     if _file is not None and not hasattr(sys, "last_value"):  # the program ended normally, without an error
-        tell(Path(_file))
+        report(Path(_file))
 
 
-def tell(file: Path) -> None:
+def report(file: Path) -> None:
     """Report once that a program has ended without running its nodes."""
     if not _has_run:
         made()

@@ -32,7 +32,7 @@ class Parameters:
         overrides: Values from a graph file or the command line: name to (value, place that gives it).
     """
 
-    def __init__(self, overrides: Mapping[str, tuple[Any, str]] | None = None) -> None:
+    def __init__(self, overrides: Mapping[str, tuple[object, str]] | None = None) -> None:
         self._declared: dict[str, Parameter] = {}
         self._values: dict[str, Any] = {}
         self._sources: dict[str, str] = {}
@@ -58,7 +58,7 @@ class Parameters:
             value, source = parameter.fit(parameter.default), "default"
         self._declared[parameter.name] = parameter
         self._values[parameter.name], self._sources[parameter.name] = value, source
-        self._tell({parameter.name: ParameterChange(None, value)})
+        self._notify({parameter.name: ParameterChange(None, value)})
         return value
 
     def undeclare(self, name: str) -> None:
@@ -71,7 +71,7 @@ class Parameters:
             raise ParameterError(f"parameter {name!r} is read-only")
         value = self._values.pop(name)
         del self._declared[name], self._sources[name]
-        self._tell({name: ParameterChange(value, None)})
+        self._notify({name: ParameterChange(value, None)})
 
     def unused_overrides(self, owner: type = object) -> list[str]:
         """Return a sentence for each override that matches no declared parameter.
@@ -80,7 +80,7 @@ class Parameters:
             owner: The node's class; the sentence mentions its plain attributes.
         """
 
-        def hint(name: str, given: Any, source: str) -> str:
+        def hint(name: str, given: object, source: str) -> str:
             if source == "argument" and (way := instead_of(name, given)):
                 return f"; {way}"
             value = getattr(owner, name, None)
@@ -125,7 +125,7 @@ class Parameters:
         self.get(name)
         return self._declared[name]
 
-    def set(self, values: Mapping[str, Any], source: str = "set") -> None:
+    def set(self, values: Mapping[str, object], source: str = "set") -> None:
         """Set parameters, all or none. None deletes one that was declared with dynamic typing.
 
         Raises:
@@ -154,7 +154,7 @@ class Parameters:
                 del self._values[name], self._sources[name], self._declared[name]
             else:
                 self._values[name], self._sources[name] = value, source
-        self._tell(changes)
+        self._notify(changes)
 
     def check(self, check: Check) -> None:
         """Call `check(values)` before each change; its ParameterError refuses all the values."""
@@ -164,6 +164,6 @@ class Parameters:
         """Call `observer(changes)`, changes by name, after each change, declaration or deletion."""
         self._observers.append(observer)
 
-    def _tell(self, changes: Mapping[str, ParameterChange]) -> None:
+    def _notify(self, changes: Mapping[str, ParameterChange]) -> None:
         for observer in self._observers:
             observer(changes)

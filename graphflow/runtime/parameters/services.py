@@ -155,9 +155,9 @@ class ParameterEvents(Part):
     def open(self) -> None:
         self._publisher.open()
         parameters = self._parameters
-        self.tell({name: ParameterChange(None, parameters.get(name)) for name in parameters.names()})
+        self.publish({name: ParameterChange(None, parameters.get(name)) for name in parameters.names()})
 
-    def tell(self, changes: Mapping[str, ParameterChange]) -> None:
+    def publish(self, changes: Mapping[str, ParameterChange]) -> None:
         """Publish changes, if there are subscriptions."""
         if not self._publisher.is_wanted:
             return

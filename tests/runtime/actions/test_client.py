@@ -168,7 +168,7 @@ async def test_a_result_that_was_lost_is_asked_for_again(graph: Graph, monkeypat
     goal = await asker.order(3)
     await graph.clock.advance(1.0)
     for _ in range(2):
-        asker.fibonacci._told(status(goal, GoalStatus.SUCCEEDED), UNKNOWN)
+        asker.fibonacci._status_received(status(goal, GoalStatus.SUCCEEDED), UNKNOWN)
     assert (goal.done, len(asker.fibonacci._followers)) == (False, 2)
     await graph.clock.advance(client.LOST_GRACE)
     assert (goal.done, len(asked)) == (True, 3)
@@ -188,14 +188,14 @@ async def test_states_that_say_nothing(graph: Graph) -> None:
     client, goal = asker.fibonacci, await asker.order(50)
     await graph.settle()
     for state in (7, 255, GoalStatus.ACCEPTED):
-        client._told(status(goal, state), UNKNOWN)
+        client._status_received(status(goal, state), UNKNOWN)
         assert goal.status is GoalStatus.EXECUTING
-    client._told(b"", UNKNOWN)
+    client._status_received(b"", UNKNOWN)
     assert client._status.malformed == 1
     for endpoint in core_of(server).parts[-1].endpoints:
         endpoint.close()
     await graph.clock.advance(1.0)
-    client._told(status(goal, GoalStatus.EXECUTING), UNKNOWN)
+    client._status_received(status(goal, GoalStatus.EXECUTING), UNKNOWN)
     assert goal.status is GoalStatus.LOST
 
 

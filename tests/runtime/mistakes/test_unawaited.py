@@ -30,7 +30,7 @@ def keeps() -> None:
 @pytest.fixture(autouse=True)
 def watched() -> Iterator[None]:
     former = warnings._warn_unawaited_coroutine  # type: ignore[attr-defined]
-    unawaited._told.clear()
+    unawaited._reported.clear()
     unawaited.watch()
     yield
     warnings._warn_unawaited_coroutine = former  # type: ignore[attr-defined]

@@ -11,22 +11,22 @@ from graphflow.machines.domains import COMMANDS, elsewhere
 from graphflow.names import is_hidden
 from graphflow.wire.liveliness import NODES
 
-TOLD_WITHIN = 0.2
+ANSWER_LIMIT = 0.2
 """Seconds to wait for the rendezvous's list of nodes."""
 
 
-def look_elsewhere(here: ProcessContext, node: str, told: Callable[[str], None]) -> None:
+def look_elsewhere(here: ProcessContext, node: str, report: Callable[[str], None]) -> None:
     """Check whether a node is alone in its domain while other domains have nodes.
 
     Args:
         node: The node's full name.
-        told: Called on the loop, possibly at once, with a sentence; "" if the node is not alone.
+        report: Called on the loop, possibly at once, with a sentence; "" if the node is not alone.
     """
     if any(other != node for other in here.cache.nodes(hidden=False)):
-        told("")
+        report("")
         return
     way = COMMANDS if is_hidden(node) else f"start it with {domain_variable()}={{}} to join"
-    here.session.ask_tokens(NODES, TOLD_WITHIN, lambda tokens: told(elsewhere(here.domain, tokens, way, (node,))))
+    here.session.ask_tokens(NODES, ANSWER_LIMIT, lambda tokens: report(elsewhere(here.domain, tokens, way, (node,))))
 
 
 async def alone_here(here: ProcessContext, node: str) -> str:

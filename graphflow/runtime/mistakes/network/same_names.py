@@ -36,7 +36,7 @@ class Twins:
         self._known: set[str] = set()
         self._shared: set[str] = set()
         """Services to report."""
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         """Services reported, of which there are no more than this process offers."""
         self._processes: dict[str, ProcessToken] = {}
         self._watch: Closable | None = None
@@ -51,18 +51,18 @@ class Twins:
             self._known.add(name)
             if self._watch is None:
                 self._watch = self._here.session.watch(process.watch_key(self._here.domain), self._process)
-            self._later(partial(self._tell, name))
+            self._later(partial(self._report, name))
 
-    def _later(self, tell: Callable[[], None]) -> None:
+    def _later(self, report: Callable[[], None]) -> None:
         def due() -> None:
             self._alarms.discard(alarm)
-            tell()
+            report()
 
         clock = self._here.clock
         alarm = clock.call_at(clock.monotonic_ns() + to_ns(TELL_AFTER), due)
         self._alarms.add(alarm)
 
-    def _tell(self, name: str) -> None:
+    def _report(self, name: str) -> None:
         mine = self._here.session.zid
         owners = [entity.zid for entity in self._here.cache.owners(name)]
         if len(owners) < 2 or mine not in owners:
@@ -79,13 +79,13 @@ class Twins:
     def share(self, name: str) -> None:
         """Note that another node offers a service of this process."""
         if not self._shared:
-            self._later(self._tell_shared)
+            self._later(self._report_shared)
         self._shared.add(name)
 
-    def _tell_shared(self) -> None:
-        names, self._shared = self._shared - self._told, set()
+    def _report_shared(self) -> None:
+        names, self._shared = self._shared - self._reported, set()
         offered = {name: self._here.cache.named(name) for name in names}
-        self._told |= {name for name, entities in offered.items() if shared(entities)}
+        self._reported |= {name for name, entities in offered.items() if shared(entities)}
         for text in shared(entity for entities in offered.values() for entity in entities):
             logger.warning("%s", text)
 

@@ -50,10 +50,10 @@ class Unmatched:
         self._here = here
         self._waiting: dict[str, dict[Entity, _Waiting]] = {}
         """Endpoints without a counterpart, by type."""
-        self._told: set[tuple[str, Kind, str]] = set()
+        self._reported: set[tuple[str, Kind, str]] = set()
         """The reported endpoints by node, kind and topic, of which there are no more than this process has."""
         self._alarm: Alarm | None = None
-        self._is_domain_told = self._is_closed = False
+        self._is_domain_reported = self._is_closed = False
 
     def opened(self, own: Entity, log: logging.Logger) -> None:
         """Note that a node of this process has opened an endpoint."""
@@ -61,7 +61,7 @@ class Unmatched:
         if self._is_closed or own.kind is Kind.SERVICE or is_everybodys(name) or is_hidden(own.node_name):
             return
         keeps = own.kind is Kind.PUBLISHER and own.qos.durability is Durability.TRANSIENT_LOCAL
-        if not keeps and (own.node_name, own.kind, own.name) not in self._told:
+        if not keeps and (own.node_name, own.kind, own.name) not in self._reported:
             self._waiting.setdefault(own.type, {})[own] = _Waiting(log, self._due())
 
     def changed(self, change: GraphChange) -> None:
@@ -78,10 +78,10 @@ class Unmatched:
         clock = self._here.clock
         due_ns = clock.monotonic_ns() + to_ns(TELL_AFTER)
         if self._alarm is None:
-            self._alarm = clock.call_at(due_ns, self._look)
+            self._alarm = clock.call_at(due_ns, self._check)
         return due_ns
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         now_ns, cache = self._here.clock.monotonic_ns(), self._here.cache
         self._alarm = None
         due: list[tuple[Entity, _Waiting]] = []
@@ -92,26 +92,26 @@ class Unmatched:
                 waiting.due_ns = self._due()
             elif waiting.due_ns is not None and waiting.due_ns <= now_ns:
                 due.append((own, waiting))
-        self._look_at(due[:AT_ONCE])
+        self._check_all(due[:AT_ONCE])
         left = [w.due_ns for same in self._waiting.values() for w in same.values() if w.due_ns is not None]
         if left and self._alarm is None:
-            self._alarm = self._here.clock.call_at(min(left), self._look)
+            self._alarm = self._here.clock.call_at(min(left), self._check)
 
-    def _look_at(self, due: Sequence[tuple[Entity, _Waiting]]) -> None:
+    def _check_all(self, due: Sequence[tuple[Entity, _Waiting]]) -> None:
         there = by_type(self._here.cache, {own.type for own, _ in due})
         for own, waiting in due:
             waiting.due_ns = None
             if text := did_you_mean_topic(own, there):
                 self._forget(own)
-                self._told.add((own.node_name, own.kind, own.name))
+                self._reported.add((own.node_name, own.kind, own.name))
                 waiting.log.warning("%s", text)
         logs = {own.node_name: waiting.log for own, waiting in due}
-        for name, log in logs.items() if not self._is_domain_told else ():
-            look_elsewhere(self._here, name, partial(self._tell_domain, log))
+        for name, log in logs.items() if not self._is_domain_reported else ():
+            look_elsewhere(self._here, name, partial(self._report_domain, log))
 
-    def _tell_domain(self, log: logging.Logger, text: str) -> None:
-        if text and not self._is_domain_told and not self._is_closed:
-            self._is_domain_told = True
+    def _report_domain(self, log: logging.Logger, text: str) -> None:
+        if text and not self._is_domain_reported and not self._is_closed:
+            self._is_domain_reported = True
             log.warning("%s", text)
 
     def _forget(self, own: Entity) -> None:

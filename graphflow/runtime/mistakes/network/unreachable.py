@@ -11,7 +11,7 @@ from graphflow.wire import net
 from graphflow.wire.liveliness import Entity
 from graphflow.wire.net import NetToken
 
-TOLD_WITHIN = 0.2
+ANSWER_LIMIT = 0.2
 """Seconds to wait for the net profiles in force on this machine's links."""
 
 
@@ -38,13 +38,13 @@ async def _profiles(host: Host) -> list[NetToken]:
     """Return the net profiles in force on this machine."""
     found: list[NetToken] = []
 
-    def told(text: str, alive: bool) -> None:
+    def tokens(text: str, alive: bool) -> None:
         if alive and (profile := net.parse(text)) is not None:
             found.append(profile)
 
-    watch = host.context.session.watch(net.watch_key(host.context.domain), told)
+    watch = host.context.session.watch(net.watch_key(host.context.domain), tokens)
     try:
-        await asyncio.sleep(TOLD_WITHIN)  # links answer in real time, whatever the node's clock
+        await asyncio.sleep(ANSWER_LIMIT)  # links answer in real time, whatever the node's clock
     finally:
         watch.close()
     return found

@@ -32,7 +32,7 @@ class Unserved:
         """Start of the first wait since there was a server: a loop may wait again and again."""
         self._waits, self._ended_ns = 0, 0
         """Number of waits in progress, and the end of the last completed one in nanoseconds."""
-        self._is_told = False
+        self._is_reported = False
 
     @contextmanager
     def waiting(self, *, raises: bool = False) -> Iterator[None]:
@@ -43,20 +43,20 @@ class Unserved:
         """
         task, clock = asyncio.current_task(), self._host.context.clock
         since = clock.monotonic_ns() if raises else self._begin(clock.monotonic_ns())
-        telling: list[asyncio.Task[None]] = []
+        reports: list[asyncio.Task[None]] = []
         alarm = clock.call_at(
             max(clock.monotonic_ns(), since + to_ns(TELL_AFTER)),
-            lambda: telling.append(asyncio.create_task(self._tell(task, since))),
+            lambda: reports.append(asyncio.create_task(self._report(task, since))),
         )
         self._waits += 1
         try:
             yield
-            self._since, self._is_told = None, False
+            self._since, self._is_reported = None, False
         finally:
             self._waits, self._ended_ns = self._waits - 1, clock.monotonic_ns()
             alarm.cancel()
-            for begun in telling:
-                begun.cancel()
+            for report in reports:
+                report.cancel()
 
     def _begin(self, now_ns: int) -> int:
         """Add a wait to the series; returns the start of its first wait in nanoseconds."""
@@ -64,12 +64,15 @@ class Unserved:
         self._since = now_ns if self._since is None or is_another else self._since
         return self._since
 
-    async def _tell(self, task: asyncio.Task[None] | None, since: int) -> None:
-        if self._is_told or is_hidden(self._host.full_name):  # a command's node, whose command reports it
+    async def _report(self, task: asyncio.Task[None] | None, since: int) -> None:
+        if self._is_reported or is_hidden(self._host.full_name):  # a command's node, whose command reports it
             return
         text, place = await self._nobody(), place_of(task)
-        is_told, self._is_told = self._is_told, True  # another wait may report meanwhile, and this one may end first
-        if text and not is_told:
+        is_reported, self._is_reported = (
+            self._is_reported,
+            True,
+        )  # another wait may report meanwhile, and this one may end first
+        if text and not is_reported:
             waited = (self._host.context.clock.monotonic_ns() - since) / NANOSECONDS
             self._host.log.warning("wait_ready has waited for %.0f s%s: %s", waited, place and f" {place}", text)
 

@@ -17,7 +17,6 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.swallowed import caught_in_vain
@@ -63,9 +62,9 @@ def _slips(cls: type) -> Iterator[str]:
             for method in definition.body:
                 if isinstance(method, FunctionNode):
                     yield from _wrong_fields(method, file, space)
-            told = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
-            told = (*told, *ineffective(definition), *overridden(parent, definition))
-            yield from (f"{Place(file, line)}: {text}" for line, text in told)
+            found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
+            found = (*found, *ineffective(definition), *overridden(parent, definition))
+            yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
 
 def _other_modules(file: str) -> Iterator[ast.Module]:
@@ -96,7 +95,7 @@ def _mentioned(module: ast.Module) -> set[str]:
 
 
 def _idle_methods(
-    cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str], space: dict[str, Any]
+    cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str], space: dict[str, object]
 ) -> Iterator[str]:
     for method in definition.body:
         if not isinstance(method, FunctionNode) or method.decorator_list or method.name in mentioned:
@@ -136,7 +135,7 @@ _OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", 
 _DECORATORS = {"message": '@subscription(Type, "topic")', "request": '@service(Type, "name")'}
 
 
-def _received(argument: ast.arg, space: dict[str, Any]) -> str:
+def _received(argument: ast.arg, space: dict[str, object]) -> str:
     """Return the annotation of an argument if it is a message or request, else ""."""
     type_ = _message(argument.annotation, space)
     if type_ is None:
@@ -144,7 +143,7 @@ def _received(argument: ast.arg, space: dict[str, Any]) -> str:
     return "request" if type_.__name__ == "Request" or type_.SCHEMA.name.endswith("_Request") else "message"
 
 
-def _resolved(expression: ast.expr | None, space: dict[str, Any]) -> Any:
+def _resolved(expression: ast.expr | None, space: dict[str, object]) -> object:
     """Return the value of a possibly dotted name in a module."""
     match expression:
         case ast.Name(id=name):
@@ -188,7 +187,7 @@ _COUNTING = {*"0123456789xyzabclr"}
 """Suffixes of numbered names."""
 
 
-def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, Any]) -> Iterator[str]:
+def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, object]) -> Iterator[str]:
     """Find declarations that a method replaces by setting a class attribute instead of the node's."""
     names = declared.held(cls)
     for method in definition.body:
@@ -220,7 +219,7 @@ _CHANGING = ("append", "extend", "insert", "remove", "pop", "clear", "sort", "re
 _OWN_CLASS = ("type(self)", "self.__class__")
 
 
-def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Iterator[str]:
+def _wrong_fields(method: FunctionNode, file: str, space: dict[str, object]) -> Iterator[str]:
     """Find fields of messages that their type does not have, and literals that do not fit them."""
     bound = {a.arg: {_message(a.annotation, space)} for a in method.args.args}
     times: Counter[str] = Counter()
@@ -245,12 +244,12 @@ def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Ite
                     yield f"{Place(file, node.lineno)}: {text}"
 
 
-def _type_made(value: ast.expr, space: dict[str, Any]) -> type[Message] | None:
+def _type_made(value: ast.expr, space: dict[str, object]) -> type[Message] | None:
     """Return the message class that an expression instantiates, as in `String()`."""
     return _message(value.func, space) if isinstance(value, ast.Call) else None
 
 
-def _message(expression: ast.expr | None, space: dict[str, Any]) -> type[Message] | None:
+def _message(expression: ast.expr | None, space: dict[str, object]) -> type[Message] | None:
     """Return the message class that an expression names."""
     type_ = _resolved(expression, space)
     return type_ if isinstance(type_, type) and issubclass(type_, Message) else None

@@ -112,13 +112,13 @@ async def test_many_at_once(graph: Graph, caplog: Caplog, monkeypatch: pytest.Mo
         base.create_subscription(Twist, f"{name}/cmd_vl", lambda _: None)
     await graph.start(node, base)
     unmatched = core_of(node).context.unmatched
-    look = unmatched._look_at
+    look = unmatched._check_all
 
     def counted(due: Sequence[Any]) -> None:
         looks.append(len(due))
         look(due)
 
-    monkeypatch.setattr(unmatched, "_look_at", counted)
+    monkeypatch.setattr(unmatched, "_check_all", counted)
     await graph.clock.advance(TELL_AFTER)
     assert looks == [AT_ONCE, len(names) - AT_ONCE]
     assert len([text for text in told(caplog) if "listens to" in text]) == len(names)
