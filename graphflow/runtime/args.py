@@ -79,7 +79,7 @@ class RosArgs:
         return found | {p: (v, source) for node, p, v, source in self.params if node in names}
 
 
-def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> RosArgs:
+def parse_ros_args(arguments: Sequence[str], *, refuses_unknown: bool = True) -> RosArgs:
     """Parse a node's arguments. A bare `from:=to`, which ROS 2 silently ignores, counts as a remap.
 
     Args:
@@ -89,57 +89,57 @@ def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> Ros
         GraphflowError: A remap rule or an option is invalid.
     """
     result = RosArgs()
-    todo = list(words)
+    todo = list(arguments)
     in_ros = False
     while todo:
-        word = todo.pop(0)
-        if word == "--ros-args":
+        argument = todo.pop(0)
+        if argument == "--ros-args":
             in_ros = True
-        elif word == "--" and in_ros:
+        elif argument == "--" and in_ros:
             in_ros = False
-        elif word in _FLAGS and in_ros:
-            _flag(result, word)
-        elif word in _VALUED or (in_ros and word in _LEFT_OUT):
+        elif argument in _FLAGS and in_ros:
+            _flag(result, argument)
+        elif argument in _VALUED or (in_ros and argument in _LEFT_OUT):
             if not todo or todo[0] in _OPTIONS:
-                raise GraphflowError(f"{word} needs a value after it, such as {_EXAMPLES.get(word, 'info')}")
-            _option(result, word, todo.pop(0))
-        elif ":=" in word and not word.startswith("-") and refuses_unknown:
-            _remap(result, word)
+                raise GraphflowError(f"{argument} needs a value after it, such as {_EXAMPLES.get(argument, 'info')}")
+            _option(result, argument, todo.pop(0))
+        elif ":=" in argument and not argument.startswith("-") and refuses_unknown:
+            _remap(result, argument)
         elif in_ros and not refuses_unknown:
-            result.unknown.append(word)
-        elif in_ros or _slip(word):
-            raise GraphflowError(f"{word!r} is not a ROS argument{cut_off(word, words) or meant(word)}")
+            result.unknown.append(argument)
+        elif in_ros or _slip(argument):
+            raise GraphflowError(f"{argument!r} is not a ROS argument{cut_off(argument, arguments) or meant(argument)}")
         else:
-            result.rest.append(word)
+            result.rest.append(argument)
     return result
 
 
-def meant(word: str) -> str:
+def meant(argument: str) -> str:
     """Return a hint on how to write an argument that ROS 2 does not know, as the end of a sentence; "" if unknown."""
-    if ":=" in word and not word.startswith(_DASHES):
-        match, _, replacement = word.partition(":=")
+    if ":=" in argument and not argument.startswith(_DASHES):
+        match, _, replacement = argument.partition(":=")
         key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
         is_private = key is None and re.match("_[a-z]", match) is not None  # ROS 1's syntax for a parameter
         option = "-p" if is_private or (key is None and is_number_or_truth(replacement)) else "-r"
         return f"; write --ros-args {option} {key or match[is_private:]}:={replacement}"
-    option, equals, value = word.partition("=")
+    option, equals, value = argument.partition("=")
     if equals and option in _VALUED:
         return f"; write {option} {value}, without ="
-    if option := _slip(word):
+    if option := _slip(argument):
         return f"; write {option}"
-    return did_you_mean(word, _OPTIONS)
+    return did_you_mean(argument, _OPTIONS)
 
 
-def cut_off(word: str, words: Sequence[str]) -> str:
+def cut_off(argument: str, arguments: Sequence[str]) -> str:
     """Return a hint about an argument that a space split from the value before it; "" for any other.
 
     Args:
-        words: The whole command line.
+        arguments: The whole command line.
     """
-    place = list(words).index(word)
-    option, before = words[place - 2 : place] if place > 1 else ("", "")
+    place = list(arguments).index(argument)
+    option, before = arguments[place - 2 : place] if place > 1 else ("", "")
     is_cut = option in _VALUED and ":=" in before
-    return f"; quote a value that contains a space: {option} '{before} {word}'" if is_cut else ""
+    return f"; quote a value that contains a space: {option} '{before} {argument}'" if is_cut else ""
 
 
 def is_number_or_truth(text: str) -> bool:
@@ -147,36 +147,36 @@ def is_number_or_truth(text: str) -> bool:
     return text.lower() in ("true", "false") or text.lstrip("+-").replace(".", "", 1).isdecimal()
 
 
-def missed(words: Sequence[str]) -> str:
+def missed(arguments: Sequence[str]) -> str:
     """Return a sentence about arguments outside `--ros-args` that seem meant for ROS 2; "" if there are none.
 
     ROS 2 silently passes them to the program. A program may have options of its own, so only those that are
     unlikely to belong to it count as mistakes.
     """
     in_ros = False
-    for place, word in enumerate(words):
-        if word == "--ros-args":
+    for place, argument in enumerate(arguments):
+        if argument == "--ros-args":
             in_ros = True
-        elif word == "--":
+        elif argument == "--":
             in_ros = False
-        elif not in_ros and (option := _slip(word)):
-            rest = " ".join(words[place + 1 :])
+        elif not in_ros and (option := _slip(argument)):
+            rest = " ".join(arguments[place + 1 :])
             way = option if option == "--ros-args" else f"--ros-args {option}"
-            return f"{word!r} means nothing to ROS, nor does the rest{f' ({rest})' if rest else ''}; write {way}"
-        elif not in_ros and ":=" in word:
-            before = words[place - 1] if place else ""
-            is_whole = before in _VALUED and not word.startswith("___")
-            way = f"; write --ros-args {before} {word}" if is_whole else meant(word)
-            return f"{word!r} means nothing to ROS before --ros-args{way}"
+            return f"{argument!r} means nothing to ROS, nor does the rest{f' ({rest})' if rest else ''}; write {way}"
+        elif not in_ros and ":=" in argument:
+            before = arguments[place - 1] if place else ""
+            is_whole = before in _VALUED and not argument.startswith("___")
+            way = f"; write --ros-args {before} {argument}" if is_whole else meant(argument)
+            return f"{argument!r} means nothing to ROS before --ros-args{way}"
     return ""
 
 
-def _slip(word: str) -> str:
+def _slip(argument: str) -> str:
     """Return the ROS 2 option that an argument almost spells, such as `-ros-args`; "" if there is none."""
-    if (pasted := meant_option(word)) in _OPTIONS:
+    if (pasted := meant_option(argument)) in _OPTIONS:
         return pasted
-    bare = word.lstrip("".join(_DASHES))
-    if word in ("--ros-args", "--params-file", bare):
+    bare = argument.lstrip("".join(_DASHES))
+    if argument in ("--ros-args", "--params-file", bare):
         return ""
     return "--params-file" if bare == "params-file" else nearest(f"--{bare}", ["--ros-args"], cutoff=0.85) or ""
 
@@ -192,9 +192,9 @@ def _option(result: RosArgs, option: str, value: str) -> None:
     if option in ("-r", "--remap"):
         _remap(result, value)
     elif option == "--log-level":
-        name, arrow, word = value.partition(":=")
+        name, arrow, argument = value.partition(":=")
         if arrow:
-            result.log_levels[name] = word
+            result.log_levels[name] = argument
         else:
             result.log_level = value
     elif option == "--params-file":

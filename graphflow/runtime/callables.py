@@ -25,3 +25,9 @@ def written_at(fn: Callable[..., object]) -> str:
     """Return the place of a function as `file:line`, decorators left aside; "" if it is not written in Python."""
     code = code_of(inspect.unwrap(fn))
     return "" if code is None else str(Place(code.co_filename, code.co_firstlineno))
+
+
+def file_of(module: object) -> str | None:
+    """Return a module's file; None for a built-in one, or for another object in `sys.modules`."""
+    file = getattr(module, "__file__", None)
+    return file if isinstance(file, str) else None

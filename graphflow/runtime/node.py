@@ -10,6 +10,7 @@ from typing import Any, ClassVar, TypeVar, TypeVarTuple
 
 from graphflow.analysis.static_entities import with_made
 from graphflow.errors import DeclarationError
+from graphflow.executor.activity import Activity
 from graphflow.executor.clock import Clock, period_ns
 from graphflow.executor.groups import HandlerGroup
 from graphflow.interface import GoalPolicy, GroupChange, Interface, OnClientLoss, OnError
@@ -172,7 +173,7 @@ class Node(AttributeHints):
 
     @property
     def derivations(self) -> Mapping[str, Resolution]:
-        """How each name came about that the node has used, by its full name before remaps."""
+        """The origin of each name that the node has used, by its full name before remaps."""
         return self._core.names.derivations
 
     def resolve_topic_name(self, name: str) -> str:
@@ -204,8 +205,9 @@ class Node(AttributeHints):
         Raises:
             RuntimeError: The current task is not a handler run in a group, but for example a `@task`.
         """
-        group = getattr(asyncio.current_task(), "group", None)
-        if not isinstance(group, HandlerGroup):
+        task: object = asyncio.current_task()  # in a handler, an activity that acts as a task
+        group = task.group if isinstance(task, Activity) else None
+        if group is None:
             raise RuntimeError(f"{self.full_name}: the current task is not a handler that holds a slot of a group")
         return group
 

@@ -9,7 +9,7 @@ from graphflow.errors import InvalidName, UsageFault
 from graphflow.names import Remap
 from graphflow.runtime.call_site import here
 
-_WORDS = {
+_SYNONYMS = {
     **dict.fromkeys(("ns", "node_namespace"), "namespace"),
     **dict.fromkeys(("remaps", "remappings", "remapping"), "remap"),
     **dict.fromkeys(("params", "parameters", "parameter_overrides"), ""),
@@ -36,12 +36,13 @@ def rules_of(remap: object) -> list[Remap]:
     return found
 
 
-def instead_of(word: str, value: object) -> str:
+def instead_of(keyword: str, value: object) -> str:
     """Return what to write in place of a keyword that a node does not have; "" if unknown."""
-    meant = _WORDS.get(word)
-    if meant is None:
+    canonical = _SYNONYMS.get(keyword)
+    if canonical is None:
         return ""
-    return f"write {_argument(word, value)}" if meant else f"pass parameters by name: {_argument(word, value)}"
+    written = _argument(keyword, value)
+    return f"write {written}" if canonical else f"pass parameters by name: {written}"
 
 
 def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> None:
@@ -53,18 +54,18 @@ def refuse_keywords(given: Mapping[str, object], nodes: Iterable[object]) -> Non
     if given:
         first = next(iter(nodes), None)
         name = "Talker" if first is None else first.__name__ if isinstance(first, type) else type(first).__name__
-        arguments = ", ".join(_argument(word, value) for word, value in given.items())
+        arguments = ", ".join(_argument(keyword, value) for keyword, value in given.items())
         way = f"{next(iter(given))}= belongs to the node: graphflow.run({name}({arguments}))"
         raise UsageFault(f"{here()}: {way}, or on the command line --ros-args -r __ns:=/NS -r FROM:=TO -p NAME:=VALUE")
 
 
-def _argument(word: str, value: object) -> str:
+def _argument(keyword: str, value: object) -> str:
     """Return an argument of a node as it is written in code."""
-    meant = _WORDS.get(word, word)
-    if meant == "remap":
+    canonical = _SYNONYMS.get(keyword, keyword)
+    if canonical == "remap":
         return _as_rules(value)
-    if meant:
-        return f"{meant}={_quoted(value)}"
+    if canonical:
+        return f"{canonical}={_quoted(value)}"
     values = value if isinstance(value, Mapping) and value else {"gain": 5.0}
     return ", ".join(f"{name}={_quoted(each)}" for name, each in values.items())
 

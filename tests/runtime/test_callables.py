@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import sys
 
-from graphflow.runtime.callables import code_of, name_of, written_at
+from graphflow.runtime.callables import code_of, file_of, name_of, written_at
 
 
 class Tool:
@@ -39,3 +40,8 @@ def test_places() -> None:
     """A decorated function is found where it is written."""
     assert written_at(cached) == f"{__file__}:{cached.__wrapped__.__code__.co_firstlineno}"
     assert written_at(print) == ""
+
+
+def test_files() -> None:
+    """Built-in modules have none."""
+    assert [file_of(functools), file_of(sys), file_of(None)] == [functools.__file__, None, None]

@@ -20,7 +20,7 @@ from graphflow.interface import (
     Interface,
     Parameter,
 )
-from graphflow.runtime.callables import code_of
+from graphflow.runtime.callables import code_of, file_of
 from graphflow.runtime.declarations.declare import (
     HOOK_MARK,
     ActionClient,
@@ -155,9 +155,7 @@ def place_of(cls: type) -> Place:
 
 def _file_of(cls: type) -> str:
     """Return the file of a class's module, or the module's name."""
-    module = sys.modules.get(cls.__module__)
-    file = None if module is None else vars(module).get("__file__")
-    return file or cls.__module__
+    return file_of(sys.modules.get(cls.__module__)) or cls.__module__
 
 
 def groups(cls: type) -> dict[str, Group]:

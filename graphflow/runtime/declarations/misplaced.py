@@ -56,7 +56,7 @@ def _declares(annotation: str, space: Mapping[str, object]) -> bool:
 
 def _wrapped_by(value: object) -> Iterator[object]:
     """Return marked functions that an attribute wraps instead of being one itself."""
-    if hasattr(value, MARK) or hasattr(value, HOOK_MARK) or isinstance(value, (Held, type)):
+    if _is_marked(value) or isinstance(value, (Held, type)):
         return
     inner: list[object]
     if isinstance(value, property):
@@ -69,7 +69,11 @@ def _wrapped_by(value: object) -> Iterator[object]:
         inner = [_content(cell) for cell in value.__closure__ or ()]
     else:
         inner = list(getattr(value, "__dict__", {}).values())
-    yield from (fn for fn in inner if inspect.isfunction(fn) and (hasattr(fn, MARK) or hasattr(fn, HOOK_MARK)))
+    yield from (fn for fn in inner if inspect.isfunction(fn) and _is_marked(fn))
+
+
+def _is_marked(value: object) -> bool:
+    return hasattr(value, MARK) or hasattr(value, HOOK_MARK)
 
 
 def _content(cell: CellType) -> object:

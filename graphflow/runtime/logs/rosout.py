@@ -15,7 +15,7 @@ from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.logs.lately import Lately
-from graphflow.runtime.logs.logger import ROOT, keep_loggers
+from graphflow.runtime.logs.logger import ROOT, NodeLogger, keep_loggers
 from graphflow.runtime.mistakes import unawaited
 from graphflow.runtime.part import Host, Part
 from graphflow.times import Time
@@ -142,8 +142,8 @@ class Rosout(Part):
     def statistics(self) -> dict[str, object]:
         """Return the numbers of records logged and aggregated, and the recent rates of both per second."""
         log = self._host.log
-        gathered, lately = getattr(log, "gathered", 0), getattr(log, "gathered_lately", None)
-        rate = self._lately.rate + (0.0 if lately is None else lately.rate)
+        gathered, lately = (log.gathered, log.gathered_lately.rate) if isinstance(log, NodeLogger) else (0, 0.0)
+        rate = self._lately.rate + lately
         return {"lines": self._lines, "gathered": gathered, "rate": rate}
 
     def open(self) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from graphflow.analysis.user_code import is_installed, is_users
 from graphflow.names import nearest
 from graphflow.reading import found_text
+from graphflow.runtime.callables import file_of
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -34,19 +35,19 @@ _OF_ROS = {
 _FILE = re.compile(r"\.ya?ml\Z")
 
 
-def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_program: bool) -> str:
+def unread(arguments: Sequence[str], classes: Sequence[type[Node]], *, is_own_program: bool) -> str:
     """Return a complaint about unused command-line arguments; "" if the program may read them.
 
     Args:
-        words: The arguments that are not ROS 2's.
+        arguments: The arguments that are not ROS 2's.
         classes: The classes of the nodes.
         is_own_program: Whether a program of the user's runs them, rather than `graphflow run`.
     """
-    if not words or any(_may_read(file) for file in _files(classes, is_own_program)):
+    if not arguments or any(_may_read(file) for file in _files(classes, is_own_program)):
         return ""
-    word = words[0]
-    name, _, value = word.partition("=")
-    value = value if value else words[1] if words[1:] and not words[1].startswith("-") else "VALUE"
+    argument = arguments[0]
+    name, _, value = argument.partition("=")
+    value = value if value else arguments[1] if arguments[1:] and not arguments[1].startswith("-") else "VALUE"
     known = [param.name for cls in classes for param in cls.interface().params]
     if name.startswith("-") and _FILE.search(value) and name.lstrip("-").replace("_", "-") in _OF_FILES:
         return f"nothing reads the option {name!r}; pass a parameter file with --params-file {value}"
@@ -56,14 +57,14 @@ def unread(words: Sequence[str], classes: Sequence[type[Node]], *, is_own_progra
     way = f"; to set the parameter write -p {near}:={value}" if near else ""
     if not way and known:
         way = f"; -p NAME:=VALUE sets a parameter: {', '.join(known)}"
-    return f"nothing reads the {'option' if word.startswith('-') else 'word'} {word!r}{way}"
+    return f"nothing reads the {'option' if argument.startswith('-') else 'argument'} {argument!r}{way}"
 
 
 def _files(classes: Sequence[type[Node]], is_own_program: bool) -> Iterator[str]:
     """List the program's files: the user's own, those of the nodes' packages, and of modules it imports."""
     packages = {cls.__module__.partition(".")[0] for cls in classes}
     for name, module in list(sys.modules.items()):
-        file: str | None = getattr(module, "__file__", None)
+        file = file_of(module)
         if name == "__main__":
             if not is_own_program:
                 continue
@@ -79,7 +80,7 @@ def _imported(module: ModuleType) -> Iterator[str]:
     """List the files of installed modules from which a module imports."""
     for value in list(vars(module).values()):
         found = value if isinstance(value, ModuleType) else sys.modules.get(str(getattr(value, "__module__", "")))
-        file: str | None = getattr(found, "__file__", None)
+        file = file_of(found)
         if file is not None and is_users(file) and is_installed(file):
             yield file
 

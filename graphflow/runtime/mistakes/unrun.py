@@ -9,6 +9,7 @@ from pathlib import Path
 
 from graphflow.analysis.uncalled import uncalled
 from graphflow.analysis.user_code import is_installed, is_ours, place_in
+from graphflow.runtime.callables import file_of
 from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
@@ -30,7 +31,7 @@ def defined(cls: type) -> None:
 def watch() -> None:
     """Check at exit whether the program has run a node."""
     global _file
-    file = getattr(sys.modules.get("__main__"), "__file__", None)  # the attribute is gone at exit
+    file = file_of(sys.modules.get("__main__"))  # the attribute is gone at exit
     if file and _file is None and not (_has_run or sys.flags.interactive or is_ours(file) or is_installed(file)):
         _file = file
         atexit.register(_at_exit)

@@ -53,7 +53,7 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         ([], ""),
         (["--rate", "1.0"], "nothing reads the option '--rate'; to set the parameter write -p rate:=1.0"),
         (["--rate=1.0"], "nothing reads the option '--rate=1.0'; to set the parameter write -p rate:=1.0"),
-        (["rate=1.0"], "nothing reads the word 'rate=1.0'; to set the parameter write -p rate:=1.0"),
+        (["rate=1.0"], "nothing reads the argument 'rate=1.0'; to set the parameter write -p rate:=1.0"),
         (["--rate", "--json"], "nothing reads the option '--rate'; to set the parameter write -p rate:=VALUE"),
         (["--max-speed"], "nothing reads the option '--max-speed'; to set the parameter write -p max_speed:=VALUE"),
         (

@@ -90,7 +90,9 @@ def _defined_in_loop(name: str, parents: Sequence[ast.AST]) -> list[FunctionNode
 
 
 def _last_name(function: ast.expr) -> str:
-    return str(getattr(function, "attr", None) or getattr(function, "id", ""))
+    if isinstance(function, ast.Attribute):
+        return function.attr
+    return function.id if isinstance(function, ast.Name) else ""
 
 
 def _methods(code: ast.AST) -> dict[str, FunctionNode]:
@@ -160,15 +162,20 @@ def _may_be_over(loop: ast.AST) -> bool:
 
 def _changing(loop: ast.AST, parents: Sequence[ast.AST]) -> set[str]:
     """Return the variables that change with each iteration: the loop's own, and those computed from them."""
+    if isinstance(loop, (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)):
+        return {name for part in loop.generators for name in _names(part.target)}
     if not isinstance(loop, (ast.For, ast.While)):
-        return {name for part in getattr(loop, "generators", ()) for name in _names(part.target)}
+        return set()
     found = set(_names(loop.target)) if isinstance(loop, ast.For) else set()
     for node in (n for statement in loop.body for n in ast.walk(statement)):
         if isinstance(node, ast.Assign) and found & set(_names(node.value)):
             found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
-    around = [n for n in ast.walk(parents[0]) if isinstance(n, (ast.Global, ast.Nonlocal, ast.AugAssign))]
-    shared = {name for n in around for name in (getattr(n, "names", None) or _names(getattr(n, "target", n)))}
-    return found - shared
+    for node in ast.walk(parents[0]):
+        if isinstance(node, (ast.Global, ast.Nonlocal)):
+            found -= set(node.names)
+        elif isinstance(node, ast.AugAssign):
+            found -= set(_names(node.target))
+    return found
 
 
 def _names(node: ast.AST) -> list[str]:

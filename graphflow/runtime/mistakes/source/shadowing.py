@@ -15,6 +15,7 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import DeclarationError, Place
+from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 
@@ -50,13 +51,13 @@ def check_names(cls: type) -> None:
 
 def definition_of(cls: type) -> tuple[ast.ClassDef, str] | None:
     """Return a class statement and its file; None if it is missing or ambiguous."""
-    file = getattr(sys.modules.get(cls.__module__), "__file__", None) or ""
+    file = file_of(sys.modules.get(cls.__module__)) or ""
     try:
         definitions = [item for item in syntax_of(file).classes if item.name == cls.__name__]
     except (OSError, SyntaxError, ValueError):
         return None
     if len(definitions) > 1:
-        definitions = [item for item in definitions if item.lineno == getattr(cls, "__firstlineno__", 0)]
+        definitions = [item for item in definitions if item.lineno == vars(cls).get("__firstlineno__")]
     return (definitions[0], file) if len(definitions) == 1 else None
 
 

@@ -26,6 +26,7 @@ from graphflow.analysis.user_code import is_installed, is_users_module
 from graphflow.errors import EncodeError, Place
 from graphflow.msgs.base import Message, no_field
 from graphflow.names import nearest
+from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.ineffective import ineffective
@@ -72,7 +73,7 @@ def _other_modules(file: str) -> Iterator[ast.Module]:
     from graphflow.workspace.project import project_root
 
     root = project_root(Path(file))
-    others = {str(path) for module in list(sys.modules.values()) if (path := getattr(module, "__file__", None))}
+    others = {str(path) for module in list(sys.modules.values()) if (path := file_of(module))}
     for other in sorted(others - {file}):
         if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
             with suppress(OSError, SyntaxError, ValueError):  # no readable source
