@@ -42,7 +42,7 @@ from graphflow.testing import Graph
 
 
 class Log(list[Any]):
-    """What a handler was called with."""
+    """The calls of a handler."""
 
     def __call__(self, item: Any) -> None:
         self.append(item)
@@ -109,7 +109,7 @@ class Server(Node):
 
 
 async def pair(graph: Graph, server: Node | None = None) -> tuple[Any, Asker]:
-    """A server of an action and who asks it, both at work."""
+    """Return a running action server and client."""
     made, asker = server or Server(), Asker()
     await graph.start(made, asker)
     return made, asker
@@ -134,7 +134,7 @@ class Adder(Node):
 
     @service(Empty, "go")
     async def go(self, request: Empty.Request) -> None:
-        """Answer an empty response with nothing."""
+        """Return an empty response."""
 
     @service(AddTwoInts, "raises")
     async def raises(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -167,7 +167,7 @@ class Adder(Node):
 
 
 class SlowAdder(Node):
-    """Answers when told to."""
+    """Answer on request."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -295,7 +295,7 @@ def anything(value: Any) -> Any:
 
 
 def refusal_of(make: Callable[[], object]) -> str:
-    """What is said about a declaration that is made wrongly, behind the place where it is written."""
+    """Return the error of a wrong declaration, after its place."""
     with pytest.raises(DeclarationError) as caught:
         make()
     place = f"{make.__code__.co_filename}:{make.__code__.co_firstlineno}: "

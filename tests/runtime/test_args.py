@@ -19,7 +19,7 @@ class TurtleSim(Node):
 
 
 def test_no_arguments() -> None:
-    """Nothing said is nothing asked for."""
+    """Without arguments, all settings have their defaults."""
     parsed = parse_ros_args([])
 
     assert (parsed.remaps, parsed.params, parsed.log_level, parsed.rest) == ([], [], "info", [])
@@ -49,7 +49,7 @@ def test_ros_args_may_come_twice() -> None:
 
 
 def test_a_bare_rule_is_a_remap() -> None:
-    """What ROS 2 would ignore in silence is meant as what it looks like."""
+    """ROS 2 would silently ignore it."""
     assert parse_ros_args(["chatter:=news"]).remaps == [Remap.parse("chatter:=news", "command line")]
     assert parse_ros_args(["-r", "chatter:=news"]).remaps == parse_ros_args(["chatter:=news"]).remaps
 
@@ -75,7 +75,7 @@ def test_parameter_values_are_yaml(text: str, value: Any) -> None:
 
 
 def test_values_for_one_node() -> None:
-    """A parameter may name its node, by the class's name or by the one it is given; the last one said holds."""
+    """A parameter may name its node, by the class's name or the remapped one; the last value counts."""
     parsed = parse_ros_args(
         [
             *["-p", "rate:=1.0", "-p", "turtle_sim:rate:=2.0", "-p", "other:rate:=3.0"],
@@ -129,7 +129,7 @@ def test_a_dash_too_few(word: str) -> None:
 
 
 def test_a_bare_rule_where_ros_knows_none() -> None:
-    """It is unknown, as in ROS 2, where what is unknown is not refused."""
+    """It is unknown, as in ROS 2, if unknown arguments are allowed."""
     parsed = parse_ros_args(["--ros-args", "a:=b", "-r", "c:=d"], refuses_unknown=False)
     assert (parsed.unknown, [str(rule) for rule in parsed.remaps]) == (["a:=b"], ["c:=d"])
 
@@ -154,7 +154,7 @@ def test_a_bare_rule_where_ros_knows_none() -> None:
     ],
 )
 def test_words_that_miss_ros(line: str, text: str) -> None:
-    """What is hardly a program's own is told with how it is written."""
+    """Arguments that are unlikely to be a program's own get a hint."""
     assert missed(line.split()) == text
 
 
@@ -173,7 +173,7 @@ def test_how_an_unknown_word_is_written() -> None:
 
 
 def test_logs() -> None:
-    """Levels of single loggers, and where logs go; what means nothing here is taken, and told."""
+    """Levels of single loggers, and destinations of logs; options without meaning are reported."""
     words = ["--ros-args", "--log-level", "talker:=warn", "--log-level", "debug", "--disable-rosout-logs"]
     parsed = parse_ros_args([*words, "--disable-stdout-logs", "--enable-stdout-logs", "--disable-external-lib-logs"])
     assert (parsed.log_level, parsed.log_levels) == ("debug", {"talker": "warn"})
@@ -183,7 +183,7 @@ def test_logs() -> None:
 
 @pytest.mark.parametrize("option", ["--log-config-file", "--log-file-name", "-e", "--enclave"])
 def test_what_means_nothing_here(option: str, caplog: pytest.LogCaptureFixture) -> None:
-    """Is taken with its value, and told."""
+    """It is consumed with its value, and reported."""
     parsed = parse_ros_args(["--ros-args", option, "x", "-r", "a:=b"])
     assert [str(r) for r in parsed.remaps] == ["a:=b"]
     assert f"{option} means nothing to graphflow" in caplog.text

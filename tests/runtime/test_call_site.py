@@ -1,4 +1,4 @@
-"""Where users have written what is called."""
+"""Places of calls in user code."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def called() -> str:
 
 
 def test_the_line_of_the_caller() -> None:
-    """Not the one in which it is asked."""
+    """Not the line of the inner call."""
     frame = inspect.currentframe()
     assert frame is not None
     assert called() == f"{Path(__file__)}:{frame.f_lineno}"

@@ -1,4 +1,4 @@
-"""What the nodes of a process share."""
+"""The state shared by the nodes of a process."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ async def test_waiting_for_a_condition(graph: Graph) -> None:
 
 
 async def test_a_cancelled_wait_listens_no_more(graph: Graph) -> None:
-    """The condition is not asked again."""
+    """Its condition is not evaluated again."""
     watcher = Node("watcher")
     await graph.start(watcher)
     asked: list[int] = []

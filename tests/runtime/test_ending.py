@@ -60,7 +60,7 @@ def test_a_hangup_that_is_ignored() -> None:
 
 
 def test_signals_that_come_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As when a process and its group are signalled: the second, while the first is being handled, starts nothing."""
+    """A process and its group may be signalled together: the second signal is ignored."""
     started: list[threading.Timer] = []
 
     def start(reminder: threading.Timer) -> None:
@@ -82,7 +82,7 @@ def test_signals_that_come_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def vendors_handler(*_: object) -> None:
-    """What a library may put in place of ours."""
+    """A handler that a library may install."""
 
 
 async def test_who_takes_a_signal_is_named(
@@ -106,7 +106,7 @@ async def test_who_takes_a_signal_is_named(
 async def test_handlers_that_stay_are_no_news(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Whoever looks finds ours."""
+    """There is no warning."""
     monkeypatch.setattr(ending, "CHECK_AFTER", 0.0)
     restore = catch_signals(asyncio.Event())
     for _ in range(5):
@@ -135,7 +135,7 @@ def test_looks_become_rare(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_thread_that_works_is_named() -> None:
-    """With its line; daemons do not count, since nobody waits for them."""
+    """With its line; daemon threads are left out, since the process does not wait for them."""
     gate, inside = threading.Event(), threading.Semaphore(0)
 
     def works() -> None:

@@ -1,4 +1,4 @@
-"""What a node does about errors of its handlers."""
+"""A node's policy for errors of its handlers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ async def test_a_storm_of_errors_is_not_a_storm_of_lines(graph: Graph, caplog: p
 
 @pytest.mark.parametrize("error", [SystemExit(3), KeyboardInterrupt()])
 def test_a_handler_that_ends_the_process(caplog: pytest.LogCaptureFixture, error: BaseException) -> None:
-    """It is no error, and told with its line and without a traceback."""
+    """It is reported with its line, without a traceback."""
     with pytest.raises(type(error)) as caught:
         raise error
     report(logging.getLogger("graphflow"), "tick", caught.value)
@@ -59,7 +59,7 @@ async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None
 
 
 async def test_rare_errors_are_borne_for_ever(graph: Graph) -> None:
-    """What is older than the budget's time does not count."""
+    """Errors outside the budget's period do not count."""
     node = Node("n")
     node.create_timer(0.5, failing)
     await graph.start(node)
@@ -88,7 +88,7 @@ async def test_a_handler_says_what_its_errors_mean(graph: Graph, on_error: OnErr
 
 
 async def test_errors_of_other_kinds_are_not_hidden(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """A second one of the same handler, of another kind, is told although the first was a moment ago."""
+    """A different error of the same handler is logged, even shortly after the first."""
     errors = iter([ValueError("one"), KeyError("two"), ValueError("three")])
 
     async def changing() -> None:
@@ -113,7 +113,7 @@ async def test_an_error_about_a_handler_needs_no_traceback(graph: Graph, caplog:
 
 
 async def test_a_deadlock_that_comes_by(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """What only passes it on says its line, too; what is explained in the text does not say it again."""
+    """A handler that propagates it adds its line; the explanation is not repeated."""
     texts = iter(
         ["DEADLOCK: a waits for itself", "DEADLOCK: a waits for itself\n  b waits   (x.py:1 in b)\nThis ends it:"]
     )

@@ -255,7 +255,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 async def what_is_said(mistake: Mistake, file: Path, graph: Graph, caplog: pytest.LogCaptureFixture) -> str:
-    """The first thing that importing, making or running the node says."""
+    """Return the first message of importing, making or running the node."""
     if mistake.code.startswith(("import", "from")):
         text = f"{HEAD}{mistake.code}\n\n\nclass Slide(Node): ...\n"
     else:
@@ -281,7 +281,7 @@ async def what_is_said(mistake: Mistake, file: Path, graph: Graph, caplog: pytes
 
 
 def cleaned(text: str, file: Path) -> str:
-    """The first line, without what differs from machine to machine, as a cell of a table."""
+    """Return the first line as a cell of a table, without machine-dependent parts."""
     text = text.replace(str(file), "slide.py").replace(file.stem, "slide").split("\n")[0]
     text = re.sub(r" at 0x[0-9a-f]+", "", text)
     text = re.sub(r"(argument '\w+')\. Did you mean '\w+'\?", r"\1", text)  # Python 3.13's own

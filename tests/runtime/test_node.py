@@ -1,4 +1,4 @@
-"""A node's names, its parameters, and what is created on it."""
+"""A node's names, its parameters, and its `create_*` methods."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_wrong_names_are_refused(given: dict[str, Any]) -> None:
 
 
 async def test_a_running_node_announces_its_names(graph: Graph) -> None:
-    """The graph shows the node and every endpoint under its full name, and nothing of it after the stop."""
+    """The graph shows the node and every endpoint by full name, and none of them after the stop."""
     node = Talker(namespace="/a", remap=["chatter:=/news"], start_parameter_services=False)
     await graph.start(node)
     cache = node.context.cache
@@ -83,7 +83,7 @@ async def test_a_running_node_announces_its_names(graph: Graph) -> None:
 
 
 def test_values_from_outside() -> None:
-    """By keyword or by name with a source; what is given directly holds."""
+    """By keyword, or by name with a source; the direct value takes precedence."""
     assert Talker(rate=2).rate == 2.0
     node = Talker(overrides={"rate": (3, "graph.yaml:7")})
     assert node.rate == 3.0
@@ -111,7 +111,7 @@ def test_what_was_declared_at_run_time_can_be_undeclared() -> None:
 
 
 async def test_a_node_that_did_not_call_its_parent(graph: Graph) -> None:
-    """A forgotten `super().__init__()` is said in those words."""
+    """The error names the missing `super().__init__()`."""
 
     class Forgetful(Node):
         def __init__(self) -> None:
@@ -122,7 +122,7 @@ async def test_a_node_that_did_not_call_its_parent(graph: Graph) -> None:
 
 
 async def test_what_is_created_while_it_runs_is_open_at_once(graph: Graph) -> None:
-    """And remapped like what was declared."""
+    """With remaps applied, as for declarations."""
     node = Talker(remap=["late:=later"])
     await graph.start(node)
     heard = graph.tap(String, "/later")
@@ -133,7 +133,7 @@ async def test_what_is_created_while_it_runs_is_open_at_once(graph: Graph) -> No
 
 
 async def test_work_in_a_thread(graph: Graph) -> None:
-    """`offload` gives the function's result or its error, and the loop is free meanwhile."""
+    """`offload` returns the function's result or raises its error, and the loop is free."""
     node = Talker()
     await graph.start(node)
 
@@ -144,7 +144,7 @@ async def test_work_in_a_thread(graph: Graph) -> None:
 
 
 async def test_work_in_threads_is_limited(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Who waits for a thread is told so, and gets one when another has ended."""
+    """A call that waits for a thread is logged, and proceeds when another has ended."""
     node, gate = Talker(), threading.Event()
     graph.waits_outside = False
     await graph.start(node)

@@ -27,7 +27,7 @@ WANTED = 'remap=["goal:=/turtle1/pose"]'
     ],
 )
 def test_rules_in_another_shape(remap: Any, told: str) -> None:
-    """They are told with the user's line."""
+    """The error has the user's line."""
     with pytest.raises(InvalidName) as caught:
         Node("n", remap=remap)
     place, _, text = str(caught.value).partition(": ")

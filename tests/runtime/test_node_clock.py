@@ -1,4 +1,4 @@
-"""Which clock a node goes by: its context's, or that of /clock for as long as it is asked to."""
+"""A node's clock: its context's, or /clock while `use_sim_time` is true."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from graphflow.times import Time, to_ns
 
 
 async def test_one_clock_and_the_other(graph: Graph) -> None:
-    """The topic is listened to while its time counts, and asked for twice it is listened to once."""
+    """The topic is subscribed to once, and only while its time counts."""
     node = Node("n")
     await graph.start(node)
     core = core_of(node)
@@ -48,7 +48,7 @@ def test_before_the_node_runs() -> None:
 
 
 async def test_time_that_does_not_begin(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Is something to complain about, until it begins, and told once in the node's log."""
+    """It is a complaint until the time starts, and logged once."""
     node = Node("n", use_sim_time=True)
     await graph.start(node)
     [text] = core_of(node).complaints()
@@ -63,7 +63,7 @@ async def test_time_that_does_not_begin(graph: Graph, caplog: pytest.LogCaptureF
 
 
 async def test_time_that_begins_or_is_not_wanted(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Nothing is told."""
+    """There is no warning."""
     begun, left, ended = (Node(name, use_sim_time=True) for name in ("begun", "left", "ended"))
     for node in (begun, left, ended):
         await graph.start(node)
@@ -76,7 +76,7 @@ async def test_time_that_begins_or_is_not_wanted(graph: Graph, caplog: pytest.Lo
 
 
 async def test_time_that_is_wanted_again(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """It has its seconds from then on; what waited on the clock that was left waits out the rest."""
+    """The limit starts again; waits on the previous clock continue for their remaining time."""
     node = Node("n", use_sim_time=True)
     await graph.start(node)
     sleeping = asyncio.ensure_future(node.clock.sleep(1.0))

@@ -41,7 +41,7 @@ from tests.runtime.cast import Talker
 
 
 class Robot(Node):
-    """Writes down what happens to it."""
+    """Record its callbacks."""
 
     out = Publisher(Int32, "out")
     helper = Client(Empty, "help")
@@ -111,7 +111,7 @@ class AsksItself(Node):
 
 
 async def test_a_service_of_its_own_is_not_there_in_on_start(graph: Graph) -> None:
-    """It is said why nobody answers."""
+    """The error explains that it opens after `on_start`."""
     starting = asyncio.ensure_future(graph.start(AsksItself("lonely")))
     await graph.clock.advance(2.0)
 
@@ -135,7 +135,7 @@ async def test_an_on_start_that_takes_long_is_told(graph: Graph, caplog: pytest.
 
 
 async def test_publishers_and_clients_work_in_on_start(graph: Graph) -> None:
-    """And what is created there is opened when its time comes."""
+    """Endpoints created there open at the right time."""
     heard = graph.tap(Int32, "/out")
     log: list[str] = []
 
@@ -164,7 +164,7 @@ async def test_publishers_and_clients_work_in_on_start(graph: Graph) -> None:
 
 
 async def test_an_error_in_on_start_ends_the_node(graph: Graph) -> None:
-    """It comes out of `start`, nothing stays open, and there is no goodbye of what never began."""
+    """`start` raises it, nothing stays open, and `on_shutdown` does not run."""
 
     class Broken(Robot):
         async def on_start(self) -> None:
@@ -222,7 +222,7 @@ async def test_what_was_entered_is_left_in_reverse(graph: Graph, caplog: pytest.
 async def test_a_goodbye_has_a_limit(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One that takes too long is cancelled and said so; the node is gone all the same."""
+    """It is cancelled and logged after a limit; the node stops all the same."""
     monkeypatch.setattr(node_core, "STOP_LIMIT", 0.01)
 
     class Slow(Node):
@@ -266,7 +266,7 @@ async def test_nodes_and_endpoints_have_ids_of_their_own(graph: Graph) -> None:
 
 
 async def test_an_unknown_parameter_is_refused_at_the_start(graph: Graph) -> None:
-    """A node may declare parameters until then; what is left over is a mistake, and nothing is left open."""
+    """A node may declare parameters until then; remaining overrides are an error, and nothing stays open."""
     node = Talker(rat=2.0)
     with pytest.raises(GraphflowError) as caught:
         await graph.start(node)
@@ -292,13 +292,13 @@ async def test_a_node_is_started_once(graph: Graph) -> None:
 
 
 async def test_what_is_not_running_has_no_context(graph: Graph) -> None:
-    """Asked for it, a node says that it is not running."""
+    """Its property raises ClosedError."""
     with pytest.raises(ClosedError, match="node /talker is not running"):
         Talker().clock  # noqa: B018
 
 
 async def test_a_start_that_fails_leaves_nothing_open(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The error comes out, and what was announced is withdrawn."""
+    """It raises the error, and announcements are withdrawn."""
 
     def refuse(*_: object) -> None:
         raise GraphflowError("no callers here")
@@ -314,7 +314,7 @@ async def test_a_start_that_fails_leaves_nothing_open(graph: Graph, monkeypatch:
 
 
 async def test_an_unused_remap_is_said(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """A rule that matches nothing is most likely misspelt; the nearest name is offered."""
+    """A rule that matches nothing is probably misspelt; the nearest name is suggested."""
     await graph.start(Talker(remap=["chater:=news", "chatter:=talk", "other:x:=y"]))
 
     [record] = caplog.records
@@ -334,7 +334,7 @@ async def test_an_unused_remap_is_said(graph: Graph, caplog: pytest.LogCaptureFi
 async def test_a_remap_that_sets_a_parameter(
     graph: Graph, caplog: pytest.LogCaptureFixture, rule: str, hint: str
 ) -> None:
-    """A value is no name, so that it is told even where a class makes names at run time."""
+    """A value is not a name, so it is reported even if the class makes names at run time."""
     is_private = rule.startswith("_")
     made: Any = type("Maker", (Node,), {"rate": Param(1.0), "dynamic_names": () if is_private else True})
     await graph.start(made(remap=[rule]))
@@ -346,7 +346,7 @@ async def test_a_remap_that_sets_a_parameter(
 async def test_a_remap_of_a_name_made_later(
     graph: Graph, caplog: pytest.LogCaptureFixture, names: Any, warned: bool
 ) -> None:
-    """A class that makes names at run time says so, and a rule for one of them is not called unused."""
+    """With `dynamic_names`, a rule for such a name is not reported as unused."""
     made: Any = type("Maker", (Node,), {"dynamic_names": names})
 
     await graph.start(made(remap=["turtle1/pose:=here"]))
@@ -383,7 +383,7 @@ async def test_a_task_runs_once_the_node_is_up(graph: Graph) -> None:
 
 @pytest.mark.parametrize("spawned", [False, True])
 async def test_a_failing_task_ends_the_node(graph: Graph, caplog: pytest.LogCaptureFixture, spawned: bool) -> None:
-    """Its error is logged with the traceback and comes to whoever waits for the node."""
+    """Its error is logged with the traceback, and `wait_ended` raises it."""
 
     class Worker(Node):
         @task
@@ -410,7 +410,7 @@ async def test_a_failing_task_ends_the_node(graph: Graph, caplog: pytest.LogCapt
 
 
 async def test_an_error_of_graphflows_own_is_a_sentence(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """It says what to do, and its traceback would only hide that."""
+    """It has the next step; a traceback would only hide it."""
 
     class Caller(Node):
         adder = Client(AddTwoInts, "add")
@@ -431,7 +431,7 @@ async def test_an_error_of_graphflows_own_is_a_sentence(graph: Graph, caplog: py
 
 
 async def test_the_first_failure_counts(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """A second task's error changes nothing, and asyncio does not complain of it."""
+    """A second task's error has no effect, and asyncio does not complain."""
 
     class Worker(Node):
         @task
@@ -452,7 +452,7 @@ async def test_the_first_failure_counts(graph: Graph, caplog: pytest.LogCaptureF
 
 
 async def test_shutdown_ends_the_node_from_within(graph: Graph) -> None:
-    """Whoever waits for it goes on, and may stop it; a second call is harmless."""
+    """`wait_ended` returns; a second call is harmless."""
 
     class Quitter(Node):
         @timer(1.0)
@@ -570,7 +570,7 @@ async def test_two_may_stop_a_node(graph: Graph, caplog: pytest.LogCaptureFixtur
 
 
 async def test_a_node_that_was_never_started_can_be_stopped(graph: Graph) -> None:
-    """There is nothing to do."""
+    """`stop` does nothing."""
     await core_of(Talker()).stop()
 
 
@@ -578,7 +578,7 @@ async def test_a_node_that_was_never_started_can_be_stopped(graph: Graph) -> Non
 async def test_what_does_not_end_is_named(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
-    """A cleanup that takes too long does not hold the stop for ever, and the log says whose it is."""
+    """A cleanup that takes too long does not block the stop, and the log names its task."""
     monkeypatch.setattr(node_core, "STOP_LIMIT", 0.001)
     node = Tidy()
     await graph.start(node)
@@ -598,7 +598,7 @@ async def test_what_does_not_end_is_named(
 
 
 async def let_go(graph: Graph, node: Tidy) -> None:
-    """Let what was stuck find that its node is gone."""
+    """Release the stuck cleanup after its node has stopped."""
     await graph.settle()
     node.out.publish(String())
 
@@ -624,7 +624,7 @@ async def test_a_task_that_fails_while_it_stops(graph: Graph, caplog: pytest.Log
 
 
 async def test_a_stopped_node_has_ended(graph: Graph) -> None:
-    """Whoever waits for its end is cancelled with it."""
+    """`wait_ended` is cancelled with it."""
     node = Talker()
     await graph.start(node)
     waiting: asyncio.Task[None] = asyncio.create_task(node.wait_ended())
@@ -647,7 +647,7 @@ async def test_a_cancelled_stop_leaves_nothing_open(graph: Graph) -> None:
 
 
 def test_spawn_needs_a_running_node() -> None:
-    """It takes the function and not the coroutine, so that nothing is left over when it refuses."""
+    """It takes the function and not the coroutine, so that a refusal leaves no coroutine behind."""
 
     async def work() -> None: ...
 
@@ -704,7 +704,7 @@ async def test_handlers_may_be_called_as_they_like(graph: Graph, kind: str) -> N
 
 
 async def test_attributes_may_be_called_as_they_like(graph: Graph) -> None:
-    """All but the few that every node has; those are told when it starts, with the class."""
+    """Except the few that every node has, which are reported at the start."""
 
     class Busy(Node):
         def __init__(self) -> None:

@@ -31,7 +31,7 @@ from tests.runtime.cast import Log
 
 
 async def test_each_group_is_one_group(graph: Graph) -> None:
-    """Groups made in passing are told apart, also when one takes the place of another in memory."""
+    """Temporary groups stay distinct even if one reuses another's memory address."""
     node, gate = Node("n"), asyncio.Event()
     running: list[int] = []
 
@@ -54,7 +54,7 @@ async def test_each_group_is_one_group(graph: Graph) -> None:
 
 @pytest.mark.parametrize(("limit", "together"), [(1, 1), (2, 2), (None, 4)])
 async def test_a_declared_group_holds_for_its_node(graph: Graph, limit: int | None, together: int) -> None:
-    """Handlers of one group exclude each other as far as its limit says, in each node for itself."""
+    """Handlers of one group exclude each other up to its limit, separately for each node."""
     peak: dict[str, int] = {}
     gate = asyncio.Event()
 
@@ -83,7 +83,7 @@ async def test_a_declared_group_holds_for_its_node(graph: Graph, limit: int | No
 
 
 async def test_the_default_group_of_a_class(graph: Graph) -> None:
-    """`default_group = Group(1)` gives rclpy's way back: nothing of the node runs beside anything else."""
+    """`default_group = Group(1)` is rclpy's default: no two handlers of the node overlap."""
     log, gate = Log(), asyncio.Event()
 
     class Classic(Node):
@@ -140,7 +140,7 @@ class Narcissus(Node):
 async def test_a_call_to_oneself_in_one_group(
     graph: Graph, policy: DeadlockPolicy, outcome: type[CallError], elapsed: float
 ) -> None:
-    """A slot is held across every await, so the call cannot be answered: it fails at once, or at its deadline."""
+    """A slot is occupied across every await, so the call cannot be answered: it fails at once, or at its deadline."""
     graph.deadlock = policy
     node = Narcissus()
     await graph.start(node)
@@ -201,7 +201,7 @@ async def say(graph: Graph, *words: str) -> None:
 async def test_what_becomes_of_work_that_finds_its_group_full(
     graph: Graph, when_full: WhenFull, begun: list[str], ended: list[str], dropped: int
 ) -> None:
-    """It waits, is dropped, or takes the place of what waits or of what runs; nothing is dropped uncounted."""
+    """It waits, is dropped, or replaces waiting or running work; drops are counted."""
     node = Worker(when_full)
     await graph.start(node)
     await say(graph, "a", "b", "c")
@@ -216,7 +216,7 @@ async def test_what_becomes_of_work_that_finds_its_group_full(
 
 @pytest.mark.parametrize("when_full", ["drop_new", "drop_old"])
 async def test_a_request_that_is_dropped_is_refused(graph: Graph, when_full: WhenFull) -> None:
-    """Nobody waits for an answer that cannot come: not the one that is dropped, whichever it is."""
+    """The caller gets an error, whichever request is dropped."""
     node = Worker(when_full)
     await graph.start(node)
     await say(graph, "a")
@@ -245,7 +245,7 @@ async def test_newer_work_of_another_member_displaces_what_waits(graph: Graph) -
 
 
 async def test_a_slot_can_be_released_for_a_while(graph: Graph) -> None:
-    """Others of the group run meanwhile, and the handler comes back at the tail of the queue."""
+    """Other handlers of the group run, and the handler returns at the tail of the queue."""
     log, gate, busy = Log(), asyncio.Event(), asyncio.Event()
 
     class Polite(Node):
@@ -281,7 +281,7 @@ async def test_a_slot_can_be_released_for_a_while(graph: Graph) -> None:
 
 
 async def test_a_cancelled_handler_comes_back_before_its_cleanup(graph: Graph) -> None:
-    """The group protects the clean-up too, also against those who run while it was away; then it ends cancelled."""
+    """The group also protects the cleanup against handlers that ran in between; then the handler ends as cancelled."""
     log, busy = Log(), asyncio.Event()
 
     class Polite(Node):
@@ -314,7 +314,7 @@ async def test_a_cancelled_handler_comes_back_before_its_cleanup(graph: Graph) -
 
 
 async def test_only_the_handler_itself_can_release_its_slot(graph: Graph) -> None:
-    """A task that it started, and what is no handler, are told."""
+    """A task that it started, and code outside handlers, get an error."""
     log = Log()
 
     class Rude(Node):

@@ -1,4 +1,4 @@
-"""What runs a node says who it is, whatever its `__init__` takes."""
+"""Options from outside apply whatever a node's `__init__` takes."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_a_name_that_is_insisted_on() -> None:
 
 
 def test_only_the_node_that_was_meant() -> None:
-    """Another that it makes on the way gets nothing, also when it is of the same class."""
+    """Another node made by the constructor gets none, even of the same class."""
     node = make_within(WithHelper, NodeOptions("given"), "main")
     assert (node.name, node.helper.name) == ("given", "helper")
     given = NodeOptions("given")
@@ -110,7 +110,7 @@ def test_only_the_node_that_was_meant() -> None:
 
 
 def test_what_nobody_gives() -> None:
-    """Is named, with what to write instead; nothing lingers for the next node."""
+    """The error names the missing argument and the correction; the next node is unaffected."""
     wanted = (
         "Needy.__init__ needs port and baud, and nodes are made without arguments: give them defaults, or declare a "
         "parameter in the class: port = Param(...)"

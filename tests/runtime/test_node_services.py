@@ -57,7 +57,7 @@ async def test_sources_are_the_definition_files(graph: Graph) -> None:
 
 
 async def test_types_it_does_not_use_and_other_hashes_are_refused(graph: Graph) -> None:
-    """The reason says which."""
+    """The response has the reason."""
     await graph.start(Adder())
     answer = await describe(graph, "/adder", "std_msgs/msg/Bool")
     assert (answer.successful, answer.failure_reason) == (False, "this node uses no type 'std_msgs/msg/Bool'")

@@ -1,4 +1,4 @@
-"""What the parts of a node need of it, and what a node needs of its parts."""
+"""The interface between a node and its parts."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ async def test_a_part_that_was_forgotten_is_let_alone(graph: Graph) -> None:
 
 
 def test_a_part_says_of_itself_what_it_has() -> None:
-    """One that says nothing has no name, no endpoints and no numbers, and nothing runs its handler."""
+    """The defaults are no name, no endpoints, no counters and no handler."""
     piece = Piece("bare", [])
 
     assert (piece.title, piece.endpoints, piece.statistics(), piece.begin_to_stop()) == ("", (), {}, None)

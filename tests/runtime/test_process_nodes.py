@@ -19,7 +19,7 @@ class Quiet(Node):
 
 
 class Failing(Node):
-    """Fails when it is told to."""
+    """Fail on request."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -138,7 +138,7 @@ async def test_a_node_that_joined_and_fails(graph: Graph) -> None:
 
 
 async def test_a_node_that_cannot_join(graph: Graph) -> None:
-    """Concerns nobody else."""
+    """The other nodes are unaffected."""
     made, stop = company(graph)
     first = Quiet("first")
     running = asyncio.create_task(made.run([first]))

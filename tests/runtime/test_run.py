@@ -74,7 +74,7 @@ def context_of(clock: ManualClock | None = None) -> Context:
 
 
 async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a notebook, or in a test; it says what to write there, and names the line."""
+    """As in a notebook or a test; the error has the correct form and the line."""
     begins = r"^\S+test_run\.py:\d+: graphflow\.run starts an event loop, but one is already running here; write "
     with pytest.raises(RuntimeError, match=rf"{begins}await graph\.start\(Talker\(\)\), with graph as an argument"):
         run(Talker)
@@ -84,7 +84,7 @@ async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner, monk
 
 
 def test_run_without_nodes(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It ends at once, with the line of the call and what belongs there."""
+    """It ends at once, with the line of the call and the correct form."""
     monkeypatch.setattr(Context, "open", AsyncMock(return_value=AsyncMock()))
     monkeypatch.setattr("graphflow.runtime.run.serve", AsyncMock())
     run(args=[])
@@ -135,7 +135,7 @@ class Using(Node):
 async def test_nothing_waits_for_nodes_that_were_left(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, is_own: bool
 ) -> None:
-    """Tasks of the program's own learn of the end, whoever closes the context, and what still arrives is no error."""
+    """Tasks of the program get the error, whoever closes the context, and late arrivals are no error."""
     context, node, failures = context_of(), Using(), list[dict[str, Any]]()
     context.loop.set_exception_handler(lambda _, failure: failures.append(failure))
     if is_own:
@@ -230,7 +230,7 @@ async def test_a_node_that_cannot_start(graphflow_runner: asyncio.Runner) -> Non
 
 
 async def test_a_node_that_ends_itself_leaves_the_block_alone(graphflow_runner: asyncio.Runner) -> None:
-    """The block says how long its graph lives."""
+    """The block decides how long the graph lives."""
     clock = ManualClock()
     context, node = context_of(clock), Quitting()
     async with running(node, context=context):
@@ -295,7 +295,7 @@ async def serving(*nodes: Node, clock: ManualClock) -> tuple[asyncio.Task[None],
 
 
 async def test_serve_until_asked_to_stop(graphflow_runner: asyncio.Runner) -> None:
-    """Then the nodes are stopped, and nothing is an error."""
+    """The nodes then stop without an error."""
     node, clock = Talker(), ManualClock()
     served, stop = await serving(node, clock=clock)
     assert node.is_running
@@ -340,7 +340,7 @@ async def test_serve_says_who_is_ready(graphflow_runner: asyncio.Runner) -> None
 
 
 async def test_serve_nobody(graphflow_runner: asyncio.Runner) -> None:
-    """Without nodes there is nothing to wait for."""
+    """Without nodes it returns at once."""
     await serve([], context_of(), StopRequest())
 
 
@@ -409,7 +409,7 @@ class Storming(Node):
 def test_run_says_why_a_node_has_ended(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], cls: type[Node], last: str
 ) -> None:
-    """Errors of handlers have been logged one by one, and that there were too many is told at the end."""
+    """Handlers' errors have been logged one by one; the exceeded budget is logged at the end."""
 
     async def opened() -> Context:
         return context_of()

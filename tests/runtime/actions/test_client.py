@@ -75,7 +75,7 @@ async def test_a_client_that_is_cancelled_cancels_its_goal_first(graph: Graph) -
 
 
 async def test_a_detached_goal_goes_on(graph: Graph) -> None:
-    """Whoever says so may leave its block."""
+    """With `detach=True`, leaving the block does not cancel the goal."""
     server, asker = await pair(graph)
     async with asker.fibonacci.send(Fibonacci.Goal(order=4), detach=True) as goal:
         assert goal.status is GoalStatus.ACCEPTED
@@ -86,7 +86,7 @@ async def test_a_detached_goal_goes_on(graph: Graph) -> None:
 
 
 async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
-    """The client is told that nobody knows how they ended; nothing waits for ever."""
+    """Their status is LOST, and waits for them end."""
     server, asker = await pair(graph)
     goal = await asker.order(50)
     await graph.settle()
@@ -100,7 +100,7 @@ async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
 
 
 async def test_no_server_and_another_type(graph: Graph) -> None:
-    """The error says what is missing, and who is near."""
+    """The error names the missing action and the nearest name on offer."""
     asker = Asker()
     other = Node("other")
     other.create_action_server(Fibonacci, "fibonaci", print)
@@ -135,7 +135,7 @@ async def test_a_node_may_send_a_goal_to_itself(graph: Graph) -> None:
 
 
 async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The server is there, and the client is told what is wrong with it."""
+    """The server is there, and the client gets its error."""
 
     def broken(*_: Any) -> None:
         raise LookupError("mislaid")
@@ -150,7 +150,7 @@ async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.
 
 
 async def test_a_result_that_was_lost_is_asked_for_again(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once, soon after the server has told of the end; one that comes by itself is not."""
+    """Once, soon after the server has reported the end; a result that arrives by itself is not requested."""
     asked, get_result = Log(), ActionServer._get_result
 
     async def lost(server: Any, request: Any, client: bytes) -> Any:
@@ -175,7 +175,7 @@ async def test_a_result_that_was_lost_is_asked_for_again(graph: Graph, monkeypat
 
 
 def status(goal: ClientGoalHandle[Any, Any, Any], state: int) -> bytes:
-    """Tell of a goal as its server does."""
+    """Return a status message as a server sends it."""
     states = GoalStates()
     states.add(goal.goal_id, 0)
     states.put(goal.goal_id, state)
@@ -223,7 +223,7 @@ class Giving(Node):
 
 
 async def aborted(graph: Graph, error: Exception, caplog: pytest.LogCaptureFixture) -> tuple[GoalAborted, list[str]]:
-    """The error of a goal that is given up so, and what the log of its client says."""
+    """Return the error of an aborted goal, and the log of its client."""
     _, asker = await pair(graph, Giving(error))
     goal = await asker.order(1)
     with pytest.raises(GoalAborted) as caught:
@@ -235,7 +235,7 @@ async def aborted(graph: Graph, error: Exception, caplog: pytest.LogCaptureFixtu
 async def test_the_client_learns_why(
     graph: Graph, caplog: pytest.LogCaptureFixture, error: Exception, reason: str
 ) -> None:
-    """The reason is asked for when the goal has been aborted; it is bounded, and fit for a terminal."""
+    """The reason is requested after the abort; it has a limited length and no control characters."""
     caught, said = await aborted(graph, error, caplog)
 
     assert str(caught) == f"/fibonacci aborted the goal: {reason}"
@@ -244,7 +244,7 @@ async def test_the_client_learns_why(
 
 
 async def test_an_abort_without_a_reason(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """There is nothing to be logged."""
+    """No warning is logged."""
     caught, said = await aborted(graph, Abort(), caplog)
 
     assert (str(caught), said) == ("/fibonacci aborted the goal", [])
@@ -253,7 +253,7 @@ async def test_an_abort_without_a_reason(graph: Graph, caplog: pytest.LogCapture
 async def test_ros_2_knows_no_reasons(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A server of another kind has nobody to ask."""
+    """There is no query to another kind of server."""
     monkeypatch.setattr(Reasons, "note", lambda *_: None)
     caught, said = await aborted(graph, Abort("the way is blocked"), caplog)
 
@@ -288,7 +288,7 @@ async def test_a_result_may_be_awaited_for_a_while(graph: Graph) -> None:
 
 
 async def test_a_field_of_its_result_or_feedback(graph: Graph) -> None:
-    """A goal has neither: it is told where they are."""
+    """The hint names the goal's result and feedback."""
     _, asker = await pair(graph)
     goal: Any = await asker.order(4)
     with pytest.raises(AttributeError) as caught:
@@ -302,7 +302,7 @@ async def test_a_field_of_its_result_or_feedback(graph: Graph) -> None:
 
 
 async def test_a_closed_client_loses_its_goals(graph: Graph) -> None:
-    """Whoever waits for one is told."""
+    """Waits for them end with GoalLost."""
     _, asker = await pair(graph)
     goal = await asker.order(50)
     waiting = asyncio.create_task(goal.result())
@@ -315,7 +315,7 @@ async def test_a_closed_client_loses_its_goals(graph: Graph) -> None:
 
 
 async def test_a_goal_that_nobody_offers_can_be_given_up(graph: Graph) -> None:
-    """At once: there is nothing to be withdrawn from anybody."""
+    """At once: there is no server to wait for."""
     asker = Asker()
     await graph.start(asker)
     sending = asyncio.ensure_future(asker.fibonacci.send_goal(Fibonacci.Goal(order=1)))
@@ -350,7 +350,7 @@ async def test_what_decides_on_goals_without_being_a_method(graph: Graph) -> Non
 
 
 async def test_goals_that_are_rejected_are_not_remembered(graph: Graph) -> None:
-    """Also by a server that never tells of any goal."""
+    """Not even if the server never sends a status message."""
 
     class Refuses(Node):
         def never(self, goal: Any) -> str:

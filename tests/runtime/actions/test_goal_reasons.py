@@ -1,4 +1,4 @@
-"""Why goals did not come to their end, asked of the process that knows."""
+"""Reasons for rejected and aborted goals travel from the server's process to the client's."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ async def known_to(graph: Graph) -> tuple[Any, Any]:
 
 
 async def test_a_reason_travels(graph: Graph) -> None:
-    """To whoever asks by the goal's id; of others nothing is known."""
+    """To a client that queries by the goal's id; other ids have no reason."""
     server, client = await known_to(graph)
     server.note(GOAL, "the way is blocked")
     zid = server._session.zid
@@ -49,7 +49,7 @@ async def test_reasons_are_bounded_and_cannot_be_obeyed(graph: Graph, monkeypatc
 
 
 class Choosy(Node):
-    """Answers whether it wants a goal as its test says."""
+    """Accept goals as the test decides."""
 
     def __init__(self, answer: Any) -> None:
         super().__init__()
@@ -76,7 +76,7 @@ class Choosy(Node):
     ],
 )
 async def test_why_a_goal_is_rejected(graph: Graph, caplog: pytest.LogCaptureFixture, answer: Any, reason: str) -> None:
-    """The client is told, and the server's log has it."""
+    """The client's error and the server's log have the reason."""
     caplog.set_level("INFO")
     _, asker = await pair(graph, Choosy(answer))
     with pytest.raises(GoalRejected) as caught:
@@ -98,7 +98,7 @@ async def test_a_goal_that_is_wanted(graph: Graph) -> None:
     [("reject", 2, "another goal is running, and policy='reject'"), ("queue", 18, "16 goals are waiting already")],
 )
 async def test_a_server_that_has_enough(graph: Graph, policy: Any, goals: int, reason: str) -> None:
-    """It says what it does with one goal too many."""
+    """The reason names the policy."""
 
     class Busy(Server):
         @action(Fibonacci, "fibonacci", policy=policy)

@@ -62,7 +62,7 @@ async def test_a_goal_can_be_refused(graph: Graph, order: int) -> None:
 
 
 async def test_a_cancel_request_can_be_refused(graph: Graph) -> None:
-    """The goal goes on, and the code says why."""
+    """The goal keeps running, and the response's code gives the reason."""
     _, asker = await pair(graph)
     goal = await asker.order(7)
     await graph.settle()
@@ -120,7 +120,7 @@ async def test_how_a_body_can_end(graph: Graph, ending: str, status: str, number
 
 
 class Recorder(Node):
-    """Tells what its bodies do; each ends when told, and takes its time to clean up."""
+    """Record the runs of its handler; each ends on request, and takes time to clean up."""
 
     def __init__(self, policy: GoalPolicy, **options: Any) -> None:
         super().__init__("recorder")
@@ -260,7 +260,7 @@ async def test_a_body_that_outstays_its_cancellation(graph: Graph, caplog: pytes
 
 
 async def test_a_goal_sent_twice_runs_once(graph: Graph) -> None:
-    """A client that has not heard the answer may ask again with the same id, before and after the end."""
+    """A client without a response may send the same id again, before and after the end."""
     server, _ = await pair(graph)
     send: Any = interface_class("example_interfaces/action/Fibonacci_SendGoal")
     request = send.Request(goal_id={"uuid": [7] * 16}, goal=Fibonacci.Goal(order=3))
@@ -385,7 +385,7 @@ class Careless(Node):
 
 @pytest.mark.parametrize("order", [0, 1])
 async def test_a_result_that_cannot_be_sent(graph: Graph, caplog: pytest.LogCaptureFixture, order: int) -> None:
-    """The goal is aborted, and the server says what is wrong with the result."""
+    """The goal is aborted, and the server logs the reason."""
     _, asker = await pair(graph, Careless())
     goal = await asker.order(order)
     await graph.clock.advance(0.1)

@@ -37,7 +37,7 @@ async def test_a_set_that_a_timer_cannot_follow_is_refused(graph: Graph) -> None
 
 
 class Follower(Node):
-    """Notes what it is told of its parameter."""
+    """Record changes of its parameter."""
 
     rate = Param(1.0)
     other = Param("x")
@@ -62,7 +62,7 @@ class Follower(Node):
 
 
 async def test_a_check_of_the_class_can_refuse(graph: Graph) -> None:
-    """What it raises is the reason, from inside and from outside; the old value stands."""
+    """Its ValueError is the reason, for callers inside and outside the node; the old value stays."""
     node = Follower()
     await graph.start(node)
     with pytest.raises(ParameterError, match=r"parameter 'rate' = 11\.0: the listener is only human"):
@@ -141,7 +141,7 @@ def test_hooks_are_inherited_and_replaced() -> None:
 
 
 async def test_every_node_has_rclpys_two(graph: Graph) -> None:
-    """use_sim_time can be set, start_type_description_service is read-only; no class may declare them anew."""
+    """use_sim_time can be set, start_type_description_service is read-only; no class may declare either."""
     node = Node("n")
     assert node.parameters.get("use_sim_time") is False
     with pytest.raises(ParameterError, match="read-only"):
@@ -175,7 +175,7 @@ async def test_an_overridden_body_keeps_its_declaration(graph: Graph) -> None:
 
 
 async def test_a_redeclared_handler_replaces_the_parents(graph: Graph) -> None:
-    """Decorated anew, the method listens to what the child says, and no longer to what the parent said."""
+    """A method with another decorator uses the subclass's declaration instead of the parent's."""
 
     class Redeclared(Parent):
         @subscription(String, "elsewhere")
@@ -224,7 +224,7 @@ async def test_nodes_of_a_class_share_nothing(graph: Graph) -> None:
 
 
 async def test_followers_that_set_what_they_follow(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Come to an end and are told, by themselves or in a circle, at once or later; one change more is no circle."""
+    """Chains of changes end with an error, at once or later; a single change by a hook is legal."""
 
     class Circle(Node):
         rate = Param(1.0)
@@ -266,7 +266,7 @@ async def test_followers_that_set_what_they_follow(graph: Graph, caplog: pytest.
 async def test_a_follower_may_change_its_parameter_as_time_goes_by(
     graph: Graph, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """What is slow, or set by a timer that a follower has armed, has no end and needs none."""
+    """A slow hook, or one triggered by a timer that a hook has started, is legal."""
 
     class Slow(Node):
         rate = Param(20.0)

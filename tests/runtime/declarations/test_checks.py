@@ -1,4 +1,4 @@
-"""What declarations are held to."""
+"""Checks of declarations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ HERE = Place("robot.py", 7)
 
 
 def test_what_is_right_passes() -> None:
-    """Nothing is said of it."""
+    """No error is raised."""
     checks.check_type(String, base.Message, "Publisher", HERE)
     checks.check_type(AddTwoInts, base.Service, "Client", HERE)
     checks.check_type(Fibonacci, base.Action, "ActionClient", HERE)
@@ -75,7 +75,7 @@ WRONG: list[tuple[Any, str]] = [
 
 @pytest.mark.parametrize(("check", "text"), WRONG, ids=[text[:40] for _, text in WRONG])
 def test_what_is_wrong_is_told_with_its_place(check: Any, text: str) -> None:
-    """And with what to write instead."""
+    """And with the correct form."""
     with pytest.raises(DeclarationError) as caught:
         check()
     assert str(caught.value).startswith("robot.py:7: ")
@@ -83,7 +83,7 @@ def test_what_is_wrong_is_told_with_its_place(check: Any, text: str) -> None:
 
 
 def test_the_place_is_that_of_the_declaration() -> None:
-    """Of who calls whoever asks."""
+    """Of the caller of the calling function."""
     line = sys._getframe().f_lineno
     declared = Publisher(String, "chatter")
 

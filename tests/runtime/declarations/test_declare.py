@@ -1,4 +1,4 @@
-"""What a node class says that it holds: checked when it is made."""
+"""Declarations of attributes are checked when the class is created."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
 
 @pytest.mark.parametrize(("make", "text"), MISTAKES, ids=[text[:50] for _, text in MISTAKES])
 def test_a_wrong_declaration_names_its_place(make: Callable[[], object], text: str) -> None:
-    """It fails where it is written, with file, line and what would be right."""
+    """The error has file, line and the correct form."""
     assert text in refusal_of(make)
 
 
 async def test_declarations_become_what_they_declare(graph: Graph) -> None:
-    """On the class they are themselves, on a node what `create_*` returns or the parameter's value."""
+    """On the class they are themselves, on a node the result of `create_*` or the parameter's value."""
     node = Everything(rate=4)
 
     assert isinstance(Everything.out, Publisher)
@@ -88,7 +88,7 @@ async def test_declarations_become_what_they_declare(graph: Graph) -> None:
 
 
 def test_reprs() -> None:
-    """A group says its name and limit."""
+    """A group's has its name and limit."""
     assert repr(Everything.io) == "Group(io, limit=None)"
     assert repr(Group(2)) == "Group(unnamed, limit=2)"
 
@@ -119,6 +119,6 @@ def test_choices_of_a_parameter() -> None:
     ],
 )
 def test_choices_that_cannot_be(default: str, choices: Any, told: str) -> None:
-    """Are told where they are written."""
+    """The error has their place."""
     with pytest.raises(DeclarationError, match=rf"test_declare.py:\d+: {told}"):
         Param(default, choices=choices)

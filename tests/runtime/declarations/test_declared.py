@@ -1,4 +1,4 @@
-"""What a class and its parents declare: merged, checked, and as data."""
+"""Declarations of a class and its parents: merged, checked and converted to data."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_two_parameters_of_one_name() -> None:
 
 
 def test_names_that_a_node_needs_itself() -> None:
-    """Nothing can take the place of something of the node's own by accident; an override that calls on it can."""
+    """An attribute cannot accidentally hide a node's own; an override that calls `super` can."""
     with pytest.raises(DeclarationError) as caught:
 
         class Named(Node):
@@ -132,7 +132,7 @@ def line_of_class(name: str) -> int:
 
 
 def test_the_interface_survives_json() -> None:
-    """What a checker in another process reads is what the class declares."""
+    """A checker in another process reads the class's declarations unchanged."""
     interface = Everything.interface()
 
     assert Interface.from_json(json.loads(json.dumps(interface.to_json()))) == interface
@@ -143,7 +143,7 @@ class Bare(Node):
 
 
 def test_the_interface_of_a_bare_node() -> None:
-    """It declares nothing, and is named after its class; a parent's text is not its own."""
+    """It has no declarations, and is named after its class; a parent's docstring is not its own."""
     interface = Bare.interface()
 
     assert interface.node_name == "bare"
@@ -188,7 +188,7 @@ def test_a_child_has_its_parents_declarations() -> None:
 
 
 def test_a_redefined_declaration_replaces_the_parents() -> None:
-    """Whatever stands under the attribute last is what holds; None takes a handler or publisher away."""
+    """The last definition of an attribute counts; None removes a handler or publisher."""
 
     class Other(Parent):
         out = Publisher(Int32, "other")  # type: ignore[assignment]
@@ -248,7 +248,7 @@ class Robot(Node):
 
 
 def test_hooks_are_called_outside_of_handlers() -> None:
-    """Checks, events, and who decides about goals; what follows a parameter is a handler of its own."""
+    """Checks, event callbacks and goal decisions; an `on_change` method is a handler of its own."""
     assert hooks(Robot) == {"not_too_fast", "wanted", "noticed", "heard_of"}
     assert list(handlers(Robot)) == ["heard", "go"]
     assert {name: hook.kind for name, hook in param_hooks(Robot).items()} == {
@@ -258,14 +258,14 @@ def test_hooks_are_called_outside_of_handlers() -> None:
 
 
 def test_the_name_of_a_node_that_is_given_none() -> None:
-    """The class says it, or is it."""
+    """From `node_name`, or from the class name."""
     assert default_name(Robot) == "robot"
     named: Any = type("Robot", (Node,), {"node_name": "bob"})
     assert default_name(named) == "bob"
 
 
 def test_two_services_of_one_name() -> None:
-    """A client would reach one of the two; an action likewise. Topics may be listened to twice."""
+    """A client would reach only one of them; the same holds for actions. Duplicate subscriptions are legal."""
     with pytest.raises(DeclarationError, match=r"two offers the service 'x', which one \(.*:\d+\) already offers"):
 
         class Twice(Node):
@@ -277,7 +277,7 @@ def test_two_services_of_one_name() -> None:
 
 
 def test_the_annotated_results_of_handlers() -> None:
-    """Must be those that they return: the class, or nothing at all."""
+    """They must match the returned type, or be missing."""
 
     async def text(self: Any, request: Empty.Request) -> str: ...  # type: ignore[empty-body]
 

@@ -1,4 +1,4 @@
-"""What a node class does, by decorated methods."""
+"""Declarations of methods by decorators."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
 
 @pytest.mark.parametrize(("make", "text"), MISTAKES, ids=[text[:50] for _, text in MISTAKES])
 def test_a_wrong_handler_names_its_place(make: Callable[[], object], text: str) -> None:
-    """It fails where it is written, with file, line and what would be right."""
+    """The error has file, line and the correct form."""
     assert text in refusal_of(make)
 
 
@@ -121,7 +121,7 @@ def test_optional_arguments_do_not_count() -> None:
 
 
 async def test_a_timer_may_take_info_or_not(graph: Graph) -> None:
-    """What it takes is told by its arguments."""
+    """Its signature decides."""
     seen: list[Any] = []
     done = asyncio.Event()
     loop = asyncio.get_running_loop()

@@ -1,4 +1,4 @@
-"""Declarations that nothing would read are refused when the class is made."""
+"""Declarations without effect are refused when the class is created."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def test_a_declaration_in_a_method() -> None:
 
 
 def test_hooks_are_awaited() -> None:
-    """A `def` that returns nothing cannot be; one that returns something awaitable can."""
+    """A `def` must return an awaitable."""
     with pytest.raises(DeclarationError, match=r":15: on_start is awaited; write async def on_start\(self\)"):
         made("def on_start(self):\n        print('up')")
     with pytest.raises(DeclarationError, match="on_shutdown is awaited"):

@@ -75,7 +75,7 @@ async def test_a_call_to_a_graphflow_server_is_no_query(graph: Graph) -> None:
 
 
 async def test_with_two_servers_every_call_is_a_query(graph: Graph) -> None:
-    """As in ROS 2 both are asked; when one of them is left, it is called directly again."""
+    """As in ROS 2, both receive it; once only one is left, it is called directly again."""
     first, second = Adder("first"), Adder("second")
     await graph.start(first)
     _, client, queries = await asker(graph)
@@ -92,7 +92,7 @@ async def test_with_two_servers_every_call_is_a_query(graph: Graph) -> None:
 
 
 async def test_a_call_under_way_outlives_the_coming_of_another_server(graph: Graph) -> None:
-    """It is still answered by the one that was asked."""
+    """The first server still answers it."""
     first = Adder("first")
     await graph.start(first)
     _, client, _ = await asker(graph)
@@ -131,7 +131,7 @@ async def test_a_query_carries_a_chain_to_graphflow_alone(
 
 
 async def test_a_server_of_another_kind_gets_queries(graph: Graph) -> None:
-    """A ROS 2 server knows nothing of lines."""
+    """A ROS 2 server does not know lines."""
     _, client, queries = await asker(graph)
     session = graph.network.session(client.host.context.loop)
     entity = client.entity
@@ -150,7 +150,7 @@ async def test_a_server_of_another_kind_gets_queries(graph: Graph) -> None:
 
 
 async def test_a_server_that_goes_without_a_word_is_lost(graph: Graph) -> None:
-    """Its token's end is what tells, as when its process is killed."""
+    """The end of its token reports it, as when its process is killed."""
     adder = Adder()
     await graph.start(adder)
     _, client, queries = await asker(graph)
@@ -165,7 +165,7 @@ async def test_a_server_that_goes_without_a_word_is_lost(graph: Graph) -> None:
 
 
 async def test_a_client_that_goes_takes_its_line_along(graph: Graph) -> None:
-    """Nothing of it is left at the server, and its answer goes nowhere."""
+    """The server drops the line, and its response is discarded."""
     adder = Adder()
     await graph.start(adder)
     node, client, _ = await asker(graph)
@@ -186,7 +186,7 @@ async def test_a_client_that_goes_takes_its_line_along(graph: Graph) -> None:
 
 @pytest.mark.parametrize("where", [b"", b"1", b"1/x", b"*/2", b"1/2/3", b"\xff/1", b"@/1"])
 async def test_a_hello_from_nowhere_is_ignored(graph: Graph, where: bytes) -> None:
-    """Whatever is sent on a server's key: it opens nothing, and the server goes on."""
+    """It opens no line, and the server keeps working."""
     adder = Adder()
     await graph.start(adder)
     _, client, _ = await asker(graph)
@@ -202,7 +202,7 @@ async def test_a_hello_from_nowhere_is_ignored(graph: Graph, where: bytes) -> No
 
 
 async def test_an_answer_that_nobody_waits_for_is_ignored(graph: Graph) -> None:
-    """One that came too late, or that somebody made up."""
+    """It may be late or forged."""
     await graph.start(Adder())
     _, client, _ = await asker(graph)
     entity = client.entity
@@ -223,7 +223,7 @@ class Lines:
         self.opened: list[tuple[str, str]] = []
 
     def listen(self, *_: Any) -> None:
-        """Hear nothing."""
+        """Ignore arrivals."""
 
     def open_sender(self, what: str, zid: str, eid: str, changed: Any) -> Any:
         self.opened.append((zid, eid))
@@ -244,7 +244,7 @@ def hello(server: ServerLines, client: Entity, where: str = "") -> None:
 
 
 def test_hellos_of_strangers_open_nothing() -> None:
-    """However many; what is remembered of them is bounded."""
+    """Their number is limited."""
     board, server = lines()
     server.client_came(client_entity(1))
     for i in range(2 * EARLY_BOUND):
@@ -254,7 +254,7 @@ def test_hellos_of_strangers_open_nothing() -> None:
 
 
 def test_a_hello_may_come_before_the_token() -> None:
-    """The line opens when the token comes; to where the token says, and nowhere else."""
+    """The line opens with the token, and only to the key in the token."""
     board, server = lines()
     server.client_came(client_entity(1))
     hello(server, client_entity(2))
@@ -272,7 +272,7 @@ def test_a_hello_may_come_before_the_token() -> None:
 
 @pytest.mark.parametrize("sequence", [-1, -(2**63)])
 def test_a_request_has_a_number_that_counts_up(sequence: int) -> None:
-    """A negative one says of an answer that it is an error, and is nothing that could be asked."""
+    """Negative numbers mark errors and are not valid in requests."""
     made: Any = Lines()
     asked: list[Any] = []
     server = ServerLines(made, client_entity(99), None, asked.append)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""What all endpoints have in common: how they are announced, whom they reach, and how they close."""
+"""Announcement, matching and closing of endpoints."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ async def test_who_sees_an_endpoint_can_reach_it(graph: Graph) -> None:
 
 
 async def test_counterparts_are_known_while_they_are_there(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Those that were there before and those that come; of another topic nothing is heard."""
+    """Earlier and later ones; endpoints of other topics are not reported."""
     early, late = Node("early"), Node("late")
     for node in (early, late):
         node.create_subscription(String, "/chatter", None)
@@ -134,7 +134,7 @@ async def test_waiting_for_counterparts(graph: Graph) -> None:
 
 
 async def test_a_wait_for_counterparts_can_be_cancelled(graph: Graph) -> None:
-    """Nothing of it is left."""
+    """Without leaving a reference."""
     _, speaker = await speaking(graph)
     waiting = asyncio.create_task(speaker.wait_matched())
     await graph.settle()
@@ -160,7 +160,7 @@ async def test_a_wait_for_counterparts_ends_with_the_node(graph: Graph) -> None:
 
 
 async def test_what_is_not_open_reaches_nobody(graph: Graph) -> None:
-    """Before the start and after the stop the error says where it can be used."""
+    """The error explains where it can be used, before the start and after the stop."""
     node, speaker = await speaking(graph)
     await graph.stop(node)
     for endpoint in (speaker, Loudspeaker(core_of(Node("talker", namespace="/a")))):
@@ -169,7 +169,7 @@ async def test_what_is_not_open_reaches_nobody(graph: Graph) -> None:
 
 
 async def test_an_endpoint_that_cannot_be_declared_is_not_announced(graph: Graph) -> None:
-    """Nobody hears of it."""
+    """It is not announced."""
 
     class Broken(Loudspeaker):
         def _open(self, key: str) -> None:
@@ -186,7 +186,7 @@ async def test_an_endpoint_that_cannot_be_declared_is_not_announced(graph: Graph
 async def test_a_counterpart_that_comes_and_goes_is_complained_of_now_and_then(
     graph: Graph, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Whoever flaps must not fill the log."""
+    """It is logged only once per interval."""
     ear, mouth = Node("ear"), Node("mouth")
     ear.create_subscription(String, "/words", lambda _: None, 10)
     await graph.start(ear, mouth)

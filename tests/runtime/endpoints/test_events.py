@@ -1,4 +1,4 @@
-"""What endpoints notice about each other: matches, misfits, losses, deadlines, liveliness, age."""
+"""QoS events of endpoints: matches, incompatibilities, losses, deadlines, liveliness, lifespan."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def kinds(events: list[QosEvent]) -> list[str]:
 
 
 async def test_both_sides_notice_who_comes_and_goes(graph: Graph) -> None:
-    """A publisher and a subscription are told of each other, by node, with how many there are now."""
+    """A publisher and a subscription report each other's node, and the current number."""
     talker, listener = Node("talker"), Node("listener")
     ours, theirs = Log(), Log()
     publisher = talker.create_publisher(String, "chatter", on_event=ours)
@@ -43,7 +43,7 @@ async def test_both_sides_notice_who_comes_and_goes(graph: Graph) -> None:
 async def test_two_types_on_one_topic_are_reported_on_both_sides(
     graph: Graph, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A publisher and a subscription of different types never meet: each says so, and is told."""
+    """A publisher and a subscription of different types do not match; both report it."""
     talker, listener = Node("talker"), Node("listener")
     ours, theirs = Log(), Log()
     publisher = talker.create_publisher(String, "chatter", on_event=ours)
@@ -74,7 +74,7 @@ async def test_less_than_asked_for_is_reported_and_delivered(graph: Graph, caplo
 
 
 async def test_a_gap_in_the_sequence_is_a_loss(graph: Graph) -> None:
-    """Numbers that are missing are counted and told; those of another publisher are apart."""
+    """Missing numbers are counted and reported, separately for each publisher."""
     listener = Node("listener")
     events = Log()
     listening = listener.create_subscription(String, "chatter", None, 100, on_event=events)
@@ -135,7 +135,7 @@ async def test_nobody_listens_so_nothing_is_encoded(graph: Graph, monkeypatch: p
 
 
 async def test_a_latched_topic_is_kept_for_those_who_come_later(graph: Graph) -> None:
-    """A transient-local publisher encodes though nobody listens yet."""
+    """A TRANSIENT_LOCAL publisher encodes even without a subscription."""
     talker, listener = Node("talker"), Node("listener")
     publisher = talker.create_publisher(Int32, "n", LATCHED)
     await graph.start(talker)
@@ -146,7 +146,7 @@ async def test_a_latched_topic_is_kept_for_those_who_come_later(graph: Graph) ->
 
 
 async def test_messages_that_outlived_their_lifespan_are_dropped(graph: Graph) -> None:
-    """A late joiner gets of a latched topic only what is younger than the publisher's lifespan."""
+    """A late subscription to a latched topic receives only messages within the publisher's lifespan."""
     talker, late = Node("talker"), Node("late")
     publisher = talker.create_publisher(Int32, "n", Qos(durability=Durability.TRANSIENT_LOCAL, lifespan_ns=2 * SECOND))
     await graph.start(talker)

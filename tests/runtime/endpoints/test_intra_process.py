@@ -24,7 +24,7 @@ LATCHED = Qos(durability=Durability.TRANSIENT_LOCAL)
 
 
 class Wire:
-    """Counts what goes over a network."""
+    """Count messages on the network."""
 
     def __init__(self, network: Network) -> None:
         self.sent = 0
@@ -36,7 +36,7 @@ class Wire:
 
 
 async def together(graph: Graph, *nodes: Node) -> Wire:
-    """Start nodes in one process; returns what counts the messages that it sends."""
+    """Start nodes in one process; returns the counter of their messages on the network."""
     context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
     for node in nodes:
         await core_of(node).start(context)
@@ -53,7 +53,7 @@ def pair(qos: Qos | int = 10, other: Qos | int = 10, kind: Any = String) -> tupl
 
 
 async def test_nothing_goes_over_the_network(graph: Graph) -> None:
-    """What no other process wants; the publisher knows that it is wanted."""
+    """Without subscriptions in other processes; the publisher still knows that it is wanted."""
     speaker, listener, publisher, heard = pair()
     wire = await together(graph, speaker, listener)
     assert publisher.is_wanted
@@ -101,7 +101,7 @@ async def test_a_late_subscription_gets_what_was_latched(graph: Graph) -> None:
 
 
 async def test_each_receiver_has_a_message_of_its_own(graph: Graph) -> None:
-    """One changes its message, another keeps it, the publisher goes on writing to what it has published."""
+    """A receiver may change or keep its message, and the publisher may modify the original."""
     speaker, listener, publisher, heard = pair()
     listener.create_subscription(String, "chatter", lambda m: setattr(m, "data", m.data + "!"), 10)
     kept = Log()
@@ -130,7 +130,7 @@ async def test_a_large_array_is_not_copied(graph: Graph) -> None:
 
 
 async def test_a_wrong_message_is_an_error_here_too(graph: Graph) -> None:
-    """And nobody gets it, and it does not count."""
+    """It is neither delivered nor counted."""
     speaker, listener, publisher, heard = pair()
     await together(graph, speaker, listener)
     wrong: Any = String()

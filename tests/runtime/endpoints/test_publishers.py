@@ -27,7 +27,7 @@ from tests.runtime.cast import Speaker
     ],
 )
 async def test_publishing_another_type_is_an_error(graph: Graph, message: Any, text: str) -> None:
-    """EncodeError names the topic, its type and what was given; nothing is sent."""
+    """EncodeError names the topic, its type and the value; no message is sent."""
     node = Speaker()
     await graph.start(node)
 
@@ -38,7 +38,7 @@ async def test_publishing_another_type_is_an_error(graph: Graph, message: Any, t
 
 
 async def test_publishing_a_wrong_field_is_an_error(graph: Graph) -> None:
-    """EncodeError names the field; nothing is sent, and the next good message is."""
+    """EncodeError names the field; the message is not sent, and the next one is."""
     node = Speaker()
     await graph.start(node)
     wrong = String()
@@ -54,7 +54,7 @@ async def test_publishing_a_wrong_field_is_an_error(graph: Graph) -> None:
 
 
 async def test_publishing_needs_a_running_node(graph: Graph) -> None:
-    """Before its start and after its stop a node cannot publish, says so, and counts nothing."""
+    """Publishing before the start and after the stop raises an error and is not counted."""
     node = Speaker()
     with pytest.raises(
         ClosedError, match=r"/chatter: node /speaker is not running; use this from .* async with graphflow.running"
@@ -72,7 +72,7 @@ async def test_publishing_needs_a_running_node(graph: Graph) -> None:
 
 
 async def test_a_publisher_that_is_paused_sends_nothing(graph: Graph) -> None:
-    """Not even later, and it says why; then it sends as before."""
+    """Not even later, and the warning has the reason; then it sends as before."""
     speaker = Speaker("speaker")
     await graph.start(speaker)
     heard = graph.tap(String, "/chatter")
@@ -108,7 +108,7 @@ def test_a_second_thread_waits_for_the_first(monkeypatch: pytest.MonkeyPatch) ->
 
 
 class Sent:
-    """A sender that keeps what it is given, is not always wanted, and sometimes fails."""
+    """A sender that keeps its payloads, is not always wanted, and sometimes fails."""
 
     def __init__(self) -> None:
         self.log: list[tuple[bytes, bytes]] = []
@@ -120,7 +120,7 @@ class Sent:
         self.log.append((bytes(payload), attachment))
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing."""
 
 
 class Here:

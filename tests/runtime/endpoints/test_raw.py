@@ -40,7 +40,7 @@ async def pair(
 
 
 async def test_what_is_sent_arrives_as_it_is(graph: Graph) -> None:
-    """With the number, the time and the sender of each message; nothing is decoded."""
+    """With the sequence number, time and sender of each message; messages are not decoded."""
     publisher, subscription, heard = await pair(graph)
     publisher.publish(HELLO)
     publisher.publish(b"no message at all")
@@ -82,7 +82,7 @@ async def test_with_others(graph: Graph) -> None:
 
 
 async def test_within_a_process(graph: Graph) -> None:
-    """Messages go by hand there, as objects; what is none is refused."""
+    """Messages are delivered as objects; invalid ones are refused."""
     node, heard, said = Node("a"), Heard(), list[str]()
     await graph.start(node)
     raw.subscribe(node, STRING, "/t", heard, DEFAULT)
@@ -97,7 +97,7 @@ async def test_within_a_process(graph: Graph) -> None:
 
 
 async def test_what_is_kept_for_late_ones(graph: Graph) -> None:
-    """As any publisher that is asked to does."""
+    """As any TRANSIENT_LOCAL publisher does."""
     qos = Qos(depth=3, durability=Durability.TRANSIENT_LOCAL)
     publisher, _, _ = await pair(graph, qos=qos)
     publisher.publish(HELLO)
@@ -119,7 +119,7 @@ async def test_a_burst(graph: Graph) -> None:
 
 
 async def test_after_the_end(graph: Graph) -> None:
-    """Nothing comes any more, and nothing can be sent."""
+    """No message arrives, and none can be sent."""
     publisher, subscription, heard = await pair(graph)
     publisher.publish(HELLO)
     subscription.close()
@@ -142,7 +142,7 @@ async def test_what_is_no_type(graph: Graph) -> None:
 
 
 async def test_one_that_is_closed_within_a_process(graph: Graph) -> None:
-    """Is handed nothing any more."""
+    """It receives no more messages."""
     node, heard = Node("a"), Heard()
     await graph.start(node)
     publisher = node.create_publisher(String, "/t")

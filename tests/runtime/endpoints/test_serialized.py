@@ -36,7 +36,7 @@ async def test_bytes_arrive_as_they_were_sent(graph: Graph) -> None:
 
 @pytest.mark.parametrize("durability", [Durability.VOLATILE, Durability.TRANSIENT_LOCAL])
 async def test_a_message_within_a_process_comes_once(graph: Graph, durability: Durability) -> None:
-    """By hand, with the time at which it was sent; each receiver may change what it has got."""
+    """By intra-process delivery, with its publication time; each receiver may modify its copy."""
     node, qos = Node("n"), Qos(10, durability=durability)
     heard, words = list[MessageInfo](), list[str]()
 
@@ -71,7 +71,7 @@ async def test_the_time_goes_over_the_network(graph: Graph) -> None:
 
 @pytest.mark.parametrize("beside", [b"", b"of another layout"])
 async def test_messages_without_an_attachment(graph: Graph, beside: bytes) -> None:
-    """Are heard all the same; what they do not say is zero."""
+    """They are delivered; the missing fields are zero."""
     node, heard = Node("n"), list[Any]()
     await graph.start(node)
     subscription = raw.subscribe(node, STRING, "/x", lambda *given: heard.append(given), Qos(10))
@@ -99,7 +99,7 @@ async def test_others_have_a_turn_between_many_messages(graph: Graph) -> None:
 
 
 async def test_a_publisher_that_is_closed(graph: Graph) -> None:
-    """Sends nothing, to this process neither, and counts nothing."""
+    """It sends no messages, not even to this process, and counts none."""
     node, heard = Node("n"), list[bytes]()
     await graph.start(node)
     raw.subscribe(node, STRING, "/x", lambda payload, _: heard.append(payload), Qos(10))

@@ -43,7 +43,7 @@ async def test_a_service_nobody_offers(graph: Graph) -> None:
 
 
 async def test_a_service_of_another_type(graph: Graph) -> None:
-    """The error tells which type the service has."""
+    """The error has the service's type."""
     await graph.start(Adder())
     call = asyncio.create_task(graph.call(Trigger, "/add", Trigger.Request()))
 
@@ -104,7 +104,7 @@ async def test_the_deadline_passes(graph: Graph) -> None:
 
 @pytest.mark.parametrize("ends", ["by its deadline", "by cancellation"])
 async def test_a_late_reply_is_ignored(graph: Graph, ends: str) -> None:
-    """An answer to a call that is over reaches nobody, least of all the next call."""
+    """A response to a finished call is discarded, and not taken for the next call's."""
     server = SlowAdder()
     await graph.start(server)
     client = await client_of(graph)
@@ -226,7 +226,7 @@ async def test_a_request_carries_what_rmw_expects(graph: Graph) -> None:
 
 
 async def test_a_call_with_a_wrong_request(graph: Graph) -> None:
-    """EncodeError names the service and what it takes, or the field; nothing is sent."""
+    """EncodeError names the service and its type, or the field; no request is sent."""
     server = SlowAdder()
     await graph.start(server)
     client = await client_of(graph)
@@ -255,7 +255,7 @@ async def test_a_call_with_a_negative_timeout(graph: Graph) -> None:
 
 
 async def test_a_call_needs_a_running_node(graph: Graph) -> None:
-    """Before the start there is nothing to call with."""
+    """A call before the start raises an error."""
     client = Node("n").create_client(AddTwoInts, "add")
 
     with pytest.raises(ClosedError, match="not running"):
@@ -341,7 +341,7 @@ async def test_ready_means_announced_and_reachable(graph: Graph) -> None:
 
 
 async def test_waiting_for_a_server_ends_with_the_client(graph: Graph) -> None:
-    """A client that is closed tells those who wait for its server."""
+    """Closing a client ends its waits for a server."""
     asker = Node("asker")
     client = asker.create_client(AddTwoInts, "add")
     await graph.start(asker)
@@ -353,7 +353,7 @@ async def test_waiting_for_a_server_ends_with_the_client(graph: Graph) -> None:
 
 
 async def test_an_error_text_clears_no_screen(graph: Graph) -> None:
-    """What a handler raises may hold what another has sent; escape sequences of it are spelt out, lines stay."""
+    """Escape sequences in a handler's error, which may be another process's data, are spelt out; line breaks stay."""
 
     class Rude(Node):
         @service(AddTwoInts, "add")

@@ -1,4 +1,4 @@
-"""What is told of the calls of a service."""
+"""Service introspection."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from graphflow.testing import Graph
 
 
 class Adder(Node):
-    """Adds, and tells of it."""
+    """Add numbers, and publish events."""
 
     @service(AddTwoInts, "add", introspection="contents")
     async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -23,7 +23,7 @@ class Adder(Node):
 
 
 class Asker(Node):
-    """Calls, and tells that it did."""
+    """Call, and publish events."""
 
     adder = Client(AddTwoInts, "add", introspection="metadata")
 
@@ -35,7 +35,7 @@ def event_rows(tap: Any) -> list[Any]:
 
 
 async def test_both_sides_of_a_call_are_told(graph: Graph) -> None:
-    """Request and response, sent and received, with the client's GID and number; contents where they are asked for."""
+    """Request and response, sent and received, with the client's GID and number; with contents on demand."""
     adder, asker = Adder(), Asker()
     tap = graph.tap(AddTwoInts.Event, "/add/_service_event")
     await graph.start(adder, asker)
@@ -59,7 +59,7 @@ async def test_both_sides_of_a_call_are_told(graph: Graph) -> None:
 
 
 async def test_introspection_is_off_by_default_and_can_be_switched(graph: Graph) -> None:
-    """Nothing is announced or published until it is asked for, and again nothing after."""
+    """Events are announced and published only after it is switched on, and no more after it is switched off."""
     node = Node("node")
     server: ServiceServer[Any, Any] = node.create_service(AddTwoInts, "add", lambda r: AddTwoInts.Response(sum=1))
     await graph.start(node)

@@ -37,7 +37,7 @@ async def test_a_service_answers(graph: Graph, name: str) -> None:
 
 
 async def test_an_empty_response_may_be_none(graph: Graph) -> None:
-    """A handler with nothing to say need not say it."""
+    """A handler without a result need not return one."""
     await graph.start(Adder())
 
     assert await graph.call(Empty, "/go", Empty.Request()) == Empty.Response()
@@ -57,7 +57,7 @@ async def test_an_empty_response_may_be_none(graph: Graph) -> None:
 async def test_a_failing_service_tells_its_caller(
     graph: Graph, caplog: pytest.LogCaptureFixture, name: str, type_: str, text: str
 ) -> None:
-    """The caller gets the remote type and text, the server logs what is an error, and goes on to the next request."""
+    """The caller gets the remote type and text; the server logs the error and continues with the next request."""
     await graph.start(Adder())
 
     for _ in range(2):
@@ -150,7 +150,7 @@ async def test_a_malformed_request_is_refused(graph: Graph) -> None:
 
 
 class Gate(Node):
-    """Answers nobody until it is opened."""
+    """Answer only once opened."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -163,7 +163,7 @@ class Gate(Node):
 
 
 async def test_a_full_service_refuses_the_newest(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those that wait already are answered in the end; the others are told at once."""
+    """Waiting requests are answered in the end; further ones are refused at once."""
     monkeypatch.setattr(services, "REQUEST_QUEUE", 2)
     gate, caller = Gate(), Node("caller")
     client = caller.create_client(Trigger, "pass")
@@ -199,7 +199,7 @@ async def test_a_service_bounds_the_bytes_that_wait(graph: Graph, monkeypatch: p
 async def test_a_flood_while_the_loop_is_blocked(
     graph: Graph, way: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Is refused before it fills the memory; each call ends at once, and a warning tells how many."""
+    """It is refused before it exhausts the memory; each call ends at once, and a warning has the number."""
     monkeypatch.setitem(direct_calls._DEPTH, "ask", 3)
     monkeypatch.setattr(services, "REQUESTS_BOUND", 3)
     caller = Node("caller")
@@ -216,7 +216,7 @@ async def test_a_flood_while_the_loop_is_blocked(
 
 
 async def test_a_closed_client_ends_its_calls(graph: Graph) -> None:
-    """Nobody waits for an answer that has nowhere to go to."""
+    """No call waits for a response that cannot be delivered."""
     caller = Node("caller")
     client = caller.create_client(Trigger, "pass")
     await graph.start(Gate(), caller)
@@ -230,7 +230,7 @@ async def test_a_closed_client_ends_its_calls(graph: Graph) -> None:
 
 
 async def test_two_servers_of_one_node(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """They are told with both handlers; one that was closed does not count."""
+    """The warning names both handlers; a closed server does not count."""
     node = Node("clerk")
 
     async def add(request: Any) -> Any: ...

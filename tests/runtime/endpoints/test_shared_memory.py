@@ -156,7 +156,7 @@ class TestOverZenoh:
         assert pair.in_memory == 60
 
     async def test_ros_nodes_get_ordinary_messages(self, pair: Pair) -> None:
-        """While one subscription is not graphflow's of this machine, all get what ROS 2 sends; then memory again."""
+        """With one subscription of ROS 2 or another machine, all get ordinary messages; then shared memory again."""
         await pair.listen()
         await pair.ready(1)
         own = pair.publisher.entity
@@ -177,7 +177,7 @@ class TestOverZenoh:
         assert pair.in_memory == 1
 
     async def test_a_forged_token_changes_nothing(self, pair: Pair) -> None:
-        """Whoever announces that another's subscription reads memory would cut it off: it needs a proof."""
+        """A forged announcement would cut off another's subscription: it needs a proof."""
         own = pair.publisher.entity
         settings = config("peer", connect=[rendezvous_endpoint()], listen="tcp/127.0.0.1:0")
         with open_session(settings) as session:
@@ -207,7 +207,7 @@ class TestOverZenoh:
         assert "in_memory" not in publisher.statistics()
 
     async def test_recorders_read_memory_too(self, pair: Pair) -> None:
-        """What hands on serialized messages gets them as bytes of its own."""
+        """Subscriptions of serialized messages receive private copies."""
         node = Node("recorder", enable_rosout=False)
         got: list[bytes] = []
 
@@ -225,7 +225,7 @@ class TestOverZenoh:
         assert pair.in_memory == 1
 
     async def test_a_loan(self, pair: Pair) -> None:
-        """What is filled in place is what arrives; a block that raises publishes nothing."""
+        """The message filled in place arrives; a block that raises publishes no message."""
         await pair.listen()
         await pair.ready(1)
         with pair.publisher.loan(data=400_000) as image:

@@ -1,4 +1,4 @@
-"""What a subscription knows of a publisher."""
+"""A subscription's record of a publisher."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from graphflow.runtime.endpoints.sources import Source
 
 
 def test_the_time_of_messages_matters_where_they_expire_or_are_signs_of_life() -> None:
-    """Only then is more than their number looked at; a lease that was set once stays."""
+    """Only then is the time read; a lease that was set stays."""
     source = Source(INFINITE_NS)
     assert not source.needs_care
     source.expects(10)

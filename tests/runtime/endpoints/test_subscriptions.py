@@ -206,7 +206,7 @@ async def test_what_comes_beside_a_message(graph: Graph) -> None:
 
 
 async def test_a_message_without_attachment_is_heard(graph: Graph) -> None:
-    """A sender that says nothing about itself is anonymous, not silent."""
+    """Its message is delivered with an anonymous sender."""
     node = Speaker()
     await graph.start(node)
     raw_sender(graph, node.heard)(String(data="x").to_bytes(), b"")
@@ -218,7 +218,7 @@ async def test_a_message_without_attachment_is_heard(graph: Graph) -> None:
 
 
 async def test_only_one_of_callback_and_iteration(graph: Graph) -> None:
-    """A subscription with a callback cannot be iterated too, and says what to do."""
+    """The error about iterating a subscription with a callback has the correct form."""
     node = Node("n")
     subscribed = node.create_subscription(String, "x", lambda _: None)
 
@@ -239,7 +239,7 @@ async def test_a_full_queue_drops_the_oldest_and_counts(graph: Graph) -> None:
 
 
 async def test_a_busy_handler_drops_the_oldest_and_counts(graph: Graph) -> None:
-    """What arrives while a run is under way waits in the queue, which is as deep as asked for."""
+    """Messages that arrive during a run wait in the queue, up to its depth."""
     node, gate, log = Node("n"), asyncio.Event(), Log()
 
     async def slow(message: Int32) -> None:
@@ -262,7 +262,7 @@ async def test_a_busy_handler_drops_the_oldest_and_counts(graph: Graph) -> None:
 
 
 async def test_a_subscription_that_nobody_reads_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """It is not slow; one that is read is not told so, however late its reader is."""
+    """The warning differs from a slow reader's, which never causes it."""
     node = Node("n")
     node.create_subscription(Int32, "x", None, 1)
     late = node.create_subscription(Int32, "x", None, 1)
@@ -297,7 +297,7 @@ async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.
 async def test_a_handler_that_never_returns_is_told(
     graph: Graph, caplog: pytest.LogCaptureFixture, depth: int, text: str
 ) -> None:
-    """Once, though nothing is ever taken from its queue again; also after many messages that it has handled."""
+    """Once, even after many messages; its queue is never emptied again."""
     node, gate = Node("n"), asyncio.Event()
     gate.set()
 
@@ -357,7 +357,7 @@ def raw_sender(graph: Graph, receiver: TopicSubscription[Any]) -> Callable[[byte
 
 @pytest.mark.parametrize("iterated", [False, True])
 async def test_malformed_payloads_are_dropped(graph: Graph, caplog: pytest.LogCaptureFixture, iterated: bool) -> None:
-    """Bytes that are no message of the type are counted, said once, and do not disturb the next message."""
+    """Invalid bytes are counted and logged once, and the next message is delivered."""
     node, log = Node("n"), Log()
     subscribed = node.create_subscription(String, "x", None if iterated else log)
     await graph.start(node)
@@ -414,7 +414,7 @@ async def test_the_short_way_of_a_message_is_the_general_one(
 
 
 async def test_a_decode_error_of_the_handlers_own_is_an_error(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """What the handler failed to decode is not blamed on the sender of its message."""
+    """A DecodeError of the handler is not attributed to the sender."""
     node = Node("n")
 
     def unpack(message: String) -> None:
@@ -480,7 +480,7 @@ async def test_a_closed_endpoint_is_gone(graph: Graph) -> None:
 
 
 async def test_a_handler_may_close_its_own_subscription(graph: Graph) -> None:
-    """It hears nothing more."""
+    """It receives no more messages."""
     node, log = Node("n"), Log()
 
     async def once(message: Int32) -> None:
@@ -511,7 +511,7 @@ async def test_other_types_on_a_topic_are_not_heard(graph: Graph) -> None:
 
 
 async def test_a_latecomer_gets_what_was_latched(graph: Graph) -> None:
-    """With transient-local durability on both sides the last messages wait for whoever comes."""
+    """With TRANSIENT_LOCAL on both sides, the last messages are kept for late subscriptions."""
     latched = Qos(depth=2, durability=Durability.TRANSIENT_LOCAL)
     node = Node("n")
     await graph.start(node)
@@ -527,7 +527,7 @@ async def test_a_latecomer_gets_what_was_latched(graph: Graph) -> None:
 
 
 async def test_reprs_tell_name_and_type(graph: Graph) -> None:
-    """What is printed can be read."""
+    """They are readable."""
     node = Speaker()
 
     assert repr(node.chatter) == "<TopicPublisher /chatter [std_msgs/msg/String]>"
@@ -563,7 +563,7 @@ async def test_an_iteration_leaves_the_loop_its_turns(graph: Graph) -> None:
 
 
 async def test_a_subscription_that_is_paused_leaves_out_what_comes(graph: Graph) -> None:
-    """Also what comes in the last moment before it goes on."""
+    """Including messages that arrive just before it resumes."""
     listener, heard = Node("listener"), Log()
     listening = listener.create_subscription(String, "chatter", lambda message: heard(message.data))
     await graph.start(listener)

@@ -26,7 +26,7 @@ from graphflow.transport.base import Inbox
 
 
 class Ring:
-    """A bell that somebody looks at."""
+    """A bell that counts rings."""
 
     def __init__(self) -> None:
         self.rung: deque[Inbox] = deque()
@@ -37,7 +37,7 @@ class Ring:
 
 
 def nothing() -> None:
-    """Nobody is told."""
+    """Ignore the call."""
 
 
 async def until(condition: Any) -> None:
@@ -72,7 +72,7 @@ async def test_messages_pass_as_they_are_between_threads_endpoints_and_others(gr
 
 
 async def test_calls_and_answers(graph: Graph) -> None:
-    """Each answer comes under the number of its call; a server that goes is told."""
+    """Each response has the number of its call; the loss of a server is reported."""
     one, two, ring, changes = Node("one"), Node("two"), Ring(), list[int]()
     await graph.start(one, two)
     core, other = core_of(one), core_of(two)

@@ -74,7 +74,7 @@ async def test_a_slow_run_skips_periods_and_keeps_the_phase(graph: Graph) -> Non
 
 
 async def test_a_blocked_loop_skips_periods_and_keeps_the_phase(graph: Graph) -> None:
-    """A run that comes late says so, missed ones are not made up for, and the next is back in phase."""
+    """A late run reports it, missed runs are not repeated, and the next run is in phase."""
     node, infos = Node("n"), Log()
     ticking = node.create_timer(0.1, infos, takes_info=True)
     await graph.start(node)
@@ -131,7 +131,7 @@ async def test_a_changed_period_holds_from_then_on(graph: Graph) -> None:
 
 
 async def test_another_parameter_leaves_the_phase_alone(graph: Graph) -> None:
-    """Only what the timer reads its rate from re-arms it."""
+    """Only the parameter of its rate restarts it."""
 
     class Two(Ticker):
         other = Param(1.0)
@@ -146,7 +146,7 @@ async def test_another_parameter_leaves_the_phase_alone(graph: Graph) -> None:
 
 
 async def test_a_rate_that_is_none_is_refused(graph: Graph) -> None:
-    """A parameter without limits that sets a timer's rate cannot be set to what no timer can do; the old one stands."""
+    """A parameter of a timer's rate cannot be set to an invalid period; the old value stays."""
 
     class Loose(Node):
         rate = Param(10.0)

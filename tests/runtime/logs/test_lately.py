@@ -8,7 +8,7 @@ from graphflow.runtime.logs.lately import MOST, WINDOW, Lately
 
 
 def test_only_the_last_moment_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A second of it is told, and no more than is remembered."""
+    """The rate covers one window and at most the stored times."""
     now = 100.0
     monkeypatch.setattr("graphflow.runtime.logs.lately.time.monotonic", lambda: now)
     what = Lately()

@@ -47,7 +47,7 @@ def test_once_and_skip_first(log: NodeLogger, clock: list[float], caplog: pytest
 
 
 def test_a_word_of_rclpy(log: NodeLogger) -> None:
-    """Is told what it is called here."""
+    """The error has graphflow's name for it."""
     with pytest.raises(TypeError, match=r"not 'throttle_duration_sec'; in graphflow it is throttle=1.0"):
         log.warning("x", throttle_duration_sec=1.0)
 
@@ -70,7 +70,7 @@ def test_the_place_is_the_callers(log: NodeLogger, caplog: pytest.LogCaptureFixt
 
 
 def test_floods_are_gathered(log: NodeLogger, clock: list[float], caplog: pytest.LogCaptureFixture) -> None:
-    """Of one line of code; what others say comes through, and nothing is uncounted."""
+    """Per line of code; other lines are logged, and all records are counted."""
     for i in range(180):
         clock[0] = 100 + i / 60
         log.warning("wall %d", i)
@@ -89,7 +89,7 @@ def test_floods_are_gathered(log: NodeLogger, clock: list[float], caplog: pytest
 
 
 def test_news_are_not_gathered(log: NodeLogger, caplog: pytest.LogCaptureFixture) -> None:
-    """What is below a warning may come as fast as it likes."""
+    """Records below a warning are not limited."""
     caplog.set_level(logging.INFO, log.name)
     for i in range(100):
         log.info("%d", i)

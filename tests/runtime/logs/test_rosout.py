@@ -61,7 +61,7 @@ async def test_records_reach_rosout(graph: Graph, level: int, number: int) -> No
 
 
 async def test_a_latecomer_gets_the_history(graph: Graph) -> None:
-    """/rosout is transient local: what was said before is there for who asks for it."""
+    """/rosout is TRANSIENT_LOCAL: earlier records are available to late subscriptions."""
     node = Node("talker")
     await graph.start(node)
     node.log.info("early")
@@ -127,7 +127,7 @@ async def test_records_from_threads_reach_rosout(graph: Graph) -> None:
 async def test_a_record_that_cannot_be_written_is_no_error_of_the_node(
     graph: Graph, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As with Python's own handlers: it is said on stderr, and the caller goes on."""
+    """As with Python's own handlers, stderr has the error, and the caller continues."""
     node = Node("talker")
     await graph.start(node)
     monkeypatch.setattr(node.log, "propagate", False)
@@ -213,7 +213,7 @@ class Shows(logging.Handler):
 
 @contextmanager
 def unconfigured() -> Iterator[io.StringIO]:
-    """Logging as in a program that has not configured it; gives what is written to stderr."""
+    """Set logging to its state in an unconfigured program; returns the text on stderr."""
     root, own = logging.getLogger(), logging.getLogger("graphflow")
     stream = io.StringIO()
     # Within the test, since pytest has handlers of its own for each phase.
@@ -240,7 +240,7 @@ async def test_warnings_and_errors_are_seen_without_any_configuration(graph: Gra
 
 @pytest.mark.parametrize("where", ["", "graphflow", "graphflow.node.talker"])
 async def test_a_program_that_configures_logging_is_obeyed(graph: Graph, where: str) -> None:
-    """Its handler gets the records, wherever it hangs, also when it came later; nothing is written beside it."""
+    """Its handler receives the records, wherever and whenever it is added; stderr gets no duplicates."""
     node, handler = Node("talker"), Shows()
     with unconfigured() as stderr:
         await graph.start(node)
@@ -309,7 +309,7 @@ def root() -> Iterator[logging.Logger]:
 
 
 async def test_the_log_survives_the_configuration_of_a_library(graph: Graph, root: logging.Logger) -> None:
-    """Which disables all loggers that it does not name, and closes all handlers, unless it says otherwise."""
+    """Although it disables all loggers that it does not name, and closes all handlers."""
     node = Node("robot")
     await graph.start(node)
     heard = graph.tap(Log, "/rosout")
@@ -335,7 +335,7 @@ async def test_a_program_may_switch_a_log_off(graph: Graph) -> None:
 
 
 async def test_nothing_is_shown_twice(graph: Graph, root: logging.Logger) -> None:
-    """When `basicConfig` makes another handler of the terminal's; one for a file gets what it should."""
+    """When `basicConfig` adds another handler for the terminal; one for a file receives all records."""
     node, shown, file = Node("robot"), io.StringIO(), io.StringIO()
     await graph.start(node)
     console = Console.installed()

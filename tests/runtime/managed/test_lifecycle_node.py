@@ -39,7 +39,7 @@ UP = ["on_configure", "open camera", "on_activate", "open stream", "task"]
 
 
 class Camera(LifecycleNode):
-    """Notes what happens to it; `trouble` names a hook and what becomes of it."""
+    """Record its transitions; `trouble` makes a hook fail."""
 
     trouble = Param("")
     image = Publisher(String, "image")
@@ -144,7 +144,7 @@ async def test_up_and_down(graph: Graph) -> None:
 
 
 async def test_work_is_done_only_while_active(graph: Graph) -> None:
-    """Timers, messages and requests; and what arrives meanwhile is not kept."""
+    """Timers, messages and requests; arrivals in other states are not kept."""
     node = Camera()
     await graph.start(node)
     pictures = graph.tap(String, "/image")
@@ -164,7 +164,7 @@ async def test_work_is_done_only_while_active(graph: Graph) -> None:
 
 
 async def test_what_is_published_while_not_active_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Once, with what to do; and while it is being activated it is sent."""
+    """Once, with the next step; messages published during the activation are sent."""
     node = Camera()
     await graph.start(node)
     pictures = graph.tap(String, "/image")
@@ -196,7 +196,7 @@ class Speaker(LifecycleNode):
 
 
 async def test_hooks_beside_the_work_publish(graph: Graph) -> None:
-    """A robot can be told to stop as its driver is paused."""
+    """A robot can be stopped while its driver is being deactivated."""
     node = Speaker()
     await graph.start(node)
     words = graph.tap(String, "/word")
@@ -232,7 +232,7 @@ async def test_hooks_beside_the_work_publish(graph: Graph) -> None:
 async def test_hooks_that_do_not_succeed(
     graph: Graph, trouble: str, steps: list[str], ends: str, done: list[str], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A refusal leads back, an error through `on_error` to the bottom; what was entered is left either way."""
+    """A refusal restores the previous state, an error leads to unconfigured; both release resources."""
     node = Camera(trouble=trouble)
     await graph.start(node)
     results = [await change(graph, step) for step in steps]
@@ -270,7 +270,7 @@ async def test_an_error_in_on_error_is_the_end(graph: Graph) -> None:
 
 
 async def test_every_level_is_left(graph: Graph) -> None:
-    """Also if leaving one of them fails, at the end of all: nothing stays open in a node that is finalized."""
+    """Even if the release of one fails: a finalized node has no open resources."""
 
     class Stuck(Camera):
         async def on_error(self) -> None:
@@ -289,7 +289,7 @@ async def test_every_level_is_left(graph: Graph) -> None:
 
 
 async def test_a_label_of_any_length(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Is not repeated whole in the log: anybody may send it."""
+    """The log has only an excerpt: any client may send it."""
     node = Camera()
     await graph.start(node)
     assert not await change(graph, "x" * 100_000)
@@ -297,7 +297,7 @@ async def test_a_label_of_any_length(graph: Graph, caplog: pytest.LogCaptureFixt
 
 
 async def test_a_refusal_has_its_reason(graph: Graph) -> None:
-    """For code that asks for the transition itself."""
+    """In the error of the trigger method."""
     node = Camera(trouble="on_activate refuses")
     await graph.start(node)
     await node.trigger_configure()
@@ -343,7 +343,7 @@ async def test_transitions_are_published(graph: Graph) -> None:
 
 
 async def test_one_transition_at_a_time(graph: Graph) -> None:
-    """A second one that is asked for during a hook is refused, and the state can be read meanwhile."""
+    """A second request during a hook is refused, and the state can be read."""
     gate = asyncio.Event()
 
     class Slow(LifecycleNode):
@@ -378,7 +378,7 @@ async def test_a_hook_that_takes_long_is_told(graph: Graph, caplog: pytest.LogCa
 
 
 async def test_stopping_ends_the_life(graph: Graph) -> None:
-    """Whatever the state: what was entered is left, and `on_shutdown` runs once."""
+    """From every state: resources are released, and `on_shutdown` runs once."""
     node = Camera()
     await graph.start(node)
     await node.trigger_configure()
@@ -389,7 +389,7 @@ async def test_stopping_ends_the_life(graph: Graph) -> None:
 
 
 async def test_stopping_during_a_hook(graph: Graph) -> None:
-    """The hook is cancelled, and what it had entered is left."""
+    """The hook is cancelled, and its resources are released."""
     entered = asyncio.Event()
 
     class Slow(Camera):
@@ -465,7 +465,7 @@ async def test_what_a_level_makes_is_gone_below_it(graph: Graph) -> None:
 
 
 async def test_a_timer_that_was_cancelled_stays_so(graph: Graph) -> None:
-    """Activating again does not start what the node itself has stopped."""
+    """Activation does not restart a timer that the node has cancelled."""
 
     class Once(LifecycleNode):
         ticks = 0
@@ -489,7 +489,7 @@ async def test_a_timer_that_was_cancelled_stays_so(graph: Graph) -> None:
 
 
 async def test_a_hook_that_returns_something(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """As rclpy's do: the message says what to write."""
+    """The error about rclpy's return values has the correct form."""
 
     class Habit(LifecycleNode):
         async def on_configure(self) -> bool:  # type: ignore[override]
@@ -523,14 +523,14 @@ def test_hooks_are_checked_when_the_class_is_made() -> None:
 
 
 async def test_an_unconfigured_node_says_what_to_do(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Nothing would happen otherwise, in silence."""
+    """A warning has the next step."""
     with caplog.at_level("INFO"):
         await graph.start(Camera())
     assert "unconfigured: graphflow lifecycle set /camera configure" in caplog.text
 
 
 async def test_a_plain_node_is_not_managed(graph: Graph) -> None:
-    """Its interface says so, for graph files."""
+    """Its interface has `is_managed=False`, for graph files."""
 
     class Plain(Node):
         pass
@@ -598,7 +598,7 @@ async def test_goals_are_rejected_while_not_active(graph: Graph) -> None:
 async def test_remaps_of_nothing_are_told_once_the_node_is_configured(
     graph: Graph, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Which may make the name: before, nobody knows."""
+    """Earlier, `on_configure` may still create the name."""
 
     class Maker(LifecycleNode):
         async def on_configure(self) -> None:

@@ -1,4 +1,4 @@
-"""The workings of lifecycle nodes, as what runs them uses them."""
+"""The implementation of lifecycle nodes, as its callers use it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def managed(node: LifecycleNode) -> ManagedCore:
 
 @pytest.mark.parametrize("target", ["UNCONFIGURED", "INACTIVE", "ACTIVE"])
 async def test_a_node_is_brought_to_its_target(graph: Graph, target: str) -> None:
-    """Before it counts as started; each state that it rests in is told."""
+    """Before it counts as started; each primary state is reported."""
     node = Worker()
     core, told = managed(node), []
     core.target = LifecycleState[target]
@@ -51,7 +51,7 @@ async def test_a_node_is_brought_to_its_target(graph: Graph, target: str) -> Non
 
 
 async def test_a_node_that_does_not_reach_its_target(graph: Graph) -> None:
-    """It does not start, and nothing of it is left."""
+    """It does not start, and no resources stay open."""
     node = Worker()
     node.refuses = True
     managed(node).target = LifecycleState.ACTIVE

@@ -10,7 +10,7 @@ from graphflow.testing import Graph
 
 
 class Listener(Node):
-    """Registers what it has declared."""
+    """Register its declared handler again."""
 
     def __init__(self) -> None:
         super().__init__("listener")
@@ -31,7 +31,7 @@ class Listener(Node):
 
 
 async def test_both_ways_at_once(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Are told with both lines; for another topic, or with another period, a handler may be registered."""
+    """The warning has both lines; a handler may be registered for another topic or period."""
     node = Listener()
     first, heard = Listener.__init__.__code__.co_firstlineno + 2, Listener.heard.__code__.co_firstlineno
     text = "already registers it; remove one of the two"

@@ -13,7 +13,7 @@ Caplog = pytest.LogCaptureFixture
 
 
 class Counts:
-    """What a subscription has received, and what was told of it."""
+    """The received messages of a subscription, and the warnings."""
 
     def __init__(self, clock: ManualClock) -> None:
         self.clock, self.received = clock, 0
@@ -26,7 +26,7 @@ class Counts:
 
 
 async def test_two_fast_seconds_in_a_row(graph: Graph) -> None:
-    """Are told once; a burst is none."""
+    """They are reported once; a burst is not."""
     counts = Counts(graph.clock)
     counts.echo.follow(is_alone=True)
     for messages in (LOOP, LOOP - 1, LOOP):
@@ -65,7 +65,7 @@ async def test_what_came_while_another_published(graph: Graph) -> None:
 
 
 class Looping(Node):
-    """Publishes what it hears, as long as it may."""
+    """Publish each received message."""
 
     number = Publisher(Int32, "number")
     left = 0

@@ -1,4 +1,4 @@
-"""What other threads may do with a node."""
+"""Calls of other threads to a node."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.runtime.cast import Talker
 
 
 async def in_a_thread(fn: Callable[[], object]) -> object:
-    """What a function returns that is called in a thread which graphflow knows nothing of."""
+    """Return the result of a function called in a thread unknown to graphflow."""
     with ThreadPoolExecutor(1, "vendor") as pool:
         return await asyncio.wrap_future(pool.submit(fn))
 
@@ -71,7 +71,7 @@ async def test_any_thread_may_ask_the_loop(graph: Graph) -> None:
 
 
 async def test_an_error_in_what_a_thread_asks_for_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Nobody else would hear of it; and it is no end of the node."""
+    """It is logged, and does not end the node."""
     node = Talker()
     await graph.start(node)
     await in_a_thread(lambda: node.call_soon(divmod, 1, 0))
@@ -113,7 +113,7 @@ WAY = (
 
 @pytest.mark.skipif(is_portable(), reason="asyncio's own loop does not look")
 def test_what_a_thread_does_to_the_loop(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    """Is told once with its line and the way, whether asyncio's code is between or not."""
+    """It is reported once with its line and the correction, with or without asyncio code between."""
     monkeypatch.setenv(LOOP_VARIABLE, "asyncio")
 
     async def main() -> None:

@@ -12,7 +12,7 @@ from graphflow.testing import Graph
 
 
 class Control(Node):
-    """Ten times a second, so it says."""
+    """A timer of 10 Hz whose runs take longer."""
 
     def __init__(self, *takes: float, **params: Any) -> None:
         super().__init__(**params)
@@ -28,7 +28,7 @@ def told(caplog: pytest.LogCaptureFixture) -> list[str]:
 
 
 async def test_runs_that_outlast_the_period(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Are told once with their line, and known as long as it is so."""
+    """They are reported once with their line, and listed while they continue."""
     node = Control(*[0.95] * 6, 0.01)
     await graph.start(node)
     await graph.clock.advance(2.5)

@@ -1,4 +1,4 @@
-"""rclpy's words: told to who uses them, and the page made of the same table."""
+"""rclpy's names: hints in errors, and the page with the same table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node makes again and again."""
+"""Parts that a node creates repeatedly."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from graphflow.testing import Graph
 
 
 class Forgetful(Node):
-    """Makes a publisher, and a client of nothing, in each run of a timer."""
+    """Create a publisher and a client in each run of a timer."""
 
     closes = False
 
@@ -44,7 +44,7 @@ async def test_it_is_told_with_the_line(graph: Graph, caplog: pytest.LogCaptureF
 
 
 async def test_what_is_closed_or_made_before_the_start(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Is not told: a loop in `__init__` comes to an end."""
+    """There is no warning: a loop in `__init__` ends."""
     node = Forgetful()
     node.closes = True
     for _ in range(20):
@@ -64,7 +64,7 @@ class Busy(Node):
 
 
 async def test_what_is_not_alike(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Is not told, and what is closed is forgotten: names may be new each time."""
+    """There is no warning, and closed parts are forgotten: names may be new each time."""
     node = Busy()
     await graph.start(node)
     node.spawn(node.many)
@@ -86,7 +86,7 @@ class Made:
 def test_what_the_program_has_not_made(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, is_inner: bool
 ) -> None:
-    """Parts of parts, and what rclpy makes in a thread of its own, are not told."""
+    """Parts of parts, and those that rclpy creates in its own thread, cause no warning."""
     made = repeats.Repeats(core_of(Node("n")))
     if not is_inner:
         monkeypatch.setattr(repeats, "_place", lambda: None)
@@ -100,7 +100,7 @@ def twice(caplog: pytest.LogCaptureFixture) -> list[str]:
 
 
 async def test_what_is_made_twice_by_right(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Other topics, other handlers, other periods, what was closed, and what is iterated."""
+    """Other topics, handlers and periods, closed parts, and iterated subscriptions are legal."""
     node = Node("ear")
     await graph.start(node)
 

@@ -24,7 +24,7 @@ from graphflow.testing import Graph
     ],
 )
 async def test_what_waits_for_it_is_told(graph: Graph, caplog: pytest.LogCaptureFixture, hook: str, then: str) -> None:
-    """Handlers wait for hooks that begin something, and nothing but other transitions for the rest."""
+    """The warning names the consequences: handlers wait for some hooks, only transitions for others."""
     node = Node("n")
     await graph.start(node)
     when_slow(core_of(node), hook)
@@ -48,7 +48,7 @@ async def test_a_hook_that_has_returned(graph: Graph, caplog: pytest.LogCaptureF
 
 
 def test_an_init_that_does_not_return(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told with the line where it is; one that has returned is not."""
+    """The warning has the current line; an `__init__` that has returned causes none."""
     monkeypatch.setattr(slow_hooks, "SLOW_INIT", 0.01)
     told, texts = threading.Event(), list[str]()
 

@@ -1,4 +1,4 @@
-"""A forgotten `await` is told once, with its line."""
+"""A forgotten `await` is reported once, with its line."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def watched() -> Iterator[None]:
 
 
 def test_the_line_that_lacks_it(caplog: pytest.LogCaptureFixture) -> None:
-    """Where nobody keeps the coroutine; however often it happens."""
+    """If the coroutine is not stored; once, however often it happens."""
     for _ in range(3):
         forgets()
     line = inspect.getsourcelines(forgets)[1] + 1
@@ -58,7 +58,7 @@ def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
 
 
 def test_a_coroutine_that_ends_where_no_python_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As at the end of Python, or of a foreign thread: there is no line to tell, and no error about that."""
+    """As at interpreter exit or in a foreign thread: there is no line, and no error about that."""
     told: Queue[str] = Queue()
     monkeypatch.setattr(unawaited.logger, "error", lambda text, *args: told.put(text % args))
     coroutine = go()

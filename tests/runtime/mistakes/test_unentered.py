@@ -20,7 +20,7 @@ class Asker(Node):
 
 
 async def test_a_forgotten_async_with(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Is told with its line, of nodes and of goals."""
+    """It is reported with its line, for nodes and goals."""
     running(Asker())
     node = Asker()
     await graph.start(node)

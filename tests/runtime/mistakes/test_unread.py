@@ -1,4 +1,4 @@
-"""Words of a command line that nothing reads."""
+"""Unused arguments of a command line."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
 )
 @pytest.mark.parametrize("is_own_program", [True, False])
 def test_words_that_nothing_reads(talk: Make, words: list[str], told: str, is_own_program: bool) -> None:
-    """Are told, with the parameter that is meant."""
+    """They are reported, with the parameter that seems meant."""
     cls = talk(PLAIN)
     assert unread(words, [cls], is_own_program=is_own_program) == told
 
@@ -100,7 +100,7 @@ def test_an_installed_program(talk: Make, monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_program_without_a_file(talk: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As of `python -c` cannot be looked at, and may read them."""
+    """`python -c` has no file to check, and may read its arguments."""
     cls = talk(PLAIN)
     monkeypatch.delattr(sys.modules["__main__"], "__file__")
     assert unread(["--rate"], [cls], is_own_program=True) == ""

@@ -1,4 +1,4 @@
-"""Programs that define a node and run nothing."""
+"""Programs that define a node and do not run it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TALK = "from graphflow import Node\n\nclass Talk(Node):\n    pass\n"
     ],
 )
 def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
-    """It is told how to run what it defines, unless it made a node or has words that run one."""
+    """The remark explains how to run it, unless the program made a node or contains a call that runs one."""
     (tmp_path / "talk.py").write_text(TALK + more)
     done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
     told = "talk.py defines Talk, but runs nothing: graphflow run talk.py, or as its last line: graphflow.run(Talk)\n"
@@ -34,7 +34,7 @@ def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
 
 @pytest.mark.parametrize("made", ["class Talk(Node): ...", "from talks import Talk"])
 def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:
-    """It is told so, wherever its nodes are from."""
+    """It gets the remark, wherever its nodes come from."""
     (tmp_path / "talks.py").write_text(TALK)
     (tmp_path / "talk.py").write_text(
         f"import graphflow\nfrom graphflow import Node\n\n{made}\n\ndef main():\n    graphflow.run(Talk)\n"
@@ -46,14 +46,14 @@ def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:
 
 
 def test_an_error_is_enough(tmp_path: Path) -> None:
-    """A program that failed has said why it ran nothing."""
+    """A program that failed gets no remark."""
     (tmp_path / "talk.py").write_text(f"{TALK}1 / 0\n")
     done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
     assert done.stderr.endswith("ZeroDivisionError: division by zero\n")
 
 
 def test_advice(tmp_path: Path) -> None:
-    """Of several classes one has to be named; a file that is gone says nothing."""
+    """With several classes, the command must name one; a missing file gets no remark."""
     file = tmp_path / "talk.py"
     assert advice(file, ["A"]) == ""
     file.write_text(TALK)

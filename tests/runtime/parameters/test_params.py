@@ -26,7 +26,7 @@ FIXED = parameter("fixed", "bool", True, read_only=True)
 
 
 def test_a_default_holds_until_something_is_set() -> None:
-    """And the source says which it is."""
+    """`source` gives the origin."""
     made = parameters(RATE)
     assert (made.get("rate"), made.source("rate")) == (1.0, "default")
 
@@ -47,7 +47,7 @@ def test_read_only() -> None:
 
 
 def test_all_or_none() -> None:
-    """One that does not fit keeps the others from changing, and nobody is told."""
+    """If one value does not fit, the others stay unchanged, and observers are not called."""
     made = parameters(RATE, COUNT, FIXED)
     told: list[Any] = []
     made.observe(told.append)
@@ -62,7 +62,7 @@ def test_all_or_none() -> None:
 
 
 def test_a_check_can_refuse() -> None:
-    """What it raises refuses all the changes before any is made; it sees the values as they would be."""
+    """Its error refuses all changes before any is made; it receives the prospective values."""
     made = parameters(RATE, COUNT)
     seen: list[dict[str, Any]] = []
 
@@ -108,7 +108,7 @@ def test_an_override_takes_the_place_of_the_default() -> None:
 
 
 def test_a_wrong_override_names_its_place() -> None:
-    """Whoever wrote it can go there."""
+    """The error has its file and line."""
     with pytest.raises(ParameterError) as caught:
         parameters(RATE, rate=0)
     assert str(caught.value) == (
@@ -117,7 +117,7 @@ def test_a_wrong_override_names_its_place() -> None:
 
 
 def test_unused_overrides() -> None:
-    """A misspelt override is said, with its place and the nearest name."""
+    """A misspelt override is reported with its place and the nearest name."""
     made = parameters(RATE, TITLE, rat=5, title="x")
 
     assert made.unused_overrides() == ["there is no parameter 'rat' (from graph.yaml:3); did you mean 'rate'?"]

@@ -107,7 +107,7 @@ async def test_the_services_are_there(graph: Graph) -> None:
 
 
 async def test_get_parameters(graph: Graph) -> None:
-    """Values in the order asked for; an unknown name is not set, and does not spoil the others."""
+    """Values in the order requested; an unknown name is "not set" and does not affect the others."""
     await graph.start(Robot())
     request = GetParameters.Request(names=["count", "nothing", "rate", "title", "fixed", "gains"])
 
@@ -165,7 +165,7 @@ async def test_set_parameters_one_by_one(graph: Graph) -> None:
 
 
 async def test_set_parameters_atomically(graph: Graph) -> None:
-    """All or nothing."""
+    """All or none."""
     node = Robot()
     await graph.start(node)
     name = "/robot/set_parameters_atomically"
@@ -204,7 +204,7 @@ ALL += ["title", "use_sim_time"]
 async def test_list_parameters(
     graph: Graph, prefixes: list[str], depth: int, names: list[str], found: list[str]
 ) -> None:
-    """Names under any of the prefixes and not deeper below it than asked for, 0 for any depth."""
+    """Names below any of the prefixes, at most `depth` levels deep; 0 for any depth."""
     await graph.start(Robot())
     request = ListParameters.Request(prefixes=prefixes, depth=depth)
 
@@ -215,7 +215,7 @@ async def test_list_parameters(
 
 
 async def test_describe_parameters(graph: Graph) -> None:
-    """Descriptions in the order asked for; an unknown name has one without type."""
+    """Descriptors in the order requested; an unknown name has one without a type."""
     await graph.start(Robot())
     request = DescribeParameters.Request(names=["count", "nothing", "rate"])
 
@@ -228,7 +228,7 @@ async def test_describe_parameters(graph: Graph) -> None:
 
 
 async def test_an_observer_that_fails(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Whoever set the parameter hears of it; the node goes on."""
+    """The caller that set the parameter gets the error; the node keeps running."""
     node = Robot()
 
     def fail(changes: object) -> None:
@@ -275,7 +275,7 @@ async def test_only_dynamic_parameters_can_be_deleted(graph: Graph) -> None:
 
 
 async def test_changes_are_published(graph: Graph) -> None:
-    """What is new, changed and deleted, with stamp and node; all parameters as new when the node starts."""
+    """New, changed and deleted ones, with stamp and node; at the start, all parameters count as new."""
     events = graph.tap(ParameterEvent, "/parameter_events")
     await graph.settle()
     node = Robot(namespace="/a")

@@ -67,7 +67,7 @@ def test_a_node_that_was_not_made() -> None:
 
 @pytest.mark.parametrize("message", [String(), Image()])
 def test_fields(message: Any) -> None:
-    """Those that there are; the text stays the error's when it is pickled or raised anew."""
+    """The suggestions are existing fields; the text survives pickling and another `raise`."""
     with pytest.raises(AttributeError) as caught:
         _ = message.dat
     assert str(caught.value) == f"'{type(message).__name__}' object has no attribute 'dat'"
@@ -102,7 +102,7 @@ def test_the_texts_of_other_classes_are_not_asked_for() -> None:
 
 
 def test_errors_of_others() -> None:
-    """Are left as they are, those of Python's own objects, and those that say something else."""
+    """Errors of Python's own objects, and those with other texts, stay unchanged."""
     for error in (
         AttributeError("other words", name="get_logger", obj=NODE),
         AttributeError("'str' object has no attribute 'dat'", name="dat", obj="x"),
@@ -114,7 +114,7 @@ def test_errors_of_others() -> None:
 
 
 def test_fields_that_are_set() -> None:
-    """By a line that names the message; of others nothing is known."""
+    """The line must name the message; other objects get no hint."""
     response: Any = AddTwoInts.Response()
     holder = SimpleNamespace(image=Image())
 

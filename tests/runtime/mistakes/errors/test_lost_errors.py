@@ -1,4 +1,4 @@
-"""Errors that nobody awaits."""
+"""Errors of tasks that are never awaited."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ async def fail(error: Exception) -> None:
 
 
 async def lose(error: Exception, times: int = 1) -> None:
-    """Start tasks that fail and that nobody awaits."""
+    """Start tasks that fail and are never awaited."""
     for _ in range(times):
         task = asyncio.create_task(fail(error))
         await asyncio.wait([task])
@@ -27,7 +27,7 @@ async def lose(error: Exception, times: int = 1) -> None:
 
 
 async def test_they_are_told(graphflow_runner: asyncio.Runner, caplog: pytest.LogCaptureFixture) -> None:
-    """In the format of the log with the name of what failed, at the first, the tenth and the hundredth time."""
+    """In the log's format with the task's name, the first, tenth and hundredth time."""
     loop = asyncio.get_running_loop()
     log_lost_errors(loop)
     try:

@@ -1,4 +1,4 @@
-"""What is remarked on errors of Python's own; the table of `docs/mistakes.md` shows them as they are told."""
+"""Advice on Python's own errors; `docs/mistakes.md` has the complete texts."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ EXPRESSION = "object {} can't be used in 'await' expression"
 def test_the_line_and_the_words_of_several_versions(
     monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str
 ) -> None:
-    """Python 3.14 says some of it differently."""
+    """Python 3.14 words some errors differently."""
     monkeypatch.setattr(linecache, "getline", lambda *_: line)
 
     def use() -> None:
@@ -127,7 +127,7 @@ def test_the_line_and_the_words_of_several_versions(
     ],
 )
 def test_arrays(use: Any, remark: str) -> None:
-    """What numpy refuses, in terms of messages."""
+    """numpy's errors, in terms of messages."""
     assert remark in remark_on(caught(use))
 
 
@@ -153,5 +153,5 @@ def test_a_period_from_a_parameter() -> None:
     ],
 )
 def test_other_errors(use: Any) -> None:
-    """Nothing is said of what has nothing to do with a node."""
+    """Errors unrelated to nodes get no advice."""
     assert remark_on(caught(use)) == ""

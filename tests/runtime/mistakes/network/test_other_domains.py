@@ -35,7 +35,7 @@ async def test_an_error_says_so(name: str, way: str, graph: Graph, monkeypatch: 
 
 
 async def test_an_error_where_it_is_not_alone(graph: Graph) -> None:
-    """Says nothing of other domains."""
+    """It does not mention other domains."""
     node = Node("n")
     adder = node.create_client(AddTwoInts, "add")
     await graph.start(node, Node("other"))

@@ -23,7 +23,7 @@ def told(caplog: Caplog) -> list[str]:
 
 
 async def test_two_nodes_of_one_process(graph: Graph, caplog: Caplog) -> None:
-    """Are told of once, however many follow."""
+    """They are reported once, however many follow."""
     context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
     nodes = [Node(name) for name in ("twin", "twin", "other", "_hidden", "_hidden", "twin")]
     for node in nodes:
@@ -51,7 +51,7 @@ async def run_two(graph: Graph) -> None:
 
 
 async def test_two_nodes_of_two_processes(graph: Graph, caplog: Caplog) -> None:
-    """Are told of by both, with the other's process where its token says which."""
+    """Both report it, with the other's process if its token is known."""
     await run_two(graph)
     first, second = sorted(told(caplog))
     assert first.startswith(f"another node is called /twin, in process {os.getpid()} (")
@@ -73,7 +73,7 @@ async def test_a_node_that_is_restarted(graph: Graph, caplog: Caplog) -> None:
 
 
 async def test_too_many_processes(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only so many are remembered; of others the session is told."""
+    """The number of tracked processes is limited; others are reported by session."""
     monkeypatch.setattr(same_names, "PROCESSES_BOUND", 0)
     await run_two(graph)
     assert [" in session " in text for text in told(caplog)] == [True, True]
@@ -92,7 +92,7 @@ class Goer(Node):
 
 
 async def test_services_of_two_nodes(graph: Graph, caplog: Caplog) -> None:
-    """Are told of together and once by each, unless one of the nodes is just leaving."""
+    """Both report them once and together, unless one of the nodes is just leaving."""
     first = Goer("first")
     await graph.start(first)
     await graph.start(Goer("second"))
@@ -113,7 +113,7 @@ async def test_services_of_two_nodes(graph: Graph, caplog: Caplog) -> None:
 
 
 async def test_many_nodes_of_one_service(graph: Graph, caplog: Caplog) -> None:
-    """Are told of once, and not all by name: others can make as many as they like."""
+    """They are reported once, without naming all: other processes may create any number."""
     await graph.start(Goer("first"))
     for number in range(6):
         await graph.start(Goer(f"other{number}"))
@@ -130,7 +130,7 @@ async def test_many_nodes_of_one_service(graph: Graph, caplog: Caplog) -> None:
 
 
 async def test_a_process_that_ends(graph: Graph, caplog: Caplog) -> None:
-    """Tells nothing more: it does not see the other leave."""
+    """It stops reporting, since it does not see the other leave."""
     await graph.start(Goer("twin"))
     elsewhere = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
     nodes = [Goer("twin"), Goer("second")]

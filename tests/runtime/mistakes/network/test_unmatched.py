@@ -1,4 +1,4 @@
-"""Topics and services with nobody at the other end, since a name or the domain is wrong."""
+"""Topics and services without a counterpart because of a wrong name or domain."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ async def test_it_is_told_once_by_both(classes: tuple[Callable[[], Node], ...], 
 
 
 async def test_a_listener_that_comes_in_time(graph: Graph, caplog: Caplog) -> None:
-    """Nothing is told, also when it has left again."""
+    """There is no warning, even after it has left again."""
     await graph.start(Turtle(), Circle())
     await graph.clock.advance(TELL_AFTER - 0.1)
     base, teleop = Node("base"), Node("teleop")
@@ -88,7 +88,7 @@ async def test_topics_that_may_have_no_listener(graph: Graph, caplog: Caplog) ->
 
 
 async def test_a_publisher_that_was_closed(graph: Graph, caplog: Caplog) -> None:
-    """Is not told of; one that is opened again and again is told of once."""
+    """It is not reported; one that is opened repeatedly is reported once."""
     node = Node("n")
     await graph.start(Turtle(), node)
     for seconds in (1.0, TELL_AFTER, TELL_AFTER):
@@ -100,7 +100,7 @@ async def test_a_publisher_that_was_closed(graph: Graph, caplog: Caplog) -> None
 
 
 async def test_many_at_once(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Are looked at in turns, and each is told of."""
+    """They are checked in batches, and each is reported."""
     names = [f"/cmd_v{letter}" for letter in "abcdfghijkmnopq"]
     assert len(names) > AT_ONCE
     node = Node("n")
@@ -125,7 +125,7 @@ async def test_many_at_once(graph: Graph, caplog: Caplog, monkeypatch: pytest.Mo
 
 
 async def test_a_loop_that_was_blocked(graph: Graph, caplog: Caplog) -> None:
-    """Hears first who has come meanwhile."""
+    """It first processes the tokens that arrived during the block."""
     await graph.start(Turtle(), Circle())
     graph.clock._elapsed_ns += int((TELL_AFTER + 2 * LATE) * 1e9)
     await graph.clock.advance(0.0)
@@ -135,7 +135,7 @@ async def test_a_loop_that_was_blocked(graph: Graph, caplog: Caplog) -> None:
 
 
 async def test_a_process_that_ends(graph: Graph, caplog: Caplog) -> None:
-    """Tells nothing more, of what it has opened and of what it opens yet."""
+    """It stops reporting, for existing and new endpoints."""
     await graph.start(Turtle())
     context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
     circle = Circle()
@@ -164,7 +164,7 @@ def open_action_client(node: Node) -> None:
 async def test_another_domain(
     opened: Callable[[Node], None], graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Is told of once, where nothing else is in this one."""
+    """It is reported once, if the node is alone in its domain."""
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", "0")
     node = Node("n")
     opened(node)

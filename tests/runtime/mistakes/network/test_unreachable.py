@@ -18,7 +18,7 @@ from tests.runtime.cast import Asker, client_of
 
 
 def announce(session: Session, name: str, type_name: str, hash_: str) -> None:
-    """A server beyond a link: its token passes, and nothing else."""
+    """Announce a server beyond a link: only its token passes."""
     entity = Entity(0, "far", 0, 1, Kind.SERVICE, "/", "far", name, type_name, hash_)
     session.announce(entity.token)
 
@@ -60,7 +60,7 @@ async def test_another_definition(graph: Graph) -> None:
 
 
 async def test_an_action(graph: Graph) -> None:
-    """The service that takes its goals tells."""
+    """The reason is send_goal's."""
     asker = Asker()
     await graph.start(asker)
     type_name = f"{Fibonacci.NAME}_SendGoal"

@@ -1,4 +1,4 @@
-"""Waits for servers that nobody offers."""
+"""Waits for servers that no node offers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def told(caplog: pytest.LogCaptureFixture) -> list[str]:
 
 
 async def test_they_are_told_with_the_nearest_name(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Once for each client, also where a loop waits again and again; an action is told as one."""
+    """Once per client, even for repeated waits; an action counts as one."""
     await graph.start(Adder(), Server(), Waiting())
     await graph.clock.advance(2.9)
     assert told(caplog) == []
@@ -49,7 +49,7 @@ async def test_they_are_told_with_the_nearest_name(graph: Graph, caplog: pytest.
 
 
 async def test_a_server_that_comes_in_time(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Nothing is told, and a wait for its successor begins anew."""
+    """There is no warning, and a wait for its successor starts again."""
     node = Node("n")
     client = node.create_client(AddTwoInts, "add")
     await graph.start(node)
@@ -67,7 +67,7 @@ async def test_a_server_that_comes_in_time(graph: Graph, caplog: pytest.LogCaptu
 
 
 async def test_a_program_that_does_without(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Asks now and then, or takes the error of a call: nothing is told."""
+    """A program that polls, or handles a call's error, gets no warning."""
     node = Node("n")
     asked, called = node.create_client(AddTwoInts, "add"), node.create_client(AddTwoInts, "sum")
 
@@ -89,7 +89,7 @@ async def test_a_program_that_does_without(graph: Graph, caplog: pytest.LogCaptu
 
 
 async def test_the_node_of_a_command(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Tells nothing: the command does."""
+    """There is no warning: the command reports it."""
     node = Node("_hidden")
     client = node.create_client(AddTwoInts, "add")
     await graph.start(node)
@@ -99,7 +99,7 @@ async def test_the_node_of_a_command(graph: Graph, caplog: pytest.LogCaptureFixt
 
 
 async def test_several_waits_of_one_client(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """They are told once, however long it takes to find out what there is instead."""
+    """They are reported once, however long the report takes."""
     node = Node("n")
     client = node.create_client(AddTwoInts, "add")
     await graph.start(node)

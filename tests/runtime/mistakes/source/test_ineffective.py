@@ -1,4 +1,4 @@
-"""Lines that compare or compute, and do nothing with it."""
+"""Statements without effect."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
     ],
 )
 def test_lines_without_an_effect(line: str, told: str) -> None:
-    """Each is told with what to write, in methods and functions."""
+    """Each is reported with its correction, in methods and functions."""
     source = ast.parse(f"class A:\n  def tick(self):\n    {line}\n")
     assert [text for _, text in ineffective(source)] == [told]
 

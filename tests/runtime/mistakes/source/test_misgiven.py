@@ -45,7 +45,7 @@ def told(body: str) -> list[str]:
     ],
 )
 def test_lambdas_that_call_nothing(body: str, text: str) -> None:
-    """Are told where something calls them later; what they give back may be the answer of a service."""
+    """They are reported when passed as callbacks; a service's callback may return the response."""
     assert told(body) == ([text] if text else [])
 
 
@@ -84,7 +84,7 @@ def test_lambdas_that_call_nothing(body: str, text: str) -> None:
     ],
 )
 def test_callbacks_of_a_loop(body: str, text: str) -> None:
-    """Are told with the way that keeps the value; not where they are over before the loop goes on."""
+    """They are reported with a correction, except if they cannot outlive their iteration."""
     assert told(body) == ([text] if text else [])
 
 
@@ -110,6 +110,6 @@ def test_the_line() -> None:
     ],
 )
 def test_coroutines_in_threads(body: str, way: str) -> None:
-    """Are told with what runs them."""
+    """They are reported with the function that runs them."""
     text = f"work is an `async def`, which a thread cannot run; write {way}"
     assert told(body) == ([text] if way else [])

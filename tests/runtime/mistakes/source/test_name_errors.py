@@ -25,7 +25,7 @@ PARENT = "a class body does not see its parent's names: write {}.motion"
 
 
 def remark(tmp_path: Path, more: str) -> str:
-    """What is told of the NameError of a module with these lines."""
+    """Return the advice on the NameError of a module with these lines."""
     file = tmp_path / "names_module.py"
     file.write_text(HEAD + more)
     spec = importlib.util.spec_from_file_location("names_module", file)
@@ -56,6 +56,6 @@ TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
     ],
 )
 def test_names_of_classes(tmp_path: Path, more: str, told: str) -> None:
-    """Are told with their class, or with self; others are not."""
+    """The advice has their class, or self."""
     found = remark(tmp_path, more)
     assert found.endswith(told) if told else found == ""

@@ -81,7 +81,7 @@ def robot(tmp_path: Path) -> Iterator[Callable[[str], type[Node]]]:
     ],
 )
 def test_a_handler_that_is_lost(robot: Callable[[str], type[Node]], body: str, told: str) -> None:
-    """Is told with the line of the child's method and that of the parent's."""
+    """The report has the lines of both methods."""
     [text] = slips(robot(body))  # type: ignore[arg-type] # a class can be hashed
     assert text.partition("overridden_module.py:24: ")[2] == f"{told}; {LAST}"
 

@@ -1,4 +1,4 @@
-"""Names that a class gives twice: told where the second is, since the other would be gone without a word."""
+"""Names that a class binds twice are reported at the second binding."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], 
     ],
 )
 def test_names_that_stand_for_two_things(written: Callable[[str], Any], body: str, told: str) -> None:
-    """In the body, in either order, and where a method assigns to what the class declares."""
+    """In the body, in either order, and where a method assigns to a declaration."""
     with pytest.raises(DeclarationError) as caught:
         written(body).interface()
     assert told in str(caught.value)
@@ -84,7 +84,7 @@ def test_names_that_stand_for_two_things(written: Callable[[str], Any], body: st
     ],
 )
 def test_names_that_do_not(written: Callable[[str], Any], body: str) -> None:
-    """Annotations, properties, plain values, parameters, and what is done to another object are nobody's loss."""
+    """Annotations, properties, plain values, parameters and assignments to other objects are legal."""
     assert written(body).interface()
 
 

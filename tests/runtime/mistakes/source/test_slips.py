@@ -126,7 +126,7 @@ def test_what_is_no_slip(robot: object, body: str) -> None:
 
 @pytest.mark.parametrize("name", ["name", "context", "clock", "group"])
 def test_what_every_node_has_cannot_be_set(robot: object, name: str) -> None:
-    """The line is told before a node is made."""
+    """The line is reported before a node is made."""
     cls = robot(f"def work(self):\n    self.{name} = 'bob'")  # type: ignore[operator]
     with pytest.raises(
         DeclarationError, match=rf"slip_module\.py:12: every node has self\.{name}, which cannot be set"
@@ -171,7 +171,7 @@ def test_an_attribute_that_another_module_of_the_project_reads(robot: object, tm
 
 
 def test_nothing_of_the_users_runs(robot: object) -> None:
-    """Names are looked up without a property being asked."""
+    """Names are resolved without evaluating properties."""
     cls = robot(
         "def work(self):\n    data = port.inbox.read()\n    data.x = 1\n"
         "def heard(self, message: 'port.Type') -> None: ..."

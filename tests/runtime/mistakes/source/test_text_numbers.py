@@ -41,7 +41,7 @@ GAIN = "self.gain is the string '5.0': write gain = Param(5.0)"
     ],
 )
 def test_a_line_that_calculates(line: str, told: str) -> None:
-    """It is told what to write where a text of the node's is a number."""
+    """The hint is for an attribute that is a string with a number."""
     space: dict[str, Any] = {"math": math}
     source = f"def work(self):\n    {line}\n"
     file = "/tmp/text_numbers_robot.py"
