@@ -28,7 +28,7 @@ async def begin(run: Activity) -> None:
 
 
 async def outcome(body: Callable[[], Coroutine[Any, Any, Any]]) -> Any:
-    """What an activity returns, or raises, whose coroutine is the body's."""
+    """Return the result of an activity that runs the body's coroutine, or raise its error."""
     loop = asyncio.get_running_loop()
     end = loop.create_future()
 
@@ -62,7 +62,7 @@ async def test_current_task_is_the_activity(graphflow_runner: asyncio.Runner) ->
 
 
 async def test_what_a_task_tells_of_itself(graphflow_runner: asyncio.Runner) -> None:
-    """An activity has the name, loop, coroutine and context that a task would have, and says when it is done."""
+    """An activity has a task's name, loop, coroutine and context, and reports its end."""
     coroutine = asyncio.sleep(0)
     context = copy_context()
     loop = asyncio.get_running_loop()
@@ -82,7 +82,7 @@ async def test_what_a_task_tells_of_itself(graphflow_runner: asyncio.Runner) -> 
 
 
 async def test_its_own_context(graphflow_runner: asyncio.Runner) -> None:
-    """What an activity sets it sees at every step, and nobody else does; without a context it begins with a copy."""
+    """An activity keeps its context variables from step to step and does not leak them; by default it gets a copy."""
     variable: ContextVar[str] = ContextVar("variable", default="nothing")
     variable.set("the caller's")
     seen: list[str] = []
@@ -118,7 +118,7 @@ async def test_a_timeout_that_expires(graphflow_runner: asyncio.Runner) -> None:
 
 
 async def test_a_timeout_that_does_not_expire(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.timeout` around what is quick enough changes nothing."""
+    """`asyncio.timeout` around fast code has no effect."""
 
     async def body() -> str:
         async with asyncio.timeout(3600) as scope:
@@ -201,7 +201,7 @@ async def test_a_child_error_cancels_the_group(graphflow_runner: asyncio.Runner,
 
 
 async def test_wait_for(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.wait_for` gives the result, or TimeoutError after cancelling what it waited for."""
+    """`asyncio.wait_for` returns the result, or raises TimeoutError after cancelling the awaitable."""
     cleaned: list[str] = []
 
     async def never() -> None:
@@ -223,7 +223,7 @@ async def test_wait_for(graphflow_runner: asyncio.Runner) -> None:
 
 
 async def test_gather(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.gather` gives results in order, and errors as results if asked to."""
+    """`asyncio.gather` returns results in order, and errors as results on request."""
 
     async def wrong() -> None:
         raise ValueError("wrong")
@@ -236,7 +236,7 @@ async def test_gather(graphflow_runner: asyncio.Runner) -> None:
 
 
 async def test_shield(graphflow_runner: asyncio.Runner) -> None:
-    """A cancelled activity leaves what it shielded alone."""
+    """Cancelling an activity does not cancel an awaitable that it shields."""
     gate = asyncio.Event()
     inner: list[asyncio.Task[str]] = []
 
@@ -311,7 +311,7 @@ async def test_awaiting_what_belongs_to_another_loop(graphflow_runner: asyncio.R
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, SystemExit])
 def test_an_error_that_ends_the_program(error: type[BaseException]) -> None:
-    """It ends the activity, and goes on to whoever runs the loop."""
+    """It ends the activity and propagates to the caller of the loop."""
     ended: list[BaseException | None] = []
 
     async def body() -> None:
@@ -385,7 +385,7 @@ async def test_cancelled_at_each_of_its_awaits(graphflow_runner: asyncio.Runner)
 
 
 async def test_what_is_said_of_cancellations(graphflow_runner: asyncio.Runner) -> None:
-    """Each that was asked for counts, until it is taken back or the activity has ended."""
+    """Each request counts until it is withdrawn or the activity has ended."""
 
     async def body() -> None:
         try:

@@ -60,7 +60,7 @@ async def test_every_counts_once_a_period(graphflow_runner: asyncio.Runner) -> N
 
 
 async def test_every_skips_and_keeps_phase(graphflow_runner: asyncio.Runner) -> None:
-    """Turns missed in a slow body are left out, and the numbers say which."""
+    """Ticks missed in a slow body are skipped, and the numbers reveal it."""
     clock = ManualClock()
     turns: list[tuple[int, int]] = []
 
@@ -94,7 +94,7 @@ async def test_a_body_as_long_as_a_period_misses_no_turn(graphflow_runner: async
 
 
 async def test_a_timeout_by_the_clock(graphflow_runner: asyncio.Runner) -> None:
-    """The block is cancelled when the clock says so, and TimeoutError comes out of it."""
+    """The block is cancelled at the clock's time, and raises TimeoutError."""
     clock = ManualClock()
     log: list[str] = []
 
@@ -118,7 +118,7 @@ async def test_a_timeout_by_the_clock(graphflow_runner: asyncio.Runner) -> None:
 
 
 async def test_a_timeout_that_is_not_needed(graphflow_runner: asyncio.Runner) -> None:
-    """What ends in time is left alone, also later."""
+    """A block that ends in time is never cancelled."""
     clock = ManualClock()
     async with clock.timeout(1.0):
         await asyncio.sleep(0)
@@ -167,7 +167,7 @@ def test_a_period_or_a_rate(period: float | None, hz: float | None, expected: in
     ],
 )
 def test_what_is_no_period(period: float | None, hz: float | None, text: str) -> None:
-    """The error says what was given and what is wanted."""
+    """The error has the value and the requirement."""
     with pytest.raises(ValueError) as caught:
         period_ns(period, hz)
     assert str(caught.value) == text
@@ -192,7 +192,7 @@ async def test_the_wall_clock_is_the_systems(graphflow_runner: asyncio.Runner) -
 
 
 def test_a_clock_must_say_what_time_it_is() -> None:
-    """The base class tells no time: who forgets one of the three cannot be made."""
+    """The base class is abstract in all three methods."""
     with pytest.raises(TypeError, match=r"call_at.*monotonic_ns.*time_ns"):
         Clock()  # type: ignore[abstract]
 

@@ -30,7 +30,7 @@ def error() -> Exception:
 
 
 async def test_each_ends_at_its_own_time(graphflow_runner: asyncio.Runner) -> None:
-    """Whatever the order in which they were added; what is done or forgotten stays as it is."""
+    """In any order of addition; done and discarded futures are left alone."""
     clock = CountingClock()
     deadlines = Deadlines(clock)
     futures: dict[int, Future[None]] = {s: asyncio.get_running_loop().create_future() for s in (3, 1, 2, 4, 5)}
@@ -48,7 +48,7 @@ async def test_each_ends_at_its_own_time(graphflow_runner: asyncio.Runner) -> No
 
 
 async def test_no_alarm_without_futures(graphflow_runner: asyncio.Runner) -> None:
-    """So that nothing wakes the loop later."""
+    """The loop is not woken later."""
     clock = CountingClock()
     deadlines = Deadlines(clock)
     futures: list[Future[None]] = [asyncio.get_running_loop().create_future() for _ in range(3)]

@@ -30,14 +30,14 @@ class Waits:
         self.slots.append(group)
 
     def yields(self) -> None:
-        """It has nothing to drop."""
+        """Do nothing."""
 
     def wake(self) -> None:
-        """It has nothing to run."""
+        """Do nothing."""
 
 
 def full(limit: int, waiting: int) -> tuple[HandlerGroup, list[Waits]]:
-    """A group without a free slot, and those who wait for one."""
+    """Return a full group and its waiters."""
     group = HandlerGroup(limit, "motion")
     for _ in range(limit):
         assert group.admit(Waits())
@@ -62,7 +62,7 @@ async def test_a_slot_passes_to_who_has_waited_longest(graphflow_runner: asyncio
 
 
 async def test_a_slot_that_nobody_wants_is_free(graphflow_runner: asyncio.Runner) -> None:
-    """It is not handed to anybody."""
+    """It stays free."""
     group, _ = full(1, waiting=0)
 
     group.give_back(asyncio.get_running_loop())
@@ -72,7 +72,7 @@ async def test_a_slot_that_nobody_wants_is_free(graphflow_runner: asyncio.Runner
 
 @pytest.mark.parametrize(("limit", "more"), [(3, 2), (None, 3), (1, 0)])
 async def test_another_limit(graphflow_runner: asyncio.Runner, limit: int | None, more: int) -> None:
-    """A larger one lets in at once as many as it allows, in their order; a smaller one sends nobody away."""
+    """A larger limit admits waiters at once, in order; a smaller one does not end runs."""
     group, queue = full(1, waiting=3)
 
     group.set_limit(limit, asyncio.get_running_loop())
@@ -115,7 +115,7 @@ def runner(group: HandlerGroup, body: Callable[[Any], Awaitable[None]], *items: 
 
 
 async def test_a_slot_is_released_for_a_while(graphflow_runner: asyncio.Runner) -> None:
-    """Other runs have it meanwhile, its own handler's too; the run comes back behind those who wait."""
+    """Other runs may use it, even of the same handler; the run queues behind the waiters."""
     group, gate, log = HandlerGroup(1, "motion"), asyncio.Event(), list[str]()
 
     async def body(item: str) -> None:
@@ -138,7 +138,7 @@ async def test_a_slot_is_released_for_a_while(graphflow_runner: asyncio.Runner) 
 
 
 async def test_the_way_back_is_known(graphflow_runner: asyncio.Runner) -> None:
-    """Whoever looks sees which group a run waits to come back to, that it holds no slot, and is told of the wait."""
+    """The search sees which group a run waits to return to, and that the run has no slot; the wait raises an alert."""
     group, alerts = HandlerGroup(1, "motion"), list[str]()
 
     async def body(_: object) -> None:
@@ -247,7 +247,7 @@ def test_where_a_handler_runs() -> None:
 
 
 def test_the_word_of_a_graph_file() -> None:
-    """It puts handlers into groups, new ones too, and out of all, whatever the class says."""
+    """It assigns handlers to groups, new ones too, and removes them from groups, whatever the class declares."""
     changes = {"sense": GroupChange(("on_go",)), "new": GroupChange(("on_scan",)), NO_GROUP: GroupChange(("on_odom",))}
     made, declared = groups(Group(1), **changes)
 
@@ -269,7 +269,7 @@ def test_the_word_of_a_graph_file() -> None:
     ],
 )
 def test_what_a_graph_file_changes(change: GroupChange, limit: int | None, when_full: str, is_threaded: bool) -> None:
-    """Only what it says differs from the declaration."""
+    """Only its entries differ from the declaration."""
     motion = groups(motion=change)[0].by_name["motion"]
 
     assert (motion.limit, motion.when_full, motion.is_threaded) == (limit, when_full, is_threaded)

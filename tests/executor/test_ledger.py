@@ -102,7 +102,7 @@ async def test_what_is_known_of_a_call(graphflow_runner: asyncio.Runner) -> None
 
 
 async def test_calls_alert(graphflow_runner: asyncio.Runner) -> None:
-    """Whoever looks for deadlocks hears of each call that begins to wait, when its entry is there."""
+    """The deadlock search is alerted of each call that starts to wait, after its entry exists."""
     ledger = Ledger(asyncio.get_running_loop())
     seen: list[int] = []
     ledger.alert = lambda: seen.append(len(ledger.calls))
@@ -130,5 +130,5 @@ async def test_the_thread_of_the_loop(graphflow_runner: asyncio.Runner) -> None:
 
 
 async def test_the_id_of_a_call(graphflow_runner: asyncio.Runner) -> None:
-    """It is the same in the process that asks and in the one that answers."""
+    """It is the same in the client's and the server's process."""
     assert Ledger(asyncio.get_running_loop()).call(future(), GID, 7, "/add", 0, None).id == call_id(GID, 7)

@@ -1,4 +1,4 @@
-"""How handlers run: each from its queue, with a context of its own, held apart by groups, and in turns."""
+"""Execution of handlers: each from its queue, in its own context, separated by groups, and in turns."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Bench:
 
 
 async def test_a_run_is_used_again_only_if_nobody_has_kept_it(graphflow_runner: asyncio.Runner) -> None:
-    """What libraries keep beside a task, be it weakly, must not be met by the next message's."""
+    """Data that libraries attach to a task, even weakly, must not leak to the next message's run."""
     kept: list[Any] = []
     numbers: list[int] = []
 
@@ -145,7 +145,7 @@ def test_an_exit_in_the_first_step_ends_the_run() -> None:
 
 
 async def test_a_runner_may_want_to_hear_of_errors_only(graphflow_runner: asyncio.Runner) -> None:
-    """It is then not told of runs that end well."""
+    """It is then not called for successful runs."""
     told: list[Any] = []
 
     def handler(item: int) -> float:
@@ -253,7 +253,7 @@ async def test_sleep_zero_gives_the_loop_a_turn(graphflow_runner: asyncio.Runner
 async def test_context_variables_stay_in_their_run(
     graphflow_runner: asyncio.Runner, suspends: bool, queued: bool
 ) -> None:
-    """What one run sets the next one, and another handler it wakes, do not see; it itself does."""
+    """A run's context variables are invisible to the next run and to handlers it wakes."""
     variable: ContextVar[str] = ContextVar("variable", default="clean")
     seen: list[str] = []
 
@@ -298,7 +298,7 @@ async def test_context_variables_of_a_plain_function_stay_in_their_run(graphflow
 
 
 async def test_runs_begin_with_the_context_of_where_the_runner_was_made(graphflow_runner: asyncio.Runner) -> None:
-    """What the program set before it made the handler is there in every run."""
+    """Every run sees the variables that the program set before it created the handler."""
     variable: ContextVar[str] = ContextVar("variable", default="nothing")
     variable.set("the program")
     seen: list[str] = []
@@ -318,7 +318,7 @@ async def test_runs_begin_with_the_context_of_where_the_runner_was_made(graphflo
 
 
 async def test_a_suspended_run_is_cancelled_at_its_await(graphflow_runner: asyncio.Runner) -> None:
-    """CancelledError comes where the run waits, `finally` blocks run, and the future tells the end of it all."""
+    """The run raises CancelledError at its await, `finally` blocks run, and the future reports the end."""
     log: list[str] = []
 
     async def handler(_: object) -> None:
@@ -345,7 +345,7 @@ async def test_a_suspended_run_is_cancelled_at_its_await(graphflow_runner: async
 
 
 async def test_cancelling_an_idle_runner_is_done_at_once(graphflow_runner: asyncio.Runner) -> None:
-    """There is nothing to wait for, and what arrives later is not run."""
+    """The future is done, and later arrivals are not run."""
     bench = Bench(lambda item: item)
 
     assert bench.runner.cancel().done()
@@ -396,7 +396,7 @@ async def test_cancelling_twice_waits_for_the_same_end(graphflow_runner: asyncio
 @pytest.mark.parametrize("fails", [False, True])
 @pytest.mark.parametrize("waits", [False, True])
 async def test_an_ended_run_keeps_nothing_alive(graphflow_runner: asyncio.Runner, waits: bool, fails: bool) -> None:
-    """What a message held is free when its run has ended, without waiting for the garbage collector."""
+    """A message is freed at the end of its run, without the garbage collector."""
 
     class Payload:
         pass
@@ -426,7 +426,7 @@ async def test_an_ended_run_keeps_nothing_alive(graphflow_runner: asyncio.Runner
 
 
 class Unusual(BaseException):
-    """Derives from what `except Exception` does not catch."""
+    """Not caught by `except Exception`."""
 
 
 @pytest.mark.parametrize("error", [ValueError, CancelledError, Unusual])
@@ -473,7 +473,7 @@ async def test_a_function_that_raises_stop_iteration_has_failed(graphflow_runner
 
 
 async def test_an_error_in_the_report_does_not_stop_later_messages(graphflow_runner: asyncio.Runner) -> None:
-    """When `finished` itself fails, the loop is told and the slot is free again."""
+    """If `finished` fails, the loop's exception handler is called, and the slot is free again."""
     loop = asyncio.get_running_loop()
     told: list[str] = []
     loop.set_exception_handler(lambda _, context: told.append(str(context.get("exception"))))
@@ -624,7 +624,7 @@ async def test_a_cancelled_waiter_passes_its_slot_on(graphflow_runner: asyncio.R
 
 
 async def test_a_cancelled_handler_takes_its_ticket_back(graphflow_runner: asyncio.Runner) -> None:
-    """Nobody waits behind a handler that no longer wants to run."""
+    """Waiters do not queue behind a handler that has withdrawn."""
     group: HandlerGroup = HandlerGroup(1)
     gate = asyncio.Event()
 

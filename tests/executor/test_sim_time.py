@@ -1,4 +1,4 @@
-"""Simulated time: /clock tells it, and timers, sleeps and deadlines follow."""
+"""Simulated time: timers, sleeps and deadlines follow /clock."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.runtime.cast import Log
 
 
 class World:
-    """Whoever publishes /clock."""
+    """The publisher of /clock."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
@@ -47,7 +47,7 @@ def simulated() -> Ticker:
 
 
 async def test_time_is_what_clock_says(graph: Graph) -> None:
-    """Zero until the first message, then its stamp, whatever the wall says."""
+    """Zero until the first message, then its stamp, whatever the wall clock."""
     node = simulated()
     await graph.start(node)
     assert node.clock.time_ns() == 0
@@ -81,7 +81,7 @@ async def test_a_pause_stops_everything(graph: Graph) -> None:
 
 
 async def test_a_jump_back_delays_nobody(graph: Graph) -> None:
-    """As when a recording starts anew: the time of day goes back, periods go on."""
+    """As when a recording restarts: the time of day jumps back, periods continue."""
     node = simulated()
     await graph.start(node)
     world = World(graph)
@@ -136,7 +136,7 @@ async def test_sleeps_and_deadlines_follow(graph: Graph) -> None:
 
 
 async def test_it_can_be_switched_while_running(graph: Graph) -> None:
-    """Timers begin anew on the other clock; who slept on the simulated one sleeps the rest on the real one."""
+    """Timers restart on the other clock; sleeps continue for their remaining time."""
     node = Ticker()
     await graph.start(node)
     await graph.clock.advance(1.0)

@@ -1,4 +1,4 @@
-"""Exercise 4's race: what the scheduler enables while it is being notified is undone when it has answered."""
+"""Exercise 4's race: the follower undoes the scheduler's enabling after its call."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The action of every tutorial, and somebody who asks for it."""
+"""The Fibonacci action, with a client."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from nodes.fibonacci_server import FibonacciServer
 
 
 async def test_the_sequence_grows_by_one_a_second(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """The client sees every step, then the result, and its process has nothing left to do."""
+    """The client gets every step, then the result, and its node then ends."""
     caplog.set_level(logging.INFO)
     await graph.start(FibonacciServer(), client := FibonacciClient(order=4))
     await graph.clock.advance(3.0)

@@ -21,7 +21,7 @@ async def test_it_talks_only_while_active(graph: Graph) -> None:
 
 
 async def test_the_diary_is_closed_by_cleanup(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """What was entered on the way up is left on the way down, after the hook has read it."""
+    """Context managers of `on_configure` exit in `cleanup`, after the hook has used them."""
     caplog.set_level(logging.INFO)
     talker = LifecycleTalker()
     await graph.start(talker)

@@ -12,7 +12,7 @@ from nodes.position_controller import Point, PositionController, distance, steer
 
 
 class Patient(PositionController):
-    """Writes down what happens to it."""
+    """Record its callbacks."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,7 +46,7 @@ def test_steering_turns_the_short_way(theta: float, turning: float, driving: flo
 @pytest.mark.parametrize("late", [0.0, 0.03, 0.06, 0.09])
 @pytest.mark.parametrize("speed", [1.0, 2.0, 3.0])
 def test_a_goal_that_is_missed_is_reached_all_the_same(late: float, speed: float) -> None:
-    """Nobody circles around it for ever, wherever the tenths of a second fall in which it is looked for."""
+    """It does not circle the goal for ever, at any phase of its timer."""
     goal, pose = Point(5.0, 9.0), Pose(x=2.0 + late * speed, y=1.0, theta=3.0)
     for _ in range(150):
         if distance(pose, goal) <= 0.1:
@@ -65,7 +65,7 @@ def test_distance_is_euclidean() -> None:
 
 
 async def test_it_waits_for_a_pose_and_a_goal(graph: Graph) -> None:
-    """Nothing is published before it knows both."""
+    """It publishes no command before it knows both."""
     node = PositionController(speed=0.7)
     await graph.start(node)
     twists = graph.tap(Twist, "/cmd_vel")
@@ -82,7 +82,7 @@ async def test_it_waits_for_a_pose_and_a_goal(graph: Graph) -> None:
 
 
 async def test_hooks_are_called_once_each_way(graph: Graph) -> None:
-    """It stands while it is there, sets off when it is moved, and says each once."""
+    """It stops at the goal, leaves when it is moved, and calls each hook once."""
     node = Patient()
     node.goal = Point(5.0, 5.0)
     await graph.start(node)

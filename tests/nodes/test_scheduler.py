@@ -35,7 +35,7 @@ async def test_all_points_are_visited_in_order(graph: Graph, caplog: pytest.LogC
 
 
 async def test_a_follower_without_a_goal_says_so(graph: Graph) -> None:
-    """Enabled too early, it refuses; alone, it drives to what it is told and only warns that nobody listens."""
+    """Enabled without a goal, it refuses; without a scheduler, it drives to its goal and only warns."""
     await graph.start(TurtleSim(), follower := GoalFollower(namespace="/turtle1"))
     with pytest.raises(RemoteError, match="set a goal first"):
         await graph.call(Empty, "/turtle1/enable", Empty.Request())

@@ -33,7 +33,7 @@ async def test_a_changed_rate_rearms_the_timer(graph: Graph) -> None:
 
 
 async def test_listener_logs_what_it_hears(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """What one node says another writes down, in the words of ROS 2's demo."""
+    """The listener logs the talker's messages in the format of ROS 2's demo."""
     caplog.set_level(logging.INFO)
     await graph.start(Talker(), Listener())
 

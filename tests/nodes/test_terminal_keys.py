@@ -39,7 +39,7 @@ def terminal() -> Iterator[tuple[int, int]]:
     ],
 )
 def test_keys_have_names(pressed: bytes, keys: list[str]) -> None:
-    """Arrows as any terminal sends them; what has no name is left out and takes nothing with it."""
+    """Arrows as all terminals send them; unnamed keys are skipped."""
     assert decode_keys(pressed) == (keys, b"")
 
 
@@ -57,7 +57,7 @@ def test_keys_may_come_in_pieces() -> None:
 
 @pytest.mark.parametrize("begun", [b"\x1b", b"\x1b[", b"\x1b[1;", b"\x1bO"])
 def test_a_key_that_has_begun_is_kept(begun: bytes) -> None:
-    """What comes next decides."""
+    """The following bytes decide."""
     assert decode_keys(b"q" + begun) == (["q"], begun)
 
 
@@ -80,7 +80,7 @@ async def test_keys_arrive_without_return_and_unseen(
 async def test_the_terminal_is_given_back_however_it_ends(
     terminal: tuple[int, int], graphflow_runner: asyncio.Runner
 ) -> None:
-    """After an error and after a cancel, its settings are what they were and nobody reads it."""
+    """After an error or a cancellation, its settings are restored and it is no longer read."""
     _, reading = terminal
     before = termios.tcgetattr(reading)
 
@@ -106,7 +106,7 @@ async def test_the_terminal_is_given_back_however_it_ends(
 async def test_a_terminal_that_goes_away_is_the_last_key(
     terminal: tuple[int, int], graphflow_runner: asyncio.Runner
 ) -> None:
-    """It is told once, the loop does not spin, and there is nothing to give back."""
+    """It is reported once, the loop does not spin, and there is nothing to restore."""
     pressing, reading = terminal
     with keyboard(reading) as keys:
         os.close(pressing)

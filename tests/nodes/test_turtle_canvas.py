@@ -1,4 +1,4 @@
-"""What turtles draw on."""
+"""The drawing surface of turtles."""
 
 import math
 import random
@@ -37,7 +37,7 @@ def test_a_straight_way_is_two_points() -> None:
 
 @pytest.mark.parametrize("step", [*some([0.0005, -0.0005]), 0.01, 0.1, -0.01])
 def test_no_point_of_a_curve_is_off_its_stroke(step: float) -> None:
-    """Every position the pen passed lies within the tolerance of what is kept, which is much less."""
+    """The stroke stays within the tolerance of every position, with far fewer points."""
     way = [(5 + math.cos(i * step), 5 + math.sin(i * step)) for i in range(int(6 / abs(step)))]
     canvas = Canvas()
     for start, end in pairwise(way):
@@ -108,7 +108,7 @@ def test_points_are_bounded_and_the_newest_stay() -> None:
 
 
 def test_a_turtle_whose_stroke_was_forgotten_draws_on() -> None:
-    """What it draws next is seen, in a stroke of its own."""
+    """Its next line starts a new stroke."""
     canvas = Canvas()
     canvas.draw("slow", RED, (0.0, 0.0), (0.1, 0.0))
     for i in range(MAX_POINTS):

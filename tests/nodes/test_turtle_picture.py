@@ -56,7 +56,7 @@ def test_turtles_are_where_they_are_and_named() -> None:
 
 @pytest.mark.parametrize("name", ["<&>", 'a"b', "schildkröte"])
 def test_any_name_makes_valid_xml(name: str) -> None:
-    """The world does not know what topics can be called."""
+    """The world accepts names that no topic can have."""
     world = World()
     world.spawn(name, 1.0, 1.0, 0.0)
 

@@ -18,7 +18,7 @@ from nodes.turtle_teleop import TurtleTeleop
 
 @pytest.fixture
 def press(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[bytes], int]]:
-    """Makes standard input a terminal; what it is called with is pressed there."""
+    """Make standard input a terminal; returns a function that presses keys."""
     pressing, reading = os.openpty()
     stdin: TextIO
     with open(reading) as stdin:
@@ -28,7 +28,7 @@ def press(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[bytes], int]]:
 
 
 async def until(condition: Callable[[], object]) -> None:
-    """Let the loop turn, and with it look at the terminal, until the condition holds."""
+    """Let the loop run until the condition holds."""
     while not condition():
         await asyncio.sleep(0)
 

@@ -25,7 +25,7 @@ NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 class Watched:
-    """A page, and what it was told to do."""
+    """A page and its commands."""
 
     def __init__(self) -> None:
         self.driven: list[tuple[float, float]] = []
@@ -49,7 +49,7 @@ def watched() -> Watched:
 
 
 def test_the_page_and_its_pictures(watched: Watched) -> None:
-    """Nothing else is there."""
+    """All other paths are refused."""
     assert watched.view.url.startswith("http://127.0.0.1:")
     assert "arrow keys" in watched.ask("GET", "/")[1]
     assert watched.ask("GET", "/picture") == (200, "<svg/>")
@@ -60,7 +60,7 @@ def test_the_page_and_its_pictures(watched: Watched) -> None:
 
 
 def test_steering(watched: Watched) -> None:
-    """What the keys say comes as two numbers; anything else is refused."""
+    """Keys are sent as two numbers; other content is refused."""
     assert watched.ask("POST", "/drive", b'{"linear": 2, "angular": -1.5}') == (200, "")
     for body in (b"", b"[]", b'{"linear": "x", "angular": 0}', b'{"linear": 1}', b"1" * (BODY_BOUND + 1), b"{"):
         assert watched.ask("POST", "/drive", body)[0] == 400
@@ -70,7 +70,7 @@ def test_steering(watched: Watched) -> None:
 
 @pytest.mark.parametrize("headers", [{"Origin": "http://example.org"}, {"Host": "example.org"}, {"Origin": "null"}])
 def test_a_strangers_page_gets_nothing(watched: Watched, headers: dict[str, str]) -> None:
-    """Any page that is open in the browser could ask."""
+    """Any page open in the browser could send requests."""
     assert watched.ask("GET", "/picture", headers=headers)[0] == 403
     assert watched.ask("POST", "/drive", b'{"linear": 2, "angular": 0}', headers=headers)[0] == 403
     assert watched.driven == []
@@ -116,7 +116,7 @@ async def test_turtlesim_without_a_view_serves_nothing(graph: Graph, caplog: pyt
 @pytest.mark.real
 @NEEDS_BROWSER
 async def test_in_a_browser(graph: Graph, caplog: pytest.LogCaptureFixture, tmp_path: Path) -> None:
-    """The page draws the turtle, and an arrow key that is held drives it."""
+    """The page draws the turtle, and an arrow key moves it."""
     pytest.importorskip("aiohttp", reason="the extra `web` is not installed")
     caplog.set_level(logging.INFO)
     node = TurtleSim(view=True)

@@ -60,7 +60,7 @@ def test_a_command_holds_for_a_second() -> None:
 
 
 def test_a_wall_stops_what_goes_into_it_only() -> None:
-    """The turtle slides along, and the step says where it would have gone."""
+    """The turtle slides along it, and `step` returns the position beyond."""
     world = World()
     turtle = world.spawn("t", SIZE, 5.0, math.pi / 4)
     turtle.command(1.0, 0.0, 0.0, 0)

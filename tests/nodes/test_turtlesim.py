@@ -31,7 +31,7 @@ def twist(forward: float = 0.0, turning: float = 0.0, *, sideways: float = 0.0) 
 
 
 async def picture(graph: Graph, name: str = "/turtlesim") -> ElementTree.Element:
-    """What the simulator looks like now."""
+    """Return the simulator's picture."""
     answer = await graph.call(Trigger, f"{name}/snapshot", Trigger.Request())
     assert answer.success
     return ElementTree.fromstring(answer.message)
@@ -83,7 +83,7 @@ def test_it_is_called_turtlesim_and_says_what_it_makes_at_run_time() -> None:
 
 
 async def test_it_starts_with_one_turtle_in_the_middle(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """And says so in turtlesim's words."""
+    """With turtlesim's log message."""
     caplog.set_level(logging.INFO)
     await graph.start(TurtleSim())
     poses, colors = graph.tap(Pose, "/turtle1/pose"), graph.tap(Color, "/turtle1/color_sensor")
@@ -129,7 +129,7 @@ async def test_names_follow_the_namespace_and_remaps(graph: Graph, caplog: pytes
 
 
 async def test_a_command_ends_after_a_second(graph: Graph) -> None:
-    """At 2 m/s it is good for 62 ticks; then the turtle stands, and its pose says so."""
+    """At 2 m/s it lasts for 62 ticks; then the turtle stops, as its pose shows."""
     await graph.start(TurtleSim())
     poses = graph.tap(Pose, "/turtle1/pose")
     graph.publisher(Twist, "/turtle1/cmd_vel").publish(twist(2.0, 0.0))
@@ -143,7 +143,7 @@ async def test_a_command_ends_after_a_second(graph: Graph) -> None:
 
 
 async def test_a_repeated_command_does_not_end(graph: Graph) -> None:
-    """Each one starts the second anew."""
+    """Each command restarts the second."""
     await graph.start(TurtleSim())
     poses = graph.tap(Pose, "/turtle1/pose")
     publisher = graph.publisher(Twist, "/turtle1/cmd_vel")
@@ -189,7 +189,7 @@ async def test_walls_hold_and_are_complained_of(graph: Graph, caplog: pytest.Log
 
 
 async def test_a_command_that_is_no_number_changes_nothing(graph: Graph) -> None:
-    """The turtle moves on as it was told before."""
+    """The turtle continues with the previous command."""
     await graph.start(TurtleSim())
     poses = graph.tap(Pose, "/turtle1/pose")
     publisher = graph.publisher(Twist, "/turtle1/cmd_vel")
@@ -220,7 +220,7 @@ async def test_teleports_go_there_at_once(graph: Graph) -> None:
 
 
 async def test_a_teleport_to_nowhere_is_the_callers_error(graph: Graph) -> None:
-    """It is told why, and the turtle stays."""
+    """The client gets the reason, and the turtle stays."""
     await graph.start(TurtleSim())
     poses = graph.tap(Pose, "/turtle1/pose")
     with pytest.raises(RemoteError, match="out of a turtle's range"):
@@ -269,7 +269,7 @@ async def test_a_taken_name_is_an_error_and_an_empty_reply(graph: Graph, caplog:
 
 @pytest.mark.parametrize("name", ["my turtle", "2fast", "turtle-2", "x" * 240])
 async def test_a_name_no_topic_can_have_is_refused(graph: Graph, caplog: pytest.LogCaptureFixture, name: str) -> None:
-    """An error in the log, an empty reply, nothing left on the network or in the picture."""
+    """The log has an error, the response is empty, and network and picture are unchanged."""
     sim = TurtleSim()
     await graph.start(sim)
     before = of_turtles(sim)
@@ -301,7 +301,7 @@ async def test_kill_takes_a_turtle_and_its_endpoints_away(graph: Graph, caplog: 
 
 
 async def test_reset_begins_again(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """One turtle in the middle, nothing drawn, numbers from one, and the new turtle obeys."""
+    """One turtle in the middle, an empty canvas, numbers from one, and the new turtle obeys."""
     caplog.set_level(logging.INFO)
     await graph.start(TurtleSim())
     await graph.call(Spawn, "/spawn", Spawn.Request(x=1.0, y=1.0))
@@ -384,7 +384,7 @@ async def test_a_rotation_is_cancelled(graph: Graph, caplog: pytest.LogCaptureFi
 
 
 async def test_a_newer_rotation_aborts_the_older(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """As turtlesim does, and says."""
+    """With a log message, as in turtlesim."""
     await graph.start(TurtleSim())
     older = await rotation(graph, 3.0)
     await graph.clock.advance(0.5)
@@ -398,7 +398,7 @@ async def test_a_newer_rotation_aborts_the_older(graph: Graph, caplog: pytest.Lo
 
 
 async def test_a_velocity_command_aborts_a_rotation(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """As turtlesim does, and says; the turtle obeys the command."""
+    """With a log message, as in turtlesim; the turtle obeys the command."""
     await graph.start(TurtleSim())
     poses = graph.tap(Pose, "/turtle1/pose", 1000)
     goal = await rotation(graph, 3.0)
@@ -428,7 +428,7 @@ async def test_a_turtle_that_is_killed_while_it_turns(graph: Graph) -> None:
 
 
 async def test_set_pen_changes_what_is_drawn_from_then_on(graph: Graph) -> None:
-    """Colour and width; width 0 is 1; off draws nothing; on again needs its colour again."""
+    """Colour and width; width 0 counts as 1; off draws nothing; switching on again needs a colour."""
     await graph.start(TurtleSim())
 
     async def go(x: float) -> None:
@@ -452,7 +452,7 @@ async def test_set_pen_changes_what_is_drawn_from_then_on(graph: Graph) -> None:
 
 
 async def test_clear_wipes_the_drawing_and_leaves_the_turtles(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """What they draw next is seen."""
+    """Later lines are drawn."""
     caplog.set_level(logging.INFO)
     await graph.start(TurtleSim())
     await graph.call(TeleportAbsolute, "/turtle1/teleport_absolute", TeleportAbsolute.Request(x=1.0, y=1.0))

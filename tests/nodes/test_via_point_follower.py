@@ -24,7 +24,7 @@ def test_it_has_what_its_parent_has() -> None:
 async def test_it_visits_all_six_points_in_order_and_begins_again(
     graph: Graph, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The pose comes within the tolerance of each, and the log says so."""
+    """The pose comes within the tolerance of each point, with a log message."""
     caplog.set_level(logging.INFO)
     await graph.start(TurtleSim(), ViaPointFollower(namespace="/turtle1"))
     poses = graph.tap(Pose, "/turtle1/pose")
@@ -39,7 +39,7 @@ async def test_it_visits_all_six_points_in_order_and_begins_again(
 
 
 async def test_points_are_parameters(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Whole numbers are taken for floats."""
+    """Integers are accepted as floats."""
     caplog.set_level(logging.INFO)
     await graph.start(TurtleSim(), ViaPointFollower(namespace="/turtle1", via_x=[6, 6.5], via_y=[6, 5]))
 
@@ -50,7 +50,7 @@ async def test_points_are_parameters(graph: Graph, caplog: pytest.LogCaptureFixt
 
 @pytest.mark.parametrize(("xs", "ys"), [([1.0, 2.0], [1.0]), ([1.0], [1.0, 2.0]), ([], [])])
 def test_lists_that_do_not_fit_are_refused(xs: list[float], ys: list[float]) -> None:
-    """There is no node then, and the error says how many there are of each."""
+    """The node is not made, and the error has both numbers."""
     with pytest.raises(ParameterError, match=f"via_x has {len(xs)} numbers but via_y has {len(ys)}"):
         ViaPointFollower(via_x=xs, via_y=ys)
 

@@ -11,7 +11,7 @@ from graphflow.testing.clock import START_NS, ManualClock, settle
 
 
 async def test_time_stands_still_until_it_is_advanced(graphflow_runner: asyncio.Runner) -> None:
-    """Both clocks move by exactly what was asked for."""
+    """Both clocks advance by exactly the requested time."""
     clock = ManualClock()
     await settle()
     assert (clock.monotonic_ns(), clock.time_ns()) == (0, START_NS)
@@ -39,7 +39,7 @@ async def test_alarms_ring_in_order_at_their_time(graphflow_runner: asyncio.Runn
 
 
 async def test_each_alarm_has_its_consequences_before_the_next(graphflow_runner: asyncio.Runner) -> None:
-    """What one alarm sets off, new alarms included, happens before time goes on."""
+    """An alarm's consequences, new alarms included, happen before time advances."""
     clock = ManualClock()
     log: list[tuple[str, int]] = []
 
@@ -58,7 +58,7 @@ async def test_each_alarm_has_its_consequences_before_the_next(graphflow_runner:
 
 
 async def test_an_alarm_that_is_due_rings_without_advance(graphflow_runner: asyncio.Runner) -> None:
-    """At the next move of the clock, be it by nothing, and never inside `call_at`."""
+    """At the next `advance`, even by zero, and never inside `call_at`."""
     clock = ManualClock()
     await clock.advance(1.0)
     rung: list[int] = []
@@ -83,7 +83,7 @@ async def test_a_cancelled_alarm_does_not_ring(graphflow_runner: asyncio.Runner)
 
 
 async def test_alarms_ring_outside_of_the_tests_task(graphflow_runner: asyncio.Runner) -> None:
-    """As in life: nothing that an alarm calls believes to be the test."""
+    """As in production: an alarm's callback does not run in the test's task."""
     clock = ManualClock()
     seen: list[object] = []
 

@@ -15,7 +15,7 @@ def told() -> list[str]:
 
 
 async def test_a_call_that_is_not_awaited(graph: Graph) -> None:
-    """Is told once, with the line as it should be, or the call where the line is more than that."""
+    """It is reported once, with the corrected line, or the call if the line has more than that."""
     graph.clock.advance(1.0)  # type: ignore[unused-coroutine]
     coroutine = graph.settle()
     assert told() == [
@@ -27,7 +27,7 @@ async def test_a_call_that_is_not_awaited(graph: Graph) -> None:
 
 
 async def test_calls_that_begin(graph: Graph) -> None:
-    """Are none of them: awaited ones, and those that become tasks, also if nothing awaits their end."""
+    """Awaited calls and those that become tasks do not count, even if their end is not awaited."""
     node = Node("one")
     task = asyncio.ensure_future(graph.clock.advance(1.0))
     await graph.start(node)

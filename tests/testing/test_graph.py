@@ -55,7 +55,7 @@ async def test_nodes_run_each_as_in_a_process_of_its_own(graph: Graph) -> None:
 
 
 async def test_a_tap_is_a_sequence(graph: Graph) -> None:
-    """Of everything said since it was opened, with the newest at hand."""
+    """Of all messages since it was opened, with the newest as `latest`."""
     node = Adder()
     await graph.start(node)
     node.out.publish(String(data="too early"))
@@ -115,7 +115,7 @@ async def test_the_tests_own_node_is_hidden(graph: Graph) -> None:
 
 
 async def test_the_test_may_call(graph: Graph) -> None:
-    """Without touching the clock when somebody answers."""
+    """The clock need not advance if a server answers."""
     await graph.start(Adder())
 
     assert (await graph.call(AddTwoInts, "/add", AddTwoInts.Request(a=1, b=2))).sum == 3
@@ -142,7 +142,7 @@ async def test_a_stopped_node_is_gone(graph: Graph) -> None:
 
 
 def test_closing_stops_everything(graphflow_runner: asyncio.Runner) -> None:
-    """Nothing is left on the network."""
+    """The network is empty afterwards."""
 
     async def test() -> Graph:
         graph = Graph()
@@ -181,7 +181,7 @@ def test_a_failed_node_fails_its_test(graphflow_runner: asyncio.Runner, taken: b
 
 
 class Taught(Node):
-    """As ROS 2 teaches it: nothing is passed to its `__init__`."""
+    """As ROS 2 teaches it: `__init__` takes no arguments."""
 
     def __init__(self) -> None:
         super().__init__("taught")
@@ -202,7 +202,7 @@ async def test_a_node_whose_init_takes_nothing_has_parameters(graph: Graph) -> N
 
 
 async def test_a_parameter_that_a_made_node_does_not_have(graph: Graph) -> None:
-    """Is told, and what it was given for."""
+    """The error names the parameter and the node."""
     with pytest.raises(ParameterError, match="sizes"):
         await graph.start(graph.make(Taught, sizes=3))
     with pytest.raises(ParameterError, match="size"):
@@ -210,7 +210,7 @@ async def test_a_parameter_that_a_made_node_does_not_have(graph: Graph) -> None:
 
 
 async def test_two_nodes_of_one_name(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Are told, as they are where they run; not one that has taken the place of another."""
+    """They are reported, as in a running graph; a node that replaces another is not."""
     first = Node("bob")
     await graph.start(first)
     await graph.stop(first)
@@ -221,7 +221,7 @@ async def test_two_nodes_of_one_name(graph: Graph, caplog: pytest.LogCaptureFixt
 
 
 async def test_a_tap_is_shown_with_its_messages(graph: Graph) -> None:
-    """It equals a list of them, and what it lacks is told with the topic."""
+    """It equals a list of them, and an error about a missing message has the topic."""
     tap = graph.tap(String, "out")
     assert tap == []
     assert repr(tap) == "<Tap /out []>"
@@ -242,7 +242,7 @@ async def test_a_tap_is_shown_with_its_messages(graph: Graph) -> None:
     ],
 )
 async def test_words_that_a_graph_has_not(graph: Graph, name: str, hint: str) -> None:
-    """They are told with its own."""
+    """The error has the graph's name for it."""
     with pytest.raises(AttributeError) as caught:
         getattr(graph, name)
     explain(caught.value)
@@ -261,20 +261,20 @@ async def test_a_field_of_a_tap(graph: Graph) -> None:
 
 
 async def test_the_line_of_a_test(graph: Graph) -> None:
-    """A mistake in a call of the graph's is told with it."""
+    """An error in a call of the graph has it."""
     tap: Any = graph.tap
     with pytest.raises(DeclarationError, match=r"^\S+test_graph\.py:\d+: create_subscription needs a message class"):
         tap("out", String)
 
 
 def test_a_test_without_an_event_loop(graph: Graph) -> None:
-    """It is told how it gets one."""
+    """The error explains how to get one."""
     with pytest.raises(RuntimeError, match="write async def instead of def"):
         graph.tap(String, "out")
 
 
 class Probe(Node):
-    """Looks at what it hears."""
+    """Check each message."""
 
     @subscription(String, "words")
     async def heard(self, message: String) -> None:
@@ -284,7 +284,7 @@ class Probe(Node):
 
 
 async def test_an_assertion_that_fails_in_a_handler(graph: Graph) -> None:
-    """Fails the test, unless it says that it means it; other errors there do not."""
+    """It fails the test, unless the test clears it; other errors in handlers do not."""
     await graph.start(Probe())
     words = graph.publisher(String, "/words")
     for data in ("good", "bad"):
@@ -322,6 +322,6 @@ async def test_an_assertion_that_ends_a_node(graph: Graph) -> None:
 
 
 def test_without_an_event_loop() -> None:
-    """The test is a plain function: the way is told."""
+    """A plain function as a test gets an error with the correct form."""
     with pytest.raises(RuntimeError, match="write async def instead of def"):
         Graph().tap(String, "/words")

@@ -116,7 +116,7 @@ async def test_a_thread_that_does_not_end_is_named(graph: Graph, monkeypatch: py
 
 
 async def test_a_thread_that_waits_for_an_answer_lets_time_pass(graph: Graph) -> None:
-    """What it waits for may come with time."""
+    """The result may need simulated time."""
 
     class Server(Node):
         @service(Trigger, "slow")

@@ -1,4 +1,4 @@
-"""The pytest plugin in somebody else's project."""
+"""The pytest plugin in another project."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ NODE = """
 
 @slow
 def test_a_foreign_project_has_the_fixture(pytester: pytest.Pytester) -> None:
-    """With graphflow installed and nothing configured, an `async def` test that uses `graph` is run."""
+    """An `async def` test with `graph` runs without configuration."""
     pytester.makepyfile(
         counter=NODE,
         test_counter="""
@@ -96,7 +96,7 @@ def test_fixtures_and_parameters_come_along(pytester: pytest.Pytester) -> None:
 
 
 def test_a_failing_node_fails_the_test(pytester: pytest.Pytester) -> None:
-    """Also if the test itself saw nothing wrong."""
+    """Even if the test's own assertions hold."""
     result = run(
         pytester,
         """
@@ -177,7 +177,7 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
 
 
 def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What it waits for would come with time, and its clock does not move; one that is busy goes on."""
+    """It waits for time, and its clock does not move; a busy test continues."""
     monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.4)
     result = run(
         pytester,
@@ -200,7 +200,7 @@ def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatc
 
 
 def test_a_failing_test_is_told_what_has_not_happened(pytester: pytest.Pytester) -> None:
-    """In a section of its report; what passes is told nothing."""
+    """In a section of its report; a passing test has none."""
     result = run(
         pytester,
         """
@@ -232,7 +232,7 @@ def test_a_failing_test_is_told_what_has_not_happened(pytester: pytest.Pytester)
 
 
 def test_an_error_about_a_line_of_the_test(pytester: pytest.Pytester) -> None:
-    """What it says is all that is told."""
+    """The report has only the error."""
     result = run(
         pytester,
         """
@@ -250,7 +250,7 @@ def test_an_error_about_a_line_of_the_test(pytester: pytest.Pytester) -> None:
 
 
 def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> None:
-    """A test that uses nothing of graphflow's is for whichever plugin it was written for."""
+    """An asynchronous test without graphflow is left to the plugin it was written for."""
     pytester.makeconftest(
         """
         import asyncio, pytest
@@ -358,7 +358,7 @@ def test_nodes_of_another_loop_are_refused(pytester: pytest.Pytester) -> None:
 
 @pytest.mark.parametrize("conftest", ["", TAKES_ALL], ids=["ours", "another's"])
 def test_generated_examples_have_a_graph_each(pytester: pytest.Pytester, conftest: str) -> None:
-    """A test of Hypothesis's may be asynchronous and use `graph`: nothing of one example is left for the next."""
+    """A Hypothesis test may be asynchronous and use `graph`: examples do not share state."""
     pytester.makeconftest(conftest)
     result = run(
         pytester,
@@ -420,7 +420,7 @@ def test_generated_examples_share_no_node(pytester: pytest.Pytester) -> None:
 
 
 def test_each_test_has_a_loop_of_its_own(pytester: pytest.Pytester) -> None:
-    """Nothing that one test left behind reaches the next, and its loop is closed."""
+    """Leftovers of one test do not reach the next, and its loop is closed."""
     result = run(
         pytester,
         """
@@ -442,7 +442,7 @@ def test_each_test_has_a_loop_of_its_own(pytester: pytest.Pytester) -> None:
 
 
 def test_the_plugin_is_light() -> None:
-    """Loaded by every pytest run of its environment, it imports nothing that takes long."""
+    """Every pytest run loads it, so it imports no slow module."""
     code = "import graphflow.testing.plugin, json, sys; print(json.dumps(sorted(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
 
@@ -451,7 +451,7 @@ def test_the_plugin_is_light() -> None:
 
 
 def test_an_async_test_without_the_fixture(pytester: pytest.Pytester) -> None:
-    """It is told that the fixture makes it run."""
+    """The error names the fixture that makes it run."""
     result = run(
         pytester,
         """

@@ -1,4 +1,4 @@
-"""Virtual time and a seeded network; and what holds in them for groups, actions and the search for deadlocks."""
+"""Virtual time and a seeded network, and invariants of groups, actions and the deadlock search under them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Counter(Node):
 
 
 class Hearer(Node):
-    """Writes down what it hears, and when."""
+    """Record messages and their times."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -75,7 +75,7 @@ def test_a_link_keeps_its_order_unless_it_does_not() -> None:
 
 
 def test_nothing_to_wait_for_is_an_error() -> None:
-    """A story that waits for what cannot come ends at once."""
+    """A story that waits for an impossible event ends at once."""
 
     async def story(world: World) -> None:
         await asyncio.Event().wait()
@@ -128,7 +128,7 @@ class Worker(Node):
 
 @pytest.mark.parametrize("seed", range(count(few=8, full=20)))
 def test_a_group_never_has_more_runs_than_slots(seed: int) -> None:
-    """Whatever arrives when, and whoever fails or lets go; and in the end every slot is back."""
+    """Whatever the order of arrivals, failures and releases; at the end all slots are free."""
 
     async def story(world: World) -> None:
         await world.start(Counter(), worker := Worker(world.random))
@@ -216,7 +216,7 @@ def test_every_goal_ends_once_and_nobody_waits_for_ever(seed: int) -> None:
 
 
 class Neighbour(Node):
-    """Asks the other one, in the group in which it would answer, or in another."""
+    """Call the other node, in the group of its own service or in another."""
 
     everything = Group(1)
     apart = Group(1)

@@ -1,4 +1,4 @@
-"""What is said of a failing test."""
+"""The section of a failing test's report on unmet waits."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Echo(Node):
 
 
 async def test_messages_on_their_way(graph: Graph) -> None:
-    """Are counted; a test that waits for them is told nothing."""
+    """They are counted; a test that has received them gets no hint."""
     await graph.start(Echo())
     heard, words = graph.tap(String, "/out"), graph.publisher(String, "/words")
     words.publish(String(data="a"))
@@ -42,7 +42,7 @@ async def test_messages_on_their_way(graph: Graph) -> None:
 
 
 async def test_names_that_no_node_has(graph: Graph) -> None:
-    """With the nearest; of nodes that have ended nothing is known."""
+    """With the nearest name; nodes that have ended are unknown."""
     echo = Echo(namespace="/lab")
     await graph.start(echo)
     graph.tap(String, "/out")
@@ -56,7 +56,7 @@ async def test_names_that_no_node_has(graph: Graph) -> None:
 
 
 async def test_a_clock_that_stands_still(graph: Graph) -> None:
-    """Is told where something waits for it, and as long as it was never advanced."""
+    """It is reported if work waits for it and it was never advanced."""
     await graph.start(Talker())
     assert await unmet(graph) == [
         "the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)"
@@ -66,7 +66,7 @@ async def test_a_clock_that_stands_still(graph: Graph) -> None:
 
 
 async def test_waits_in_vain(graph: Graph) -> None:
-    """For services and actions that nobody offers, and for real time, each with its line."""
+    """For services and actions that no node offers, and for real time, each with its line."""
 
     class Asker(Node):
         adder = Client(AddTwoInts, "add")
@@ -96,7 +96,7 @@ async def test_waits_in_vain(graph: Graph) -> None:
 
 
 async def test_what_came_too_late(graph: Graph) -> None:
-    """A tap has what comes after it, and a node hears what comes after its start; durable topics have both."""
+    """A tap and a node receive later messages only; on durable topics, earlier ones, too."""
     await graph.start(Talker())
     await graph.clock.advance(3.0)
     graph.publisher(String, "/out").publish(String())
@@ -122,7 +122,7 @@ async def test_what_came_too_late(graph: Graph) -> None:
 
 
 async def test_what_came_in_time(graph: Graph) -> None:
-    """It is not told of."""
+    """There is no hint."""
     graph.tap(String, "/words")
     await graph.start(Talker(), Echo())
     words = graph.publisher(String, "/words")
@@ -133,7 +133,7 @@ async def test_what_came_in_time(graph: Graph) -> None:
 
 
 async def test_topics_that_a_silent_node_listens_to(graph: Graph) -> None:
-    """Are told where a tap has got nothing, and nothing else explains it."""
+    """They are reported if a tap is empty and there is no other explanation."""
     await graph.start(Echo())
     graph.tap(String, "/out")
     told = "/echo listens to /words, to which neither the test nor its nodes publish"
