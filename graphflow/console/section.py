@@ -9,10 +9,10 @@
           layout: even-vertical
           panes: [groups, {echo: /turtle1/pose}]
 
-A pane is the name of a view, or `{view: what it is about}` with the view's options beside it. `rows` and `columns`
-split the space among panes; `size` is a share of it, 50 being half. A plain list of panes is put in order by `layout`.
+A pane is the name of a view, or `{view: subject}` with the view's options beside it. `rows` and `columns`
+split the space among panes; `size` is a share of it, 50 being half. A plain list of panes is arranged by `layout`.
 
-The result is plain data, the same that a console keeps with a run: {"prefix", "theme", "windows": [{"name", "layout",
+The result is plain data, in the form that a console saves with a run: {"prefix", "theme", "windows": [{"name", "layout",
 "root"}]}, where a root is {"view", "about", "options", "size"} or {"split": "rows" or "columns", "of", "size"}.
 """
 
@@ -41,7 +41,7 @@ Complain = Callable[[Place, str], None]
 
 
 def console_section(src: Source, complain: Complain) -> dict[str, Any] | None:
-    """Read the section of a file; None where there is none.
+    """Read the section of a file; return None if there is none.
 
     Args:
         complain: Called with each mistake.

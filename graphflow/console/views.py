@@ -1,4 +1,4 @@
-"""The views of the console by name, and what each is told when it is opened."""
+"""The views of the console by name, and the arguments of each."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 
 class ViewForm(NamedTuple):
-    """What a view is told when it is opened."""
+    """The arguments of a view."""
 
     about: str = ""
-    """What it is about, in a word; empty for a view of everything."""
+    """The kind of its subject; empty for a view of everything."""
     needs_it: bool = False
-    """Whether it must be told."""
+    """Whether the subject is required."""
     options: tuple[str, ...] = ()
 
 
@@ -37,14 +37,14 @@ VIEWS: Mapping[str, ViewForm] = {
     "prompt": ViewForm("command", options=("run",)),
     "help": ViewForm(),
 }
-"""The views that come with graphflow. `tests/tui` holds this to what the console has."""
+"""The views that come with graphflow. `tests/tui` checks this table against the console."""
 
 PLUGINS = "graphflow.views"
-"""The entry points by which other packages add views."""
+"""The entry point group by which other packages add views."""
 
 
 def known_views() -> list[str]:
-    """The views that come with graphflow, and those that other installed packages add."""
+    """Return the names of graphflow's views, and of those that other installed packages add."""
     from importlib.metadata import entry_points
 
     return [*VIEWS, *sorted({e.name for e in entry_points(group=PLUGINS)} - set(VIEWS))]

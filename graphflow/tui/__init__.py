@@ -1,4 +1,4 @@
-"""The console: a Textual client of a graph, opened by `main`. Packages that add views need three names from here.
+"""The console: a Textual client of a graph, opened by `main`. Packages that add views import three names from here.
 
 from graphflow.tui import Action, TopicMonitor, View
 """

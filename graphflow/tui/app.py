@@ -1,4 +1,4 @@
-"""The console itself: one screen, the prefix, the pulse by which views look at what is new."""
+"""The console application: its screen, its keys, and the timer that updates the visible views."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ from graphflow.tui.widgets.line_view import LineView
 from graphflow.tui.widgets.welcome import Welcome
 
 PULSE = 0.05
-"""Seconds between two looks at what is new: at most twenty times a second anything is drawn."""
+"""Seconds between two updates: nothing is drawn more than twenty times a second."""
 
 
 class MainScreen(Screen[object], inherit_bindings=False):
-    """The screen of the panes: the tab key is theirs, and so is Ctrl-C."""
+    """The screen of the panes. Tab and Ctrl-C go to the panes, not to Textual."""
 
     AUTO_FOCUS = ""
 
 
 class Console(ConsoleApp):
-    """The console. Its result says how it was left: `detach`, `stop`, `switch SOCKET`, or what a tour calls it.
+    """The console. Its result is how it was left: `detach`, `stop`, `switch SOCKET`, or a result of the tour.
 
     Args:
-        hub: What there is to see.
-        layout: The windows to begin with; None for the usual ones.
+        hub: The sources of data.
+        layout: The initial windows; None for the default ones.
         prefix: The prefix key.
         theme: The name of a theme.
-        welcome: Whether to say what a newcomer must know.
+        welcome: Whether to show the line for newcomers.
     """
 
     CSS_PATH = "app.tcss"
@@ -81,7 +81,7 @@ class Console(ConsoleApp):
         self.pacing = Pacing()
         self._beats = 0
         self._stopped_for = ""
-        """Why the graph is being stopped."""
+        """The reason for which the graph is being stopped."""
         self.register_theme(DARK)
         self.register_theme(LIGHT)
         self.theme = theme if theme in self.available_themes else DARK.name
@@ -106,7 +106,7 @@ class Console(ConsoleApp):
         self.call_after_refresh(self._begin)
 
     def _begin(self) -> None:
-        """The first screen is drawn: now what takes longer."""
+        """Start the slow parts, now that the first screen has been drawn."""
         others = len(running()) - 1 if self.hub.supervision is not None else 0
         if others > 0:
             self.say(f"{others} more running; {shown(self.prefix)} s goes to another graph")
@@ -124,13 +124,13 @@ class Console(ConsoleApp):
         if live.trouble:
             self.say(live.trouble, bad=True)
 
-    # what supervision says
+    # events of the supervisor
 
     def on_descendant_focus(self) -> None:
         self.hints.refresh()
 
     def heard(self, event: dict[str, Any]) -> None:
-        """Take in what the supervisor says."""
+        """Handle an event of the supervisor."""
         match event["event"]:
             case "hello" if self.hub.supervision and self.hub.supervision.version_note:
                 self.say(self.hub.supervision.version_note)
@@ -167,7 +167,7 @@ class Console(ConsoleApp):
         self.say(f"{shown(self.prefix)} e shows why: {names} died, {event['how']}{follows}", bad=True)
         self.flags[self.windows.current] = "!"
 
-    # the pulse
+    # updates
 
     def _display(self, screen: Screen[Any], renderable: Any) -> None:
         if self.is_headless or self.pacing.admits(self._driver):
@@ -209,15 +209,15 @@ class Console(ConsoleApp):
         self.refresh(layout=True)
 
     def open_beside(self, content: Content) -> None:
-        """Show something beside the focused pane; where there is no room, in a window of its own."""
+        """Open a view beside the focused pane, or in a new window if there is no room."""
         self.deeds.open_beside(content)
 
     # keys
 
     async def on_event(self, event: events.Event) -> None:
         if isinstance(event, Typed) and not event.is_forwarded:
-            # A terminal that types has the focus, whatever it has said before: tmux says nothing when it comes back.
-            # Textual focuses nothing in a dialog that opens while the terminal has not.
+            # A terminal that sends keys has the focus, whatever it reported: tmux does not report focus that returns.
+            # Textual focuses nothing in a dialog that opens while the terminal is out of focus.
             self.app_focus = True
             await self.keyboard.type(event)
         else:
@@ -236,12 +236,12 @@ class Console(ConsoleApp):
         self.deeds.do(name)
 
     def watch_app_focus(self, focus: bool) -> None:
-        """Give the focus to a dialog that has opened while the terminal did not have it."""
+        """Focus a dialog that opened while the terminal was out of focus."""
         if focus and len(self.screen_stack) > 1 and self.screen.focused is None:
             self.screen.focus_next()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """The console's bare keys are for its own screen, not for dialogs above it."""
+        """Restrict the console's unprefixed keys to its own screen; dialogs above it do not get them."""
         if action == "do" and len(self.screen_stack) > 1:
             return parameters[:1] == ("interrupt",)
         return True

@@ -1,4 +1,4 @@
-"""What views, bars and deeds have in common: the hub, the windows, and a voice to the user."""
+"""The context shared by views, bars and commands: the hub, the windows, and messages to the user."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from graphflow.tui.widgets.colours import Colours
 from graphflow.tui.widgets.welcome import Welcome
 
 MESSAGES = 500
-"""Messages kept."""
+"""Messages remembered."""
 KEEP_AFTER = 1.0
-"""Seconds after the last change at which the windows are kept with the run."""
+"""Seconds after the last change of the windows at which they are saved with the run."""
 LASTING = "lasting"
-"""Workers that run until the console is left."""
+"""The worker group whose workers run until the console is left."""
 LEAVE_WITHIN = 2.0
-"""Seconds for what is under way in the panes to end."""
+"""Seconds to wait for the panes' workers to end."""
 
 
 class ConsoleApp(App[str]):
-    """The part of the console that its other parts know."""
+    """The console as its views, bars and commands see it."""
 
     hints: Hints
     status: Status
@@ -47,21 +47,21 @@ class ConsoleApp(App[str]):
         self.windows = windows
         self.prefix = prefix
         self.flags: dict[int, str] = {}
-        """What the window list says of each window: `!` for a crash in it."""
+        """Marks in the window list, by window number: `!` for a crash in that window."""
         self.deadlocks = 0
         self.clipboard_text = ""
         self.last_shell = ""
-        """The command that would have done what was done last."""
+        """The shell command equivalent to the last action."""
         self.said: list[str] = []
-        """Messages so far."""
+        """The messages shown so far, oldest first."""
         self._keep_timer: Timer | None = None
 
     def spawn(self, work: Callable[[], Awaitable[None]]) -> None:
-        """Run something until the console is left."""
+        """Run a coroutine function until the console is left."""
         self.run_worker(work, group=LASTING)
 
     async def leave(self, how: str) -> None:
-        """End the console; the graph is another matter."""
+        """Leave the console. The graph runs on."""
         if self.hub.supervision is not None:
             self.keep_layout_now()
         views = [frame.view for frame in self.workspace.frames.values()]
@@ -84,7 +84,7 @@ class ConsoleApp(App[str]):
         return None if frame is None else frame.view.active
 
     def say(self, text: str, *, bad: bool = False) -> None:
-        """Tell the user something in the bottom line."""
+        """Show a message in the bottom line."""
         self._note(text)
         self.hints.say(text, "bad" if bad else "text")
 
@@ -93,13 +93,13 @@ class ConsoleApp(App[str]):
         del self.said[:-MESSAGES]
 
     def did(self, shell: str) -> None:
-        """Show the shell command that does what was just done."""
+        """Show the shell command equivalent to the action just taken."""
         self.last_shell = shell
         self._note(f"$ {shell}")
         self.hints.say(f"$ {shell}   ({shown(self.prefix)} y copies)", "accent")
 
     def changed(self) -> None:
-        """The windows have changed: show it, and keep them with the run soon."""
+        """Redraw after a change of the windows, and save them with the run soon."""
         self.workspace.sync()
         self.status.refresh()
         self.hints.refresh()
@@ -108,7 +108,7 @@ class ConsoleApp(App[str]):
         self._keep_timer = self.set_timer(KEEP_AFTER, self.keep_layout_now)
 
     def keep_layout_now(self) -> None:
-        """Keep the windows with the run, so that whoever attaches next finds them."""
+        """Save the windows with the run, so that the next console to attach restores them."""
         self.workspace.keep_contents()
         if self.hub.supervision is not None:
             self.hub.supervision.send(do="keep_layout", layout=self.windows.to_json())
@@ -118,10 +118,10 @@ class ConsoleApp(App[str]):
         return self.windows.window
 
     def copy(self, text: str, what: str = "") -> None:
-        """Copy a text, and say so.
+        """Copy a text to the clipboard, and report it.
 
         Args:
-            what: What it is; the text itself, if empty.
+            what: A description of the text; empty to quote the text itself.
         """
         self.clipboard_text = text
         self.copy_to_clipboard(text)

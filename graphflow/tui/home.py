@@ -1,4 +1,4 @@
-"""The first window of a console: the nodes, what there is of them and, where there is a turtle, the turtle."""
+"""The default first window: the nodes, their details and, if the graph has one, the turtle."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Content, Split
 
 MANY, WIDE = 16, 110
-"""Nodes from which on their list has the whole height, in terminals of at least so many columns."""
+"""Number of nodes from which their list takes the whole height, given a terminal of at least that many columns."""
 LINES = 24
-"""Lines of a small terminal, by which the list of nodes gets its share."""
+"""Lines of a small terminal, from which the share of the list of nodes is computed."""
 
 
 def open_home(layout: Layout, hub: Hub, columns: int | None = None) -> None:
-    """Open the first window of a graph that says nothing of windows. A turtle has the focus: arrows drive it.
+    """Open the default first window. A turtle gets the focus, so that the arrow keys drive it.
 
     Args:
-        columns: Those of the terminal, for a test; else as it is.
+        columns: The width of the terminal; None to read it.
     """
     width = get_terminal_size().columns if columns is None else columns
     if len(hub.nodes()) > MANY and width >= WIDE and not _draws(hub):
@@ -36,6 +36,6 @@ def open_home(layout: Layout, hub: Hub, columns: int | None = None) -> None:
 
 
 def _draws(hub: Hub) -> bool:
-    """Whether a node of the graph is turtlesim."""
+    """Return whether a node of the graph is turtlesim."""
     rows = hub.supervision.nodes.values() if hub.supervision is not None else ()
     return any("turtlesim" in row["class"].lower() for row in rows)

@@ -1,4 +1,4 @@
-"""All windows of one console, and their form as plain data: kept with the run, and written into graph files."""
+"""The windows of a console, and their form as plain data: saved with a run, and written to graph files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from graphflow.tui.panes import MAX_PANES, MAX_WINDOWS, Axis, Content, Pane, Spl
 
 
 class Layout:
-    """The windows of a console by their numbers, one of them current."""
+    """The windows of a console by number, one of them current."""
 
     def __init__(self) -> None:
         self.windows: dict[int, Window] = {}
@@ -23,11 +23,11 @@ class Layout:
         return self.windows[self.current]
 
     def make_pane(self, content: Content, share: float = 1.0) -> Pane:
-        """A pane with a number that no other has."""
+        """Make a pane with an unused number."""
         return Pane(next(self._numbers), content, share)
 
     def open(self, name: str, root: Pane | Split, layout: str = "") -> int:
-        """Add a window under the lowest free number; returns the number."""
+        """Add a window under the lowest free number; return the number."""
         number = next(n for n in itertools.count() if n not in self.windows)
         self.windows[number] = window = Window(name or next(_panes(root)).content.view, root)
         self.windows = dict(sorted(self.windows.items()))
@@ -36,18 +36,18 @@ class Layout:
         return number
 
     def select(self, number: int) -> bool:
-        """Make a window current; returns whether there is one of that number."""
+        """Make a window current; return whether it exists."""
         if number in self.windows and number != self.current:
             self.last, self.current = self.current, number
         return number in self.windows
 
     def step(self, by: int) -> None:
-        """Go to the next window, or the one before."""
+        """Go to the next window, or the previous one."""
         numbers = list(self.windows)
         self.select(numbers[(numbers.index(self.current) + by) % len(numbers)])
 
     def close(self, number: int) -> bool:
-        """Close a window; False when it is the last."""
+        """Close a window; return False if it is the last."""
         if len(self.windows) == 1:
             return False
         numbers = list(self.windows)
@@ -61,13 +61,13 @@ class Layout:
         return True
 
     def holder(self, pane: int) -> tuple[int, Window] | None:
-        """The window that a pane is in."""
+        """Return the window that contains a pane."""
         return next(((n, w) for n, w in self.windows.items() if pane in w.numbers), None)
 
     # as data
 
     def to_json(self) -> dict[str, Any]:
-        """Everything, to be kept with the run."""
+        """Return the windows as plain data, to be saved with the run."""
         return {
             "current": self.current,
             "windows": [
@@ -85,10 +85,10 @@ class Layout:
 
     @classmethod
     def from_json(cls, data: Any) -> Layout:
-        """Read what `to_json` made, or what `graph.console` read from a file.
+        """Read the result of `to_json`, or of `console_section`.
 
         Raises:
-            ValueError: It is neither.
+            ValueError: The data is neither.
         """
         layout = cls()
         try:
@@ -130,7 +130,7 @@ class Layout:
 
 
 def _keep_or_arrange(window: Window, layout: str, *, is_saved: bool) -> None:
-    """A saved window has its sizes and only remembers the layout's name; one from a file is put in order."""
+    """Restore a window: a saved one keeps its sizes and its layout's name; one from a graph file is arranged."""
     if is_saved:
         window.layout = layout
     else:
@@ -153,7 +153,7 @@ def _to_json(node: Pane | Split) -> dict[str, Any]:
 
 
 def to_section(layout: Layout) -> dict[str, Any]:
-    """The windows as the `console:` section of a graph file has them, sizes as shares of 100."""
+    """Convert the windows to the `console:` section of a graph file, with sizes as shares of 100."""
     return {"windows": [{"name": w.name, "panes": _section(w.root, None)} for w in layout.windows.values()]}
 
 

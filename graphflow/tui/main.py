@@ -1,4 +1,4 @@
-"""Opening the console, and what is done when it has been left."""
+"""Open the console, and handle the ways in which it is left."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-os.environ["TEXTUAL_FPS"] = "20"  # Textual reads it when it is imported
+os.environ["TEXTUAL_FPS"] = "20"  # read by Textual when it is imported
 
 from graphflow.domain import go_to
 from graphflow.errors import SupervisorError
@@ -24,12 +24,12 @@ from graphflow.tui.widgets.colours import DARK
 from graphflow.tui.widgets.welcome import is_first_visit
 
 FAILED = "failed"
-"""How a console was left whose own code has failed."""
+"""The result of a console that failed by a defect of its own."""
 PREFIX_VARIABLE, THEME_VARIABLE = "GRAPHFLOW_PREFIX", "GRAPHFLOW_THEME"
 
 
 class Left:
-    """How a console was left, and the graph's exit code, if it has ended meanwhile.
+    """How a console was left, and the graph's exit code if the graph has ended.
 
     `how` is `detach`, `stop` or `failed`; from a guided tour also `next`, or `fixed` for the repaired example.
     """
@@ -47,14 +47,14 @@ def open_console(
     prefix: str | None = None,
     layout: dict[str, Any] | None = None,
 ) -> Left:
-    """Show the console until it is left; by then it may have gone to another graph.
+    """Show the console until it is left, following it from graph to graph.
 
     Args:
-        run: The run to attach to; None for nodes that no supervisor of ours has started.
-        command: The words that start `graphflow`.
+        run: The run to attach to; None for nodes without a supervisor of ours.
+        command: The command line that starts `graphflow`.
         verbs: Reads the verbs of the command line.
         prefix: The prefix key, from the command line.
-        layout: The windows to begin with; None for those kept with the run, the graph file's, or the usual ones.
+        layout: The initial windows; None for those saved with the run, the graph file's, or the default.
 
     Raises:
         SupervisorError: The supervisor does not answer.
@@ -107,12 +107,12 @@ def _show(
 
 
 def _usual_prefix() -> str:
-    """Inside tmux, its own prefix would never arrive."""
+    """Return the default prefix. Inside tmux it must not be tmux's own, which would never arrive."""
     return "ctrl+a" if os.environ.get("TMUX") else "ctrl+b"
 
 
 def _first_word(run: GraphRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """What the supervisor says before anything is drawn, so that the first screen is the right one."""
+    """Wait for the supervisor's first event, so that the first frame already shows the right windows."""
     with ControlClient(run.socket) as client:
         client.send(do="hello")
         hello = next(client.receive(), {})
@@ -123,7 +123,7 @@ def _first_word(run: GraphRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
 
 
 def _layout(*choices: dict[str, Any] | None) -> Layout | None:
-    """The first of several forms of the windows that can be read."""
+    """Return the first of several saved layouts that can be read."""
     for data in choices:
         if data and data.get("windows"):
             try:
@@ -134,7 +134,7 @@ def _layout(*choices: dict[str, Any] | None) -> Layout | None:
 
 
 def _log_to(path: Path) -> None:
-    """The terminal belongs to the console: what is logged goes to a file."""
+    """Write the log to a file: the terminal belongs to the console."""
     logger = logging.getLogger()
     for handler in list(logger.handlers):
         logger.removeHandler(handler)

@@ -1,4 +1,4 @@
-"""The part of the screen that panes share: places them, draws the lines between, lets the mouse move them."""
+"""The part of the screen that panes share: placing them, drawing the lines between them, moving them by mouse."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 
 _NO_MARGIN = Spacing()
 NOTE_LEAST = 8
-"""Columns of a note beside a title below which it says nothing."""
+"""Columns below which a note beside a title is left out."""
 TRIES, TRY_AGAIN_AFTER = 20, 0.02
-"""How often, and after how many seconds, a pane that is not there yet is given the focus again."""
+"""Attempts to focus a pane that is not mounted yet, and the seconds between them."""
 
 
 class Title(Widget):
-    """The first line of a pane: its number, what it shows, and what is special about it."""
+    """The first line of a pane: its number, its title, and its note."""
 
     class Grabbed(Message):
-        """The title was pressed, perhaps to be moved."""
+        """The title was pressed, possibly to drag it."""
 
         def __init__(self, frame: Frame, x: int, y: int) -> None:
             super().__init__()
@@ -44,7 +44,7 @@ class Title(Widget):
         super().__init__()
         self._frame = frame
         self._shown: tuple[object, ...] = ()
-        """What was drawn last."""
+        """The content that was drawn last."""
 
     def render_line(self, y: int) -> Strip:
         frame, width = self._frame, self.size.width
@@ -68,7 +68,7 @@ class Title(Widget):
         return Strip(pieces).crop_extend(0, width, base)
 
     def refresh_if_changed(self) -> None:
-        """Draw again when what is said differs."""
+        """Redraw if the content has changed."""
         frame = self._frame
         if (frame.view.title, frame.view.note, frame.is_focused) != self._shown:
             self.refresh()
@@ -78,7 +78,7 @@ class Title(Widget):
 
 
 def _cut(text: str, width: int, least: int = 1) -> str:
-    """A text that fits, with a sign where it does not whole; empty where fewer columns than `least` are left of it."""
+    """Shorten a text to the width, marked with an ellipsis; empty if fewer columns than `least` are left of it."""
     if len(text) <= width:
         return text
     return f"{text[: width - 1]}…" if width >= least else ""
@@ -88,7 +88,7 @@ class Frame(Widget):
     """A pane on the screen: its title and its view."""
 
     class Focused(Message):
-        """The focus has come into the pane."""
+        """The focus has entered the pane."""
 
         def __init__(self, number: int) -> None:
             super().__init__()
@@ -114,7 +114,7 @@ class Frame(Widget):
 
 
 class _Places(Layout):
-    """Puts frames where the window says."""
+    """The layout that puts frames at the places of the current window."""
 
     name = "panes"
 
@@ -132,7 +132,7 @@ class _Places(Layout):
 
 
 class Workspace(Widget):
-    """All panes of all windows; those of the current window are on screen.
+    """The panes of all windows; those of the current window are displayed.
 
     Args:
         make_view: Makes the view of a pane.
@@ -148,7 +148,7 @@ class Workspace(Widget):
         self._make_view = make_view
         self._dragged: Divider | None = None
         self.focus_is_due = True
-        """Whether the focus is on its way: what is told of where it was counts no more, and keys wait."""
+        """Whether a change of focus is under way: meanwhile, reports of the old focus are ignored and keys wait."""
         self._places = _Places(self)
 
     @property
@@ -172,7 +172,7 @@ class Workspace(Widget):
         self.sync()
 
     def sync(self, *, focus: bool = True) -> None:
-        """Make the screen agree with the windows: panes that came, went, moved or changed what they show."""
+        """Update the screen to the windows: panes that were opened, closed, moved or changed."""
         wanted = {p.number: p for w in self.windows.windows.values() for p in w.panes()}
         for number in [n for n in self.frames if n not in wanted]:
             self.frames.pop(number).remove()
@@ -190,19 +190,19 @@ class Workspace(Widget):
             self.bring_focus()
 
     def _place_again(self) -> None:
-        """Have the panes placed anew: it is a child's wish that makes Textual ask `layout` again."""
+        """Lay the panes out again. Textual calls `layout` again only when a child requests it."""
         self.refresh()
         for frame in self.frames.values():
             frame.refresh(layout=True)
 
     def bring_focus(self) -> None:
-        """Give the focus to the pane that should have it."""
+        """Move the focus to the pane that should have it."""
         self.focus_is_due = True
         self._focus()
-        self.call_after_refresh(self._bring_focus, TRIES)  # a new pane can take it only now
+        self.call_after_refresh(self._bring_focus, TRIES)  # a new pane cannot take it earlier
 
     def regain_focus(self) -> bool:
-        """Give the focus to its pane again; returns whether it can take it."""
+        """Restore the focus of the focused pane; return whether the pane can take it."""
         frame = self.focused
         if frame is None or not frame.view.heart.focusable:
             return False
@@ -224,7 +224,7 @@ class Workspace(Widget):
         self.post_message(self.FocusArrived())
 
     def replace_view(self, number: int, content: object) -> None:
-        """Show something else in a pane."""
+        """Replace the view in a pane."""
         frame = self.frames.pop(number, None)
         if frame is not None:
             frame.remove()
@@ -233,14 +233,14 @@ class Workspace(Widget):
         self.sync()
 
     def keep_contents(self) -> None:
-        """Take from the views what they show by now, so that it is kept with the windows."""
+        """Store the views' current content in the windows, so that it is saved with them."""
         for window in self.windows.windows.values():
             for pane in window.panes():
                 if pane.number in self.frames:
                     pane.content = self.frames[pane.number].view.content
 
     def room(self, number: int) -> Rect:
-        """Where a pane is, or would be."""
+        """Return the place of a pane, or the one it would have if displayed."""
         places = self.window.places(*self.size)
         return places.get(number, Rect(0, 0, *self.size))
 
@@ -249,13 +249,13 @@ class Workspace(Widget):
 
     def on_frame_focused(self, event: Frame.Focused) -> None:
         frame = self.frames.get(event.number)
-        if frame is None or not frame.has_focus_within or self.focus_is_due:  # it goes on, or has gone on
+        if frame is None or not frame.has_focus_within or self.focus_is_due:  # the view is still there, or has moved
             return
         if event.number in self.window.numbers and event.number != self.window.focused:
             self.window.focus(event.number)
             self.sync(focus=False)
 
-    # the lines between, and moving them
+    # the lines between panes, and dragging them
 
     def render_line(self, y: int) -> Strip:
         width = self.size.width

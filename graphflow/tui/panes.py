@@ -1,4 +1,4 @@
-"""Windows and panes as data: what is where, in cells. Nothing here knows a screen.
+"""Windows and panes as data, placed in cells. Nothing here depends on a screen.
 
 A window is a tree: its leaves are panes, its inner nodes split their space into rows or columns by shares. Between two
 columns is a line of one cell; a row needs none, since every pane begins with its title.
@@ -15,7 +15,7 @@ from graphflow.console.section import LAYOUTS
 from graphflow.introspect.drawing.layered import Rect
 
 MIN_WIDTH, MIN_HEIGHT = 12, 3
-"""Cells that a pane has at least, its title included."""
+"""The smallest size of a pane in cells, its title included."""
 MAX_PANES = 40
 MAX_WINDOWS = 50
 MAIN_SHARE = 60.0
@@ -26,7 +26,7 @@ Direction = Literal["left", "right", "up", "down"]
 
 @dataclass(frozen=True)
 class Content:
-    """What a pane shows."""
+    """The content of a pane: a view, its subject and its options."""
 
     view: str
     about: str = ""
@@ -47,7 +47,7 @@ class Pane:
 
 @dataclass
 class Split:
-    """An inner node: several panes side by side, or one above the other."""
+    """An inner node: panes side by side, or one above the other."""
 
     axis: Axis
     of: list[Pane | Split]
@@ -55,14 +55,14 @@ class Split:
 
 
 class Divider(NamedTuple):
-    """A border that can be dragged: between two neighbours of a split, where it is now."""
+    """A border that can be dragged, between two neighbours of a split."""
 
     split: Split
     before: int
-    """The index of the neighbour before it."""
+    """The index of the neighbour before the border."""
     place: Rect
     room: int
-    """Cells that the split has along its axis, lines between not counted."""
+    """Cells of the split along its axis, without the lines between its parts."""
 
 
 class Window:
@@ -73,13 +73,13 @@ class Window:
         self.root = root
         self.zoomed = False
         self.layout = ""
-        """The named layout that was chosen last."""
+        """The named layout chosen last."""
         first = next(self.panes()).number
         self.focused = first
         self.last_focused = first
 
     def panes(self) -> Iterator[Pane]:
-        """The panes from left to right and top to bottom, as the tree has them."""
+        """Iterate over the panes from left to right and top to bottom, in the order of the tree."""
         return _leaves(self.root)
 
     @property
@@ -90,15 +90,15 @@ class Window:
         return next(p for p in self.panes() if p.number == number)
 
     def focus(self, number: int) -> None:
-        """Focus a pane; a zoomed one gives way to it."""
+        """Focus a pane, ending a zoom of another one."""
         if number != self.focused:
             self.last_focused, self.focused = self.focused, number
             self.zoomed = False
 
-    # where everything is
+    # geometry
 
     def places(self, width: int, height: int) -> dict[int, Rect]:
-        """Where each visible pane is. What does not fit is left out, the focused pane last."""
+        """Return the place of each visible pane. Panes that do not fit are left out, the focused one last."""
         if self.zoomed:
             return {self.focused: Rect(0, 0, width, height)}
         found = {p.number: r for p, r in _placed(self.root, Rect(0, 0, width, height))}
@@ -107,7 +107,7 @@ class Window:
         return found
 
     def dividers(self, width: int, height: int) -> list[Divider]:
-        """The borders between the panes; of rows it is the title line of the lower one."""
+        """Return the borders between panes. The border of two rows is the title line of the lower one."""
         if len(self.places(width, height)) < len(self.numbers):
             return []
         return list(_dividers(self.root, Rect(0, 0, width, height)))
@@ -115,10 +115,10 @@ class Window:
     # changes
 
     def split(self, number: int, new: Pane, axis: Axis, room: Rect) -> bool:
-        """Split a pane in two, the new one after it; returns whether there was room.
+        """Split a pane in two, the new one after it; return whether there was room.
 
         Args:
-            room: Where the pane is.
+            room: The place of the pane.
         """
         enough = room.width >= 2 * MIN_WIDTH + 1 if axis == "columns" else room.height >= 2 * MIN_HEIGHT
         if not enough or len(self.numbers) >= MAX_PANES:
@@ -137,7 +137,7 @@ class Window:
         return True
 
     def close(self, number: int) -> bool:
-        """Take a pane out; False when it is the last."""
+        """Remove a pane; return False if it is the last."""
         above = self._above(number)
         if above is None:
             return False
@@ -162,7 +162,7 @@ class Window:
         return True
 
     def _flatten(self, node: Pane | Split) -> None:
-        """A split inside a split of the same kind becomes part of it."""
+        """Merge splits nested in a split of the same axis."""
         if isinstance(node, Pane):
             return
         above = self._split_above(node)
@@ -175,7 +175,7 @@ class Window:
         above.of[at : at + 1] = node.of
 
     def swap(self, number: int, step: int) -> None:
-        """Let a pane change places with the one before or after it."""
+        """Swap a pane with the one before or after it."""
         panes = list(self.panes())
         at = next(i for i, p in enumerate(panes) if p.number == number)
         other = panes[(at + step) % len(panes)]
@@ -184,7 +184,7 @@ class Window:
         mine.content, other.content = other.content, mine.content
 
     def neighbour(self, number: int, direction: Direction, width: int, height: int) -> int | None:
-        """The pane next to one, on the side of its middle; at the edge the one at the other end."""
+        """Return the pane adjacent to the middle of a pane's side; at the edge of the window, wrap around."""
         places = {p.number: r for p, r in _placed(self.root, Rect(0, 0, width, height))}
         me = places[number]
         best: tuple[int, int, int] | None = None
@@ -201,7 +201,7 @@ class Window:
                 middle = abs((2 * r.x + r.width) - (2 * me.x + me.width))
             if apart:
                 continue
-            # Behind counts as far ahead: moving on from the edge comes in at the other end.
+            # Panes behind count as far ahead: moving past the edge wraps around to the other side.
             rank = (ahead if ahead >= 0 else 10_000 + ahead, middle, other)
             best = rank if best is None or rank < best else best
         return None if best is None else best[2]
@@ -211,7 +211,7 @@ class Window:
         return numbers[(numbers.index(number) + step) % len(numbers)]
 
     def resize(self, number: int, direction: Direction, cells: int, width: int, height: int) -> bool:
-        """Move the border of a pane, its far one or else its near one; returns whether it moved."""
+        """Move a border of a pane, the far one if there is one; return whether it moved."""
         axis: Axis = "columns" if direction in ("left", "right") else "rows"
         step = cells if direction in ("right", "down") else -cells
         node: Pane | Split = self.pane(number)
@@ -228,7 +228,7 @@ class Window:
         return drag(found, place + step)
 
     def arrange(self, layout: str) -> None:
-        """Put the panes in one of the five named layouts."""
+        """Arrange the panes in one of the five named layouts."""
         panes = list(self.panes())
         for pane in panes:
             pane.share = 1.0
@@ -236,7 +236,7 @@ class Window:
         self.root = _arranged(panes, layout)
 
     def next_layout(self) -> str:
-        """Change to the layout after the current one; returns its name."""
+        """Change to the next named layout; return its name."""
         at = LAYOUTS.index(self.layout) + 1 if self.layout in LAYOUTS else 0
         self.arrange(LAYOUTS[at % len(LAYOUTS)])
         return self.layout
@@ -256,7 +256,7 @@ class Window:
 
 
 def drag(divider: Divider, to: int) -> bool:
-    """Move a border to a column or row; returns whether it moved."""
+    """Move a border to a column or row; return whether it moved."""
     split, i = divider.split, divider.before
     sizes = _sizes([n.share for n in split.of], divider.room)
     at = divider.place.x if split.axis == "columns" else divider.place.y
@@ -287,7 +287,7 @@ def _splits(node: Pane | Split) -> Iterator[Split]:
 
 
 def _sizes(shares: list[float], room: int) -> list[int]:
-    """Whole cells that add up to `room`, in proportion to the shares."""
+    """Divide `room` into whole cells in proportion to the shares."""
     total = sum(shares) or 1.0
     edges = [round(room * part / total) for part in itertools.accumulate(shares, initial=0.0)]
     return [b - a for a, b in itertools.pairwise(edges)]

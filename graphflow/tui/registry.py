@@ -1,4 +1,4 @@
-"""All views by name: those that come with graphflow, imported when first shown, and those of other packages."""
+"""The views by name: graphflow's own, imported when first shown, and those of other packages."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _FOLDERS = {
     "topics": ("topics", "echo", "hz", "plot"),
     "nodes": ("nodes", "detail", "crash", "params", "tree", "top"),
 }
-"""The packages below `views`, and the views in each; the others have modules of their own."""
+"""Packages below `views`, with the views in each; other views have a module of their own."""
 TOUR = "tour"
-"""The view of `graphflow demo`, which is in no list."""
+"""The view of `graphflow demo`, which no list offers."""
 
 
 def view_class(name: str) -> type[View]:
-    """The class of a view; a view that says what is wrong where there is none."""
+    """Return the class of a view, or of a view that explains why it cannot be shown."""
     if name in VIEWS or name == TOUR:
         found: type[View] = import_module(_module(name)).VIEW
         return found
@@ -30,7 +30,7 @@ def view_class(name: str) -> type[View]:
         if entry.name == name:
             try:
                 loaded = entry.load()
-            except Exception as error:  # another package's code: whatever it raises is what its user must see
+            except Exception as error:  # another package's code may raise anything, and its author must see it
                 return broken(f"the view {name} of {entry.value} cannot be loaded: {error!r}")
             if isinstance(loaded, type) and issubclass(loaded, View):
                 return loaded
@@ -44,5 +44,5 @@ def _module(name: str) -> str:
 
 
 def describe(name: str) -> str:
-    """What a view shows, in a line."""
+    """Return the one-line description of a view."""
     return view_class(name).DOC

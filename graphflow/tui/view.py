@@ -1,7 +1,7 @@
-"""What a pane shows: the base class of all views, those of other packages too.
+"""The base class of all views, those of other packages included.
 
-A view reads from its `hub` when it is looked at, a few times a second, and draws what has changed. It never waits: what
-takes time goes through `work`, and its result comes back on the loop.
+A view reads its `hub` a few times a second and draws the changes. It never waits: slow work goes through `work`, whose
+result arrives on the event loop.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from graphflow.tui.panes import Content
 from graphflow.tui.widgets.colours import Colours
 
 SOON = 0.1
-"""Seconds after an event in which what follows it may come, too, to be drawn with it."""
+"""Seconds by which an early update is delayed, so that a burst of events is drawn once."""
 
 
 class View(Widget):
-    """One view. Subclasses give it a NAME, compose their widgets and fill them in `look`.
+    """One view. Subclasses set NAME, compose their widgets and update them in `look`.
 
     Args:
-        hub: What is shown comes from here.
-        content: What was asked for: the view's name, what it is about, its options.
+        hub: The source of the data to show.
+        content: The content to show: the view's name, its subject and its options.
     """
 
     NAME: ClassVar[str] = ""
     DOC: ClassVar[str] = ""
-    """What the view shows, in a line for the list of views."""
+    """The description of the view in the list of views."""
     ACTIONS: ClassVar[tuple[Action, ...]] = ()
-    """What its keys do while it is focused: `do_<name>` for each."""
+    """The actions of the view's keys while it is focused; `do_<name>` carries each out."""
     LEAST_WIDTH: ClassVar[int] = 30
-    """Columns without which it says little: where a split would leave less, it opens otherwise."""
+    """The narrowest useful width in columns; where a split would leave less, the view opens elsewhere."""
     EVERY: ClassVar[float] = 0.5
-    """Seconds between two looks at most."""
+    """Minimum seconds between two updates."""
     SHOWS_STATES: ClassVar[bool] = False
-    """Whether it shows the states of nodes: then it looks soon after the supervisor has told of one."""
+    """Whether the view shows states of nodes, and is updated early after a change of state."""
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__()
@@ -48,32 +48,32 @@ class View(Widget):
         self.about = content.about
         self.options = dict(content.options)
         self.looked = 0.0
-        """When `look` was called last, by the monotonic clock."""
+        """The time of the last call of `look`, by the monotonic clock."""
         for action in self.ACTIONS:
             for key in action.keys:
                 self._bindings.bind(key, f"act('{action.name}')", action.title, show=False)
 
-    # for subclasses
+    # for subclasses to override
 
     @property
     def title(self) -> str:
-        """What the pane's title says."""
+        """The text of the pane's title."""
         return f"{self.NAME} {self.about}".rstrip()
 
     @property
     def note(self) -> str:
-        """What stands on the right of the title: a count, a warning."""
+        """The text on the right of the title: a count or a warning."""
         return ""
 
     def look(self, now: float) -> None:
-        """Draw what has changed. Called while the view is on screen."""
+        """Draw the changes. Called while the view is on screen; must not wait."""
 
     def restyle(self) -> None:
-        """Draw everything again: the theme has changed."""
+        """Redraw everything after a change of theme."""
 
     @property
     def heart(self) -> Widget:
-        """What has the focus when the pane has: the first widget that can, unless told otherwise."""
+        """The widget that has the focus while the pane has: by default, the first focusable one."""
         return next((widget for widget in self.query("*") if widget.focusable), self)
 
     def focus_inside(self) -> None:
@@ -81,37 +81,37 @@ class View(Widget):
         self.screen.set_focus(self.heart)
 
     def asked_again(self, content: Content) -> None:
-        """Take in that what it shows was asked for once more, perhaps with other options."""
+        """Handle another request for the content shown, possibly with other options."""
 
     def closed(self) -> None:
-        """The view is going away: let go of what it holds."""
+        """Release resources; the view is being removed."""
 
     @property
     def active(self) -> View:
-        """The view whose keys count while the pane has the focus: one inside of it, perhaps."""
+        """The view whose keys apply while the pane has the focus: possibly a nested one."""
         return self
 
     def shows(self, content: Content) -> bool:
-        """Show something that was asked for inside of this view; returns whether it is a place for that."""
+        """Show content inside this view if it has a place for it; return whether it does."""
         return False
 
     def interrupt(self) -> bool:
-        """Take Ctrl-C, as a shell does; returns whether it was for the view."""
+        """Handle Ctrl-C as a shell does; return whether it was for the view."""
         return False
 
     def offers(self, action: Action) -> bool:
-        """Whether the bottom line should show an action now."""
+        """Return whether the bottom line should offer an action now."""
         return action.hint
 
     def chosen(self) -> dict[str, str]:
-        """What is chosen in the view, for commands: `{"node": "/turtlesim"}`."""
+        """Return the selection in the view, for commands: `{"node": "/turtlesim"}`."""
         return {}
 
-    # what subclasses use
+    # for subclasses to use
 
     @property
     def content(self) -> Content:
-        """What would open the view again as it is now."""
+        """The content that would open the view again as it is now."""
         return Content(self.NAME, self.about, self.options)
 
     @property
@@ -121,30 +121,30 @@ class View(Widget):
 
     @property
     def console(self) -> Any:
-        """The console that the view is in."""
+        """The console that contains the view."""
         return self.app
 
     def say(self, text: str, *, bad: bool = False) -> None:
-        """Tell the user something in the bottom line."""
+        """Show a message in the bottom line."""
         self.console.say(text, bad=bad)
 
     def look_soon(self) -> None:
-        """Look again before it is due, but not for each of many events."""
+        """Update before the regular time, but only once for a burst of events."""
         self.looked = min(self.looked, time.monotonic() - self.EVERY + SOON)
 
     def did(self, shell: str) -> None:
-        """Show the shell command that does what was just done."""
+        """Show the shell command equivalent to the action just taken."""
         self.console.did(shell)
 
     def open(self, view: str, about: str = "", **options: Any) -> None:
-        """Show something in a pane beside this one."""
+        """Open a view in a pane beside this one."""
         self.console.open_beside(Content(view, about, options))
 
     def work(self, doing: Callable[[], Awaitable[None]], group: str = "") -> None:
-        """Do something that takes time; a GraphflowError that it raises is shown.
+        """Run a coroutine function in a worker; show a GraphflowError that it raises.
 
         Args:
-            group: Work of one group replaces what is still under way in it; empty for none.
+            group: A name; work replaces unfinished work of the same group. Empty for none.
         """
 
         async def guarded() -> None:

@@ -1,4 +1,4 @@
-"""The console in a browser, on this machine only: each tab is a console of its own."""
+"""The console in a browser on this machine; each tab is a separate console."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class OwnPageServer(Server):
-    """A server that only its own page can talk to: there is no password, and any page in the browser may try."""
+    """A server that serves only its own page. There is no password, so that any page in the browser could connect."""
 
     async def _make_app(self) -> web.Application:
         app: web.Application = await super()._make_app()
@@ -33,9 +33,9 @@ class OwnPageServer(Server):
 
 
 def serve(words: Sequence[str], port: int) -> None:
-    """Serve a page whose tabs each run a command; returns after Ctrl-C.
+    """Serve a page whose tabs each run a command; return after Ctrl-C.
 
     Args:
-        words: The command.
+        words: The command line.
     """
     OwnPageServer(shlex.join(words), host=HOST, port=port, title="graphflow").serve()

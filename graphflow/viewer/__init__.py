@@ -1,4 +1,4 @@
-"""A running graph in the viewers that speak Foxglove's WebSocket protocol: Foxglove, Lichtblick, PlotJuggler.
+"""A running graph in viewers that speak Foxglove's WebSocket protocol: Foxglove, Lichtblick, PlotJuggler.
 
-Only this room knows `websockets`, which comes with the extra `view`.
+Only this package imports `websockets`, which comes with the extra `view`.
 """

@@ -1,4 +1,4 @@
-"""Serves a graph to viewers: keeps what they are shown in line with the graph, and brings in what they send."""
+"""The server for viewers: keeps their picture of the graph current, and carries out their requests."""
 
 from __future__ import annotations
 
@@ -37,24 +37,25 @@ T = TypeVar("T")
 logger = logging.getLogger("graphflow")
 
 GRACE = 1.0
-"""Seconds that viewers have to say goodbye."""
+"""Seconds to wait for viewers to close their connections."""
 LOOK_EVERY = 0.2
-"""Seconds between two looks at a graph that changes."""
+"""Seconds between two updates while the graph changes."""
 CLIENTS_BOUND = 32
-"""Viewers at a time."""
+"""Maximum number of viewers."""
 MESSAGE_BOUND = 16 << 20
-"""Bytes that one message of a viewer may have."""
+"""Maximum bytes of one message from a viewer."""
 PAGES = re.compile(r"https://([a-z0-9-]+\.)*foxglove\.dev|https?://(localhost|127\.0\.0\.1|\[::1\])(:\d+)?")
-"""Web pages that may connect, besides programs and those that the user allows: any page can ask a browser to connect to
-this machine, files that were downloaded (`file://`) and extensions of the browser included."""
+"""Web pages allowed to connect, besides the user's own list; programs always are. The check is needed since any page
+can make a browser connect to this machine, including downloaded files (`file://`) and browser extensions.
+"""
 
 
 class Bridge:
     """Serves the graph of a node from `open` to `close`.
 
     Args:
-        name: What viewers call it.
-        is_read_only: Viewers look, and neither publish, nor call, nor set.
+        name: The name of the server in viewers.
+        is_read_only: Whether viewers may neither publish, nor call, nor set parameters.
         pages: Origins of further web pages that may connect: `https://viewer.example`.
     """
 
@@ -69,18 +70,18 @@ class Bridge:
         self._publications = Publications(node)
         self._parameters = Parameters(node, self._changed)
         self._is_clocked = False
-        """Whether the clock is listened to."""
+        """Whether /clock is subscribed to."""
         self._server: Server | None = None
         self._following: asyncio.Task[None] | None = None
 
     async def open(self, host: str, port: int) -> int:
-        """Begin to serve; returns the port.
+        """Start the server; return its port.
 
         Args:
-            port: 0 for any.
+            port: 0 for any free one.
 
         Raises:
-            TransportError: Nobody can be served there.
+            TransportError: The server cannot listen there.
         """
         try:
             self._server = await serve(
@@ -90,7 +91,7 @@ class Bridge:
                 subprotocols=[Subprotocol(name) for name in protocol.SUBPROTOCOLS],
                 process_request=self._admit,
                 max_size=MESSAGE_BOUND,
-                compression=None,  # it would hold up everybody else, and images do not get smaller
+                compression=None,  # compression would delay all other clients, and images do not shrink
                 logger=logging.getLogger("graphflow.viewer.websockets"),
             )
         except (OSError, UnicodeError) as error:
@@ -104,7 +105,7 @@ class Bridge:
         return found
 
     async def close(self) -> None:
-        """Send the viewers away."""
+        """Stop the server and disconnect the viewers."""
         if self._following is not None:
             self._following.cancel()
         if self._server is not None:
@@ -112,7 +113,7 @@ class Bridge:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(GRACE):
                     await self._server.wait_closed()
-            for client in self._clients:  # those that do not read would be waited for
+            for client in self._clients:  # waiting for clients that do not read would never end
                 client.abort()
             await self._server.wait_closed()
         self._topics.close()
@@ -121,9 +122,9 @@ class Bridge:
     # clients
 
     def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Let a client in, unless it is a page of a stranger or one too many."""
+        """Reject a page of unknown origin, and clients beyond the limit."""
         origin = request.headers.get("Origin", "")
-        if origin and origin not in self._pages and not PAGES.fullmatch(origin):  # programs have none
+        if origin and origin not in self._pages and not PAGES.fullmatch(origin):  # programs send no Origin
             logger.warning(
                 "a page of %s was refused; if it is your viewer: --allow-page %s", *[printable(origin[:200])] * 2
             )
@@ -162,10 +163,10 @@ class Bridge:
             self._services.greet(client)
 
     def _take(self, client: Client, message: str | bytes) -> None:
-        """Do what a client says.
+        """Carry out a client's request.
 
         Raises:
-            GraphflowError: It cannot be done; the text is for the client.
+            GraphflowError: The request cannot be carried out; the text is for the client.
         """
         said = protocol.read_text(message) if isinstance(message, str) else protocol.read_bytes(message)
         match said:
@@ -212,10 +213,10 @@ class Bridge:
                 await self._show_parameters(client, [value.name for value in said.parameters], said.id)
 
     def _follow_parameters(self, client: Client, names: set[str], *, wanted: bool) -> None:
-        """Begin or end to tell a client of changes: of some parameters, or if none is named of all.
+        """Start or stop reporting changes of parameters to a client: of those named, or of all if none is.
 
         Raises:
-            UsageFault: It follows too many.
+            UsageFault: The client follows too many.
         """
         if not names:
             client.follows_all = wanted
@@ -236,7 +237,7 @@ class Bridge:
             self._tell(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
 
     def _look_for_clock(self) -> None:
-        """Follow simulated time as soon as somebody tells it; viewers that come from then on go by it."""
+        """Follow /clock once it has a publisher. Viewers that connect later use simulated time."""
         if not self._is_clocked and self._node.context.cache.endpoints(Kind.PUBLISHER, "/clock"):
             self._is_clocked = True
             clock: Any = registry.interface_class("rosgraph_msgs/msg/Clock")
@@ -261,7 +262,7 @@ class Bridge:
             stop()
 
     def _show_graph(self, client: Client, graph: Connections) -> None:
-        """Tell a client what has changed since it was told last."""
+        """Send a client the changes of the connection graph since its last update."""
         if client.graph is None or client.graph == graph:
             return
         known, update = client.graph, {}
@@ -278,7 +279,7 @@ class Bridge:
 
 
 def _each(client: Client, wanted: Iterable[T], work: Callable[[Client, T], None]) -> None:
-    """Do something for each thing that a client wants; what cannot be is told it, and costs the others nothing."""
+    """Process the entries of a request one by one; a failed one is reported to the client, and the others go on."""
     for one in wanted:
         try:
             work(client, one)
@@ -296,14 +297,14 @@ PARTS = {
     "subscribedTopics": ("name", "subscriberIds"),
     "advertisedServices": ("name", "providerIds"),
 }
-"""The parts of the graph of connections, and the words of their entries."""
+"""The parts of the connection graph, with the keys of their entries."""
 
 Connections = dict[str, dict[str, list[str]]]
-"""For each part, the nodes of each topic or service."""
+"""The nodes of each topic or service, by part of the connection graph."""
 
 
 def connections(cache: GraphCache) -> Connections:
-    """Who publishes, listens and serves what; hidden names are left out."""
+    """Return the publishers, subscribers and servers in the graph, without hidden ones."""
     found: Connections = {}
     for part, kind in zip(PARTS, (Kind.PUBLISHER, Kind.SUBSCRIPTION, Kind.SERVICE), strict=True):
         nodes: dict[str, set[str]] = defaultdict(set)

@@ -1,8 +1,8 @@
-"""One viewer that is connected: what waits to be sent to it, within bounds.
+"""One connected viewer and its bounded send queues.
 
-A viewer shows what is, so of what it reads too slowly the newest counts. Each channel has a short queue of its own.
-Small messages go before large ones, and channels of large ones take turns. No more is sent than the viewer has been
-seen to read: what lies in the system's buffers can no longer be left out.
+A viewer displays the present, so if it reads too slowly, the newest messages count. Each channel has a short queue of
+its own; small messages go first, and channels of large ones take turns. No more is sent than the viewer is known to
+read, since messages in the system's buffers can no longer be dropped.
 """
 
 from __future__ import annotations
@@ -23,47 +23,47 @@ from graphflow.viewer.protocol import told
 logger = logging.getLogger("graphflow")
 
 CHANNEL_BOUND = 64 << 10
-"""Bytes of messages that may wait in a channel; of larger messages, only the latest does."""
+"""Maximum bytes waiting in a channel; of larger messages, only the latest is kept."""
 CHANNEL_DEPTH = 100
-"""Messages that may."""
+"""Maximum messages waiting in a channel."""
 WINDOW = 256 << 10
-"""Bytes of messages after which a viewer is asked whether it has read them."""
+"""Bytes of messages between two pings, which confirm that the viewer has read them."""
 WINDOWS = 2
-"""Such questions that may be open before it is sent more."""
+"""Maximum unanswered pings before sending pauses."""
 WORDS_BOUND = 16 << 20
-"""Bytes of words that may wait; a viewer that reads nothing is sent away."""
+"""Maximum bytes of control messages waiting; a viewer that exceeds it is disconnected."""
 TEXT_BOUND = 500
-"""Characters of a warning: it may repeat what the viewer sent."""
+"""Maximum characters of a warning, which may quote the viewer's own input."""
 WORK_BOUND = 100
-"""Calls and requests for parameters that may be under way."""
+"""Maximum calls and parameter requests under way."""
 
 
 class Client:
-    """A viewer that is connected."""
+    """A connected viewer."""
 
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
         self._words: deque[str | bytes] = deque()
         self._waiting: dict[int, deque[bytes]] = {}
-        """Messages by channel; never empty ones."""
+        """Messages waiting by channel, without empty queues."""
         self._turns = itertools.count(1)
         self._sent_at: dict[int, int] = {}
-        """When each channel last had its turn."""
+        """The turn in which each channel last sent."""
         self._words_bytes = self._sent = self._unread = 0
-        """Bytes of words that wait; bytes of messages sent since it was asked; questions that are open."""
+        """Bytes of control messages waiting; bytes of messages sent since the last ping; unanswered pings."""
         self._is_new = asyncio.Event()
         self._work: set[asyncio.Task[Any]] = set()
         self.dropped = 0
-        """Messages that it read too slowly to get."""
+        """Messages dropped because the client reads too slowly."""
         self.followed: set[str] = set()
-        """Parameters whose changes it wants to know."""
+        """Parameters whose changes the client follows."""
         self.follows_all = False
-        """Whether it wants to know the changes of all parameters."""
+        """Whether the client follows the changes of all parameters."""
         self.graph: dict[str, Any] | None = None
-        """The connections that it knows of; None if it does not want to."""
+        """The connection graph last sent; None if the client does not follow it."""
 
     def say(self, word: str | bytes) -> None:
-        """Tell it something, before all messages that wait; one that does not listen is sent away."""
+        """Send a control message ahead of all other messages; disconnect a client that does not read."""
         self._words.append(word)
         self._words_bytes += len(word)
         if self._words_bytes > WORDS_BOUND:
@@ -73,15 +73,15 @@ class Client:
         self._is_new.set()
 
     def abort(self) -> None:
-        """End its connection without waiting for it."""
+        """Drop the connection without a closing handshake."""
         self._connection.transport.abort()
 
     def warn(self, text: str) -> None:
-        """Tell it that something cannot be."""
+        """Send a warning to be displayed."""
         self.say(told("status", level=1, message=printable(text[:TEXT_BOUND])))
 
     def show(self, channel: int, frame: bytes) -> None:
-        """Send it a message of a channel."""
+        """Queue a message of a channel."""
         waiting = self._waiting.setdefault(channel, deque())
         waiting.append(frame)
         while len(waiting) > 1 and (len(waiting) > CHANNEL_DEPTH or sum(map(len, waiting)) > CHANNEL_BOUND):
@@ -92,7 +92,7 @@ class Client:
         self._is_new.set()
 
     def begin(self, work: Callable[[], Awaitable[None]]) -> None:
-        """Do something for it that takes time; its errors are told it."""
+        """Run a slow request in a task; report its errors to the client."""
         if len(self._work) >= WORK_BOUND:
             self.warn(f"{WORK_BOUND} requests are under way already")
             return
@@ -105,12 +105,12 @@ class Client:
             await work()
         except GraphflowError as error:
             self.warn(str(error))
-        except Exception as error:  # whatever it may have sent
+        except Exception as error:  # the client's input may cause any error
             logger.warning("a request of a viewer has failed", exc_info=error)
             self.warn(f"this request has failed: {error!r}")
 
     async def write(self) -> None:
-        """Send what there is, until it has gone."""
+        """Send queued messages until the connection ends."""
         try:
             while True:
                 if self._words:
@@ -126,7 +126,7 @@ class Client:
             return
 
     def _next(self) -> bytes:
-        """The message to send: a small one first, the smallest; of large ones, in turn by channel."""
+        """Choose the next message: the smallest of the small ones, otherwise a large one, in turn by channel."""
         channel = min(self._waiting, key=self._turn)
         self._sent_at[channel] = next(self._turns)
         frame = self._waiting[channel].popleft()
@@ -148,19 +148,19 @@ class Client:
             asyncio.ensure_future(await self._connection.ping()).add_done_callback(self._was_read)
 
     def _was_read(self, pong: asyncio.Future[float]) -> None:
-        """It has read what came before a ping, or has gone."""
+        """Handle a pong: the client has read everything before the ping, or has disconnected."""
         if not pong.cancelled():
-            pong.exception()  # which is told by whatever is sent next
+            pong.exception()  # a lost connection is reported by the next send
         self._unread -= 1
         self._is_new.set()
 
     def forget(self, channel: int) -> None:
-        """Send no more of a channel."""
+        """Drop the queue of a channel."""
         self._waiting.pop(channel, None)
         self._sent_at.pop(channel, None)
 
     def close(self) -> None:
-        """End what is under way for it."""
+        """Cancel all requests under way."""
         if self.dropped:
             logger.warning("a viewer that has gone read too slowly: %s messages were left out", self.dropped)
         for task in self._work:

@@ -1,4 +1,4 @@
-"""Parameters of all nodes as parameters of viewers: `/turtlesim.background_r`."""
+"""The parameters of all nodes as parameters of viewers: `/turtlesim.background_r`."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ from graphflow.wire.liveliness import Kind
 logger = logging.getLogger("graphflow")
 
 LIMIT = 2.0
-"""Seconds that a node has to answer."""
+"""Seconds that a node has to reply."""
 _LIST = "/list_parameters"
 _TYPES = {3: "float64", 5: "byte_array", 8: "float64_array"}
-"""What JSON does not tell apart, by the numbers of rcl_interfaces/msg/ParameterType."""
+"""Types that JSON cannot tell apart, by the numbers of rcl_interfaces/msg/ParameterType."""
 
 Words = dict[str, Any]
-"""A parameter as the protocol has it: name, value and type."""
+"""A parameter in the protocol's form: name, value and type."""
 
 
 class Parameters:
-    """The parameters of a node's graph.
+    """The parameters of all nodes in a graph.
 
     Args:
-        changed: Called with those that have changed.
+        changed: Called with parameters that have changed.
     """
 
     def __init__(self, node: Node, changed: Callable[[list[Words]], object]) -> None:
@@ -47,7 +47,7 @@ class Parameters:
         node.create_subscription(event, "/parameter_events", self._changed, PARAMETER_EVENTS)
 
     async def get(self, names: Sequence[str]) -> list[Words]:
-        """The parameters of these names that there are; all, if none is named."""
+        """Return the existing parameters of these names; all if there are none."""
         of_node: dict[str, list[str]] = defaultdict(list)
         for name in names:
             node, _, parameter = name.partition(".")
@@ -106,13 +106,13 @@ class Parameters:
 
 
 def shown(node: str, name: str, message: Any) -> Words:
-    """A parameter as the protocol has it.
+    """Convert a parameter to the protocol's form.
 
     Args:
         message: rcl_interfaces/msg/ParameterValue.
 
     Raises:
-        ParameterError: Its type is none of ROS 2's.
+        ParameterError: Its type is not one of ROS 2's.
     """
     value = from_message(message)
     words = {"name": f"{node}.{name}", "value": base64.b64encode(value).decode() if message.type == 5 else _json(value)}
@@ -120,14 +120,14 @@ def shown(node: str, name: str, message: Any) -> Words:
 
 
 def _json(value: Any) -> Any:
-    """A value as JSON can have it: what is infinite or no number becomes a text."""
+    """Convert a value to JSON; infinities and NaN become strings."""
     if isinstance(value, list):
         return [_json(item) for item in value]
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _message(value: Value, type_: int) -> Any:
-    """A value of a client as the node wants it.
+    """Convert a client's value to the type that the node expects.
 
     Raises:
         UsageFault: It is not of the parameter's type.

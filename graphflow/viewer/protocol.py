@@ -1,4 +1,4 @@
-"""Foxglove's WebSocket protocol: what clients say, checked, and what they are told.
+"""Foxglove's WebSocket protocol: validation of clients' messages, and encoding of the server's.
 
 Source: github.com/foxglove/ws-protocol, docs/spec.md.
 """
@@ -15,10 +15,10 @@ from pydantic.alias_generators import to_camel
 from graphflow.errors import DecodeError
 
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
-"""The names of the protocol, the latest first."""
+"""The names of the protocol, newest first."""
 
 MANY = 5_000
-"""Entries that one message of a client may have."""
+"""Maximum entries of one message from a client."""
 
 Id = Annotated[int, Field(ge=0, lt=1 << 32)]
 Name = Annotated[str, Field(max_length=1_000)]
@@ -31,20 +31,20 @@ class _Part(BaseModel):
 
 
 class Subscription(_Part):
-    """The number by which a client wants to know what comes on a channel."""
+    """A subscription to a channel, numbered by the client."""
 
     id: Id
     channel_id: Id
 
 
 class Announced(_Part):
-    """What a client wants to publish."""
+    """A channel on which the client will publish."""
 
     id: Id
     topic: Name
     encoding: Name
     schema_name: Name
-    """Its type: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist`."""
+    """The type: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist`."""
 
 
 class Value(_Part):
@@ -104,7 +104,7 @@ class Message(NamedTuple):
 
 
 class Call(NamedTuple):
-    """A call of a service by a client."""
+    """A client's call of a service."""
 
     service_id: int
     call_id: int
@@ -119,10 +119,10 @@ _SAID: TypeAdapter[Said] = TypeAdapter(Annotated[Said, Field(discriminator="op")
 
 
 def read_text(text: str) -> Said:
-    """What a client says in JSON.
+    """Parse a client's JSON message.
 
     Raises:
-        DecodeError: It is nothing that a client may say; the text is for the client.
+        DecodeError: The message is not part of the protocol; the text is for the client.
     """
     try:
         return _SAID.validate_json(text)
@@ -135,7 +135,7 @@ def read_text(text: str) -> Said:
 
 
 def read_bytes(data: bytes) -> Message | Call:
-    """What a client says in bytes.
+    """Parse a client's binary message.
 
     Raises:
         DecodeError: As for `read_text`.
@@ -153,23 +153,23 @@ def read_bytes(data: bytes) -> Message | Call:
 
 
 def told(op: str, **fields: Any) -> str:
-    """What a client is told in JSON; fields in the words of the protocol, and those that are None left out."""
+    """Encode a message of the server as JSON, with fields in camel case, leaving out those that are None."""
     return json.dumps(
         {"op": op, **{to_camel(name): value for name, value in fields.items() if value is not None}}, allow_nan=False
     )
 
 
 def message_head(subscription_id: int, time_ns: int) -> bytes:
-    """What stands before a message of a channel."""
+    """Return the header of a channel's message."""
     return struct.pack("<BIQ", 1, subscription_id, time_ns)
 
 
 def time_frame(time_ns: int) -> bytes:
-    """The server's time."""
+    """Encode the server's time."""
     return struct.pack("<BQ", 2, time_ns)
 
 
 def answer_frame(call: Call, data: bytes) -> bytes:
-    """The answer to a call, in the encoding of its request."""
+    """Encode the response to a call, in the encoding of the request."""
     encoding = call.encoding.encode()
     return struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding)) + encoding + data

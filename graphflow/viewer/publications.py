@@ -1,4 +1,4 @@
-"""What viewers publish, such as the commands of a joystick on the screen."""
+"""Publishers on behalf of viewers, such as for the commands of an on-screen joystick."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from graphflow.viewer.client import Client
 from graphflow.viewer.protocol import Announced, Message
 
 BOUND = 200
-"""Publishers of all clients together."""
+"""Maximum publishers of all clients together."""
 ENCODINGS = ("cdr", "json")
-"""In which messages may come."""
+"""Accepted encodings of messages."""
 
 
 class Publications:
-    """The publishers of the clients of a viewer. What is wrong is raised as a GraphflowError, with a text for them."""
+    """The publishers of all clients. Errors are raised as GraphflowError, with a text for the client."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -33,7 +33,7 @@ class Publications:
         return len(self._publishers)
 
     def announce(self, client: Client, announced: Announced) -> None:
-        """Make a publisher for a client."""
+        """Create a publisher for a client."""
         if announced.encoding not in ENCODINGS:
             raise UsageFault(f"{announced.topic}: messages come as cdr or json here, not as {announced.encoding!r}")
         if "/msg/" not in registry.full_name(announced.schema_name):
@@ -46,7 +46,7 @@ class Publications:
         self._publishers[client, announced.id] = publisher, announced.encoding
 
     def publish(self, client: Client, message: Message) -> None:
-        """Send a message of a client."""
+        """Publish a client's message."""
         if (client, message.channel_id) not in self._publishers:
             raise UsageFault(f"channel {message.channel_id} was not advertised")
         publisher, encoding = self._publishers[client, message.channel_id]
@@ -62,12 +62,12 @@ class Publications:
         publisher.publish(data)
 
     def withdraw(self, client: Client, number: int) -> None:
-        """End a publisher of a client, if there is one."""
+        """Close a client's publisher, if there is one."""
         if (client, number) in self._publishers:
             self._publishers.pop((client, number))[0].close()
 
     def leave(self, client: Client) -> None:
-        """A client has gone."""
+        """Close all publishers of a client."""
         for who, number in list(self._publishers):
             if who is client:
                 self.withdraw(client, number)

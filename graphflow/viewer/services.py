@@ -1,4 +1,4 @@
-"""Services of a graph as services of viewers."""
+"""The services of a graph as services of viewers."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ logger = logging.getLogger("graphflow")
 LIMIT = 60.0
 """Seconds that a call may take."""
 BOUND = 2_000
-"""Services that are shown."""
+"""Maximum services shown."""
 
 Key = tuple[str, str]
-"""The name and the type of a service: anybody may announce another type under a name."""
+"""A service's name and type; a node may announce any type under any name."""
 
 
 class _Shown(NamedTuple):
@@ -35,7 +35,7 @@ class _Shown(NamedTuple):
 
     @property
     def words(self) -> dict[str, Any]:
-        """As the protocol has it."""
+        """The service in the protocol's form."""
         service = registry.service_schema(self.type)
         parts = {"request": service.request.name, "response": service.response.name}
         return {"id": self.id, "name": self.name, "type": self.type, **{p: _schema(name) for p, name in parts.items()}}
@@ -46,10 +46,10 @@ def _schema(name: str) -> dict[str, str]:
 
 
 class Services:
-    """The services of a node's graph that somebody wrote: those that every node has are left out.
+    """The services of a graph, except those that every node has.
 
     Args:
-        tell: Tells all clients something.
+        tell: Sends a message to all clients.
     """
 
     def __init__(self, node: Node, tell: Callable[[str], object]) -> None:
@@ -60,7 +60,7 @@ class Services:
         self._left_out: set[Key] = set()
 
     def look(self) -> None:
-        """Show the services that have come, and no longer those that have gone."""
+        """Advertise new services, and withdraw those that are gone."""
         cache = self._node.context.cache
         there: dict[Key, Entity] = {}
         for name in sorted(cache.offered()[0]):
@@ -84,7 +84,7 @@ class Services:
                 registry.adopt(entity.type, entity.hash, await asked_sources(self._node, entity))
             service = _Shown(next(self._ids), entity.name, entity.type)
             words = service.words
-        except Exception as error:  # whoever announced it may call its type anything
+        except Exception as error:  # the type comes from another process and may be malformed in any way
             self._left_out.add(key)
             logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
             return
@@ -94,11 +94,11 @@ class Services:
         self._tell(told("advertiseServices", services=[words]))
 
     def greet(self, client: Client) -> None:
-        """Tell a new client what there is."""
+        """Advertise all services to a new client."""
         client.say(told("advertiseServices", services=[service.words for service in self._shown.values()]))
 
     async def call(self, client: Client, call: Call) -> None:
-        """Call a service for a client, and tell it what came of it."""
+        """Call a service for a client, and send the response or the failure."""
         try:
             client.say(answer_frame(call, await self._answer(call)))
         except GraphflowError as error:
@@ -120,6 +120,6 @@ class Services:
             client.close()
 
     def close(self) -> None:
-        """End what is under way."""
+        """Cancel everything under way."""
         for task in self._coming.values():
             task.cancel()

@@ -1,4 +1,4 @@
-"""Topics as channels of viewers: each is listened to while somebody looks at it, and nothing is decoded."""
+"""Topics as channels of viewers: subscribed to while a client watches, and forwarded without decoding."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from graphflow.wire.liveliness import Entity, Kind
 logger = logging.getLogger("graphflow")
 
 BOUND = 5_000
-"""Topics that are shown, and looks of one client at them."""
+"""Maximum topics shown, and maximum subscriptions of one client."""
 HEARD = replace(BEST_AVAILABLE, depth=100)
 
 Key = tuple[str, str]
-"""A topic's name and its type: topics of two types are two channels."""
+"""A topic's name and type; a topic with two types becomes two channels."""
 
 
 class _Channel(NamedTuple):
@@ -38,16 +38,16 @@ class _Channel(NamedTuple):
 
     @property
     def words(self) -> dict[str, Any]:
-        """As the protocol has it."""
+        """The channel in the protocol's form."""
         said = {"id": self.id, "topic": self.entity.name, "encoding": "cdr", "schemaName": self.entity.type}
         return {**said, "schema": self.definition, "schemaEncoding": "ros2msg"}
 
 
 class Topics:
-    """The topics of a node's graph, as channels.
+    """The topics of a graph as channels.
 
     Args:
-        tell: Tells all clients something.
+        tell: Sends a message to all clients.
     """
 
     def __init__(self, node: Node, tell: Callable[[str], object]) -> None:
@@ -61,7 +61,7 @@ class Topics:
         self._is_full = False
 
     def look(self) -> None:
-        """Show the topics that have come, and no longer those that have gone."""
+        """Advertise new topics, and withdraw those that are gone."""
         there: dict[Key, Entity] = {}
         for entity in self._node.context.cache.endpoints(Kind.PUBLISHER):
             if not is_hidden(entity.name):
@@ -82,7 +82,7 @@ class Topics:
     async def _show(self, key: Key, entity: Entity) -> None:
         try:
             definition = await asked(self._node, entity)
-        except Exception as error:  # whoever announced it may call its type anything
+        except Exception as error:  # the type comes from another process and may be malformed in any way
             self._left_out.add(key)
             logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
             return
@@ -103,13 +103,13 @@ class Topics:
         self._tell(told("unadvertise", channel_ids=ids))
 
     def greet(self, client: Client) -> None:
-        """Tell a new client what there is."""
+        """Advertise all channels to a new client."""
         client.say(told("advertise", channels=[channel.words for channel in self._shown.values()]))
 
     def subscribe(self, client: Client, wanted: Subscription) -> None:
-        """Show a client what comes on a channel.
+        """Forward the messages of a channel to a client.
 
-        Each look is a subscription of its own, so that each begins with what a latched topic has said.
+        Each watching client has a subscription of its own, so that it receives the last messages of a latched topic.
 
         Raises:
             UsageFault: There is no such channel, or the number is in use.
@@ -132,18 +132,18 @@ class Topics:
         self._looks[look] = key, subscription
 
     def unsubscribe(self, client: Client, number: int) -> None:
-        """A client looks away."""
+        """Stop forwarding a channel to a client."""
         if (client, number) in self._looks:
             self._looks.pop((client, number))[1].close()
             client.forget(number)
 
     def leave(self, client: Client) -> None:
-        """A client has gone."""
+        """End all subscriptions of a client."""
         for who, number in list(self._looks):
             if who is client:
                 self.unsubscribe(client, number)
 
     def close(self) -> None:
-        """End what is under way."""
+        """Cancel everything under way."""
         for task in self._coming.values():
             task.cancel()

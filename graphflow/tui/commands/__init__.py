@@ -1,1 +1,1 @@
-"""The console's keys and command line: `actions` is the table of all of them; the rest carries them out."""
+"""The console's keys and command line. Begin with `actions`, the table of all keys."""

@@ -1,7 +1,7 @@
-"""Everything that a key of the console does: one table, from which bindings, bars, palette, help and docs are made.
+"""The actions of the console: the one table behind bindings, bars, palette, help and documentation.
 
-An action `name` is carried out by the method `do_name` of the console or of the view it belongs to; one called
-`name:word` by `do_name("word")`.
+An action `name` is carried out by the method `do_name` of the console or of the view it belongs to; one named
+`name:argument`, by `do_name("argument")`.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Action:
-    """Something that can be done.
+    """An action of the console or of a view.
 
     Attributes:
-        chord: Keys after the prefix, any of them.
-        keys: Keys without the prefix, any of them; for a view's action while the view is focused.
-        verb: The command that does the same, with {node}, {topic}, ... for what is chosen.
+        chord: Alternative keys after the prefix.
+        keys: Alternative keys without the prefix; those of a view apply while it is focused.
+        verb: The equivalent command, with {node}, {topic}, ... for the selection.
         hint: Whether the bottom line shows it.
-        label: Keys and title in the bottom line, where one entry stands for several actions.
-        short: What the bar after the prefix calls it; empty for leaving it out. Actions of one word share an entry.
+        label: Keys and title in the bottom line, if one entry covers several actions.
+        short: Label in the bar after the prefix; empty to leave it out. Actions with the same label share an entry.
     """
 
     name: str
@@ -112,7 +112,7 @@ OPTION_KEYS = {
     "cent_sign": "alt+4",
     "infinity": "alt+5",
 }
-"""What Textual makes of alt and a digit where the terminal has no better way to send it: a Mac's option keys."""
+"""Textual's names for alt and a digit as a Mac's option key sends them."""
 _NAMES = {
     "percent_sign": "%",
     "quotation_mark": '"',
@@ -143,18 +143,18 @@ _NAMES = {
 
 
 def console_actions() -> Iterable[Action]:
-    """The console's own actions, in order."""
+    """Iterate over the console's own actions in order."""
     for actions in CONSOLE.values():
         yield from actions
 
 
 def by_chord() -> dict[str, Action]:
-    """The console's actions by the key after the prefix."""
+    """Return the console's actions by the key after the prefix."""
     return {key: action for action in console_actions() for key in action.chord}
 
 
 def shown(key: str) -> str:
-    """A key as people write it: `%` for percent_sign, `^b` for ctrl+b."""
+    """Return the usual notation of a key: `%` for percent_sign, `^b` for ctrl+b."""
     *modifiers, last = key.split("+")
     name = _NAMES.get(last, last)
     if modifiers == ["ctrl"]:
@@ -165,12 +165,12 @@ def shown(key: str) -> str:
 
 
 def keys_of(action: Action, prefix: str) -> str:
-    """All keys of an action, for help: `^b d, q`."""
+    """Return all keys of an action for the help: `^b d, q`."""
     chords = list(action.chord)
     return ", ".join([*(f"{shown(prefix)} {shown(key)}" for key in chords), *map(shown, action.keys)])
 
 
 def carry_out(doer: object, name: str) -> None:
-    """Have an action of a view or of the console done."""
+    """Call the method of a view or of the console that carries out an action."""
     method, _, word = name.partition(":")
     getattr(doer, f"do_{method}")(*([word] if word else []))

@@ -1,4 +1,4 @@
-"""The command line of the console: any verb, or a word of the console's own."""
+"""The command line of the console: a verb of graphflow, or a command of the console's own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ADVICE = "tab completes, ↑ recalls, enter runs it in a pane, esc back"
 
 
 class CommandLine(ModalScreen[str | None]):
-    """One line, completed by tab; the result is what was typed."""
+    """One line, completed by tab. The result is the text."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "dismiss(None)", show=False),

@@ -1,4 +1,4 @@
-"""Completing what is typed: verbs, their options, and the live names of the graph."""
+"""Completion of commands: verbs, their options, and names from the running graph."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from graphflow.introspect.parameters import RemoteParameters
 from graphflow.tui.feeds.hub import Hub, Verbs
 
 TRANSITIONS = ("activate", "cleanup", "configure", "deactivate", "shutdown")
-"""The transitions of a life cycle that can be asked for."""
+"""The lifecycle transitions that can be requested."""
 ANSWER_LIMIT = 1.0
-"""Seconds that a node has to tell its parameters."""
+"""Seconds to wait for a node's list of parameters."""
 
 
 class Completer:
-    """Completes lines of the command line, without the word `graphflow`.
+    """Completes commands, written without the word `graphflow`.
 
     Args:
-        views: Other first words, and what each is about, such as `topic`.
+        views: Further first words, each with the kind of its subject, such as `topic`.
     """
 
     def __init__(self, hub: Hub, views: Mapping[str, ViewForm] = MappingProxyType({})) -> None:
@@ -33,7 +33,11 @@ class Completer:
         self._verbs: Verbs | None = None
 
     async def complete(self, line: str) -> tuple[str, list[str]]:
-        """The line with its last word completed as far as it is certain, and the words that it may become."""
+        """Complete the last word of a line as far as it is unambiguous.
+
+        Returns:
+            The line, and the candidates for its last word.
+        """
         words = line.split()
         partial = words.pop() if words and not line.endswith(" ") else ""
         choices = sorted({c for c in await self._choices(words) if c.startswith(partial)})
@@ -112,7 +116,7 @@ class Completer:
 
 
 async def completed(line: Input, completer: Completer) -> tuple[str, list[str]]:
-    """Complete what is typed in a line, and leave what is typed on meanwhile; the result is that of `complete`."""
+    """Complete the text of an input, unless the user has edited it meanwhile; return the result of `complete`."""
     before = line.value
     text, choices = await completer.complete(before)
     if line.value.startswith(before):
@@ -122,12 +126,12 @@ async def completed(line: Input, completer: Completer) -> tuple[str, list[str]]:
 
 
 def nothing_to_complete(text: str) -> str:
-    """What to say where a line cannot be completed."""
+    """Return the message for a line without completions."""
     last = text.rpartition(" ")[2]
     return f"nothing here begins with {last!r}" if last else "there is nothing to complete here"
 
 
 def _common(words: list[str]) -> str:
-    """The beginning that all words share."""
+    """Return the longest common prefix."""
     first, last = min(words), max(words)
     return next((first[:i] for i, c in enumerate(first) if last[i : i + 1] != c), first)

@@ -1,4 +1,4 @@
-"""What the console's own actions do: `do_<name>` for each line of `actions.CONSOLE`."""
+"""The console's own actions: one method `do_<name>` for each row of `actions.CONSOLE`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from graphflow.tui.widgets.line_view import LineView
 from graphflow.workspace import project
 
 _ALSO_VERBS = ("groups",)
-"""Views whose names are verbs too: with more words they are the verb."""
+"""Views that share their name with a verb: followed by more words, the name is the verb."""
 
 
 class ConsoleCommands(PaneCommands):
@@ -29,7 +29,7 @@ class ConsoleCommands(PaneCommands):
         carry_out(self, name)
 
     def look(self, now: float) -> None:
-        """Keep an eye on what is told wherever one is: deadlocks."""
+        """Report new deadlocks, whichever views are open."""
         app, live = self._app, self._app.hub.live
         if live is None:
             return
@@ -53,7 +53,7 @@ class ConsoleCommands(PaneCommands):
             self._app.say("there is no shell behind this console")
 
     def do_interrupt(self) -> None:
-        """Take Ctrl-C: it never stops the graph by itself, however often it is typed."""
+        """Handle Ctrl-C, which never stops the graph without a question, however often it is pressed."""
         app, view = self._app, self._app.focused_view
         if isinstance(app.screen, AskToStop):
             return
@@ -85,7 +85,7 @@ class ConsoleCommands(PaneCommands):
             self.stop_now()
 
     def stop_now(self) -> None:
-        """Stop the graph and leave when it has ended."""
+        """Stop the graph, and leave once it has ended."""
         self._app.run_worker(self._app.leave("stop"))
 
     def do_put_away(self) -> None:
@@ -135,7 +135,11 @@ class ConsoleCommands(PaneCommands):
         self.show_newest_error("")
 
     def show_newest_error(self, node: str) -> None:
-        """Show the newest error in the log of its node; of any node where none is given."""
+        """Show the newest error in the log of its node.
+
+        Args:
+            node: Restrict the search to this node; empty for all.
+        """
         errors = self._app.hub.logs.last_error
         error = errors.get(node) if node else next(iter(reversed(errors.values())), None)
         if error is None:
@@ -153,7 +157,7 @@ class ConsoleCommands(PaneCommands):
             self._app.say("choose a node first, in the list of nodes")
 
     def restart(self, node: str) -> None:
-        """Ask, then restart a node."""
+        """Confirm, then restart a node."""
         supervision = self._app.hub.supervision
         if self._has_no_supervisor():
             return
@@ -177,7 +181,7 @@ class ConsoleCommands(PaneCommands):
             self._ask(f"Restart {node}?", [Choice("r", "restart")], answered, detail)
 
     def _has_no_supervisor(self) -> bool:
-        """Whether nobody is left who could start or stop a node; says so, and what starts the graph again."""
+        """Return whether no supervisor could start or stop a node; if so, say how to start the graph again."""
         supervision = self._app.hub.supervision
         if supervision is None or not (supervision.is_lost or supervision.exit_code is not None):
             return False
@@ -187,7 +191,7 @@ class ConsoleCommands(PaneCommands):
         return True
 
     def stop_node(self, node: str) -> None:
-        """Ask, then stop a node."""
+        """Confirm, then stop a node."""
         supervision = self._app.hub.supervision
         if self._has_no_supervisor():
             return

@@ -1,4 +1,4 @@
-"""The commands typed in consoles, and those that forms stand for: kept for this user from one console to the next."""
+"""The history of commands, typed or sent by forms, that all consoles of a user share."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from graphflow.markup.source import parse_value
 from graphflow.reading import found_text
 
 KEPT = 1000
-"""Commands kept; the file may hold four times as many before it is cut."""
+"""Commands kept; the file may grow to four times as many before it is trimmed."""
 LONGEST = 2_000
-"""Characters of a command; longer ones are not kept."""
+"""Maximum characters of a command; longer ones are not kept."""
 
 logger = logging.getLogger("graphflow.console")
 
 
 def history_file() -> Path:
-    """The file of this user's commands."""
+    """Return the path of this user's history."""
     return state_root() / ".history"
 
 
 def without_program(line: str) -> str:
-    """A command without the program's name, which ROS's users type as `ros2`."""
+    """Return a command without the program's name; ROS users type `ros2`."""
     line = line.strip()
     first, _, rest = line.partition(" ")
     return rest.strip() if first in ("graphflow", "gf", "ros2") else line
 
 
 class History:
-    """Commands without the word `graphflow`, the oldest first.
+    """Commands without the program's name, oldest first.
 
-    Several consoles may write one file: each adds lines at its end, and reads those of all when it starts.
+    Several consoles may share a file: each appends to it, and reads all of it at start.
 
     Args:
-        file: Where they are kept; None to forget them with the console.
+        file: The file; None to keep the history in memory only.
     """
 
     def __init__(self, file: Path | None = None) -> None:
@@ -49,13 +49,13 @@ class History:
 
     @property
     def lines(self) -> list[str]:
-        """All commands; read when they are wanted first."""
+        """All commands, read from the file at the first access."""
         if self._lines is None:
             self._lines = self._read()
         return self._lines
 
     def add(self, line: str) -> None:
-        """Take in a command, unless it is the one before again."""
+        """Append a command unless it repeats the previous one."""
         line = without_program(line)
         if not line or "\n" in line or len(line) > LONGEST or line == (self.lines or [""])[-1]:
             return
@@ -74,7 +74,7 @@ class History:
             logger.warning("commands are forgotten with this console: %s", error)
 
     def requests(self, *words: str) -> list[dict[str, Any]]:
-        """The values, written in YAML, of the commands that begin with these words: `service call /spawn TYPE`."""
+        """Return the YAML mappings at the end of commands that begin with these words: `service call /spawn TYPE`."""
         found: list[dict[str, Any]] = []
         for line in self.lines:
             if not line.startswith(words[0]):
@@ -82,7 +82,7 @@ class History:
             try:
                 *before, values = shlex.split(line)
                 value = parse_value(values) if before == [*words] else None
-            except (ValueError, GraphflowError):  # typed by hand, and wrong
+            except (ValueError, GraphflowError):  # a typo in a command typed by hand
                 continue
             if isinstance(value, dict):
                 found.append(value)

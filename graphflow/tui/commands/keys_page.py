@@ -1,4 +1,4 @@
-"""Write the page of all keys, from the table that the console's help shows.
+"""Generate the page of all keys from the table of actions.
 
 `python -m graphflow.tui.commands.keys_page` prints `docs/keys.md`; a test holds the file to it.
 """
@@ -23,7 +23,7 @@ the views of other packages included. [The console](console.md) says what it is 
 
 
 def page() -> str:
-    """The page as Markdown."""
+    """Return the page as Markdown."""
     return "\n".join([HEAD, *_sections()])
 
 

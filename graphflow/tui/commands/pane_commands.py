@@ -1,4 +1,4 @@
-"""What the console's actions do to panes and windows."""
+"""The console's actions on panes and windows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from graphflow.tui.widgets.dialogs import AskLine, Item, Pick
 from graphflow.tui.widgets.line_view import LineView
 
 LEAST_HEIGHT = 8
-"""Rows that a pane is given at least when something is opened beside another."""
+"""Minimum rows of each pane when one is opened below another."""
 STEP = {"left": 4, "right": 4, "up": 2, "down": 2}
 """Cells by which a key moves a border."""
 
@@ -45,7 +45,7 @@ class PaneCommands:
         return True
 
     def open_beside(self, content: Content) -> None:
-        """Show something beside the focused pane; where there is no room, in a window of its own."""
+        """Open a view beside the focused pane, or in a new window if there is no room."""
         app = self._app
         visible = {frame.number: frame.view for frame in app.workspace.visible_frames}
         for number, view in visible.items():
@@ -73,7 +73,7 @@ class PaneCommands:
         app.say(f"opened in a window of its own; {shown(app.prefix)} l goes back")
 
     def open_window(self, content: Content, name: str = "") -> None:
-        """Show something in a window of its own, or go to the one that has it."""
+        """Open a view in a new window, or go to the window that has it."""
         app = self._app
         for number, window in app.windows.windows.items():
             if [str(p.content) for p in window.panes()] == [str(content)]:
@@ -139,7 +139,7 @@ class PaneCommands:
         self._app.changed()
 
     def do_arrange(self, layout: str) -> None:
-        """Put the panes of the window in a named layout."""
+        """Arrange the panes of the window in a named layout."""
         self._app.window.arrange(layout)
         self._app.changed()
 
@@ -154,7 +154,7 @@ class PaneCommands:
         self._app.say("scrolled back: ↑↓ pgup pgdn move, / searches, n N go on, y copies a line, end follows again")
 
     def search_in(self, lines: LineView) -> None:
-        """Ask what to search for in some lines."""
+        """Prompt for a text, and search for it in a view of lines."""
 
         def typed(text: str | None) -> None:
             if text and not (lines.search(text, -1) or lines.search(text, 1)):
@@ -174,7 +174,7 @@ class PaneCommands:
 
     def _replace_view(self, content: Content) -> None:
         window = self._app.window
-        if window.name == window.pane(window.focused).content.view:  # a name that nobody gave
+        if window.name == window.pane(window.focused).content.view:  # named by default, not by the user
             window.name = content.view
         self._app.workspace.replace_view(window.focused, content)
 

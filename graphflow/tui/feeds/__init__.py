@@ -1,4 +1,4 @@
-"""The data that views show: the supervisor's events, the logs, the live graph and single topics.
+"""Sources of the data in views: the supervisor's events, the logs, the running graph and single topics.
 
-Begin with `hub`, which holds one of each for all views of a console.
+Begin with `hub`, which owns one of each for all views of a console.
 """

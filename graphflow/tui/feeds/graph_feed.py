@@ -1,7 +1,7 @@
-"""The running graph as one hidden client of it sees and hears it.
+"""The running graph as one hidden client observes it.
 
-The console is a client of the rendezvous, not a peer of the nodes: a console that hangs is the rendezvous's
-affair, and no node waits for it.
+The console connects to the rendezvous as a client, not to the nodes as a peer: a console that hangs delays the
+rendezvous only, and no node waits for it.
 """
 
 from __future__ import annotations
@@ -37,26 +37,26 @@ from graphflow.wire.process import NUMBERS, WAITS, ProcessToken, answer_key
 T = TypeVar("T")
 
 LOOK_EVERY = 1.0
-"""Seconds between two looks at what all processes report."""
+"""Seconds between two requests for reports of all processes."""
 ANSWER_LIMIT = 0.9
-"""Seconds they have to answer."""
+"""Seconds that processes have to reply."""
 WANTED_FOR = 2.5
-"""Seconds after which nobody asks any more for what nobody has looked at."""
+"""Seconds after which reports that no view uses are no longer requested."""
 REPLIES_BOUND = 1000
 PROCESSES_BOUND = 10_000
 ENDS_BOUND = 200
-"""Endpoints of a topic up to which each publisher is held against each subscription."""
+"""Maximum endpoints of a topic for which every publisher is compared with every subscription."""
 ROSOUT_KEPT = 2000
-"""Log messages remembered for where they were written; they are decoded only when somebody asks."""
+"""Messages of /rosout remembered for their source locations; they are decoded only on demand."""
 SAME_MOMENT = 1e-2
-"""Seconds within which a line of a log and a message of /rosout are the same record."""
+"""Seconds within which a log line and a message of /rosout count as the same record."""
 
 
 class Live:
-    """The graph of one domain, once `open` has found it.
+    """The graph of one domain, known from `open` on.
 
     Args:
-        open_view: Opens a blocking view of the graph; another one than Zenoh's for tests.
+        open_view: Opens a blocking view of the graph; replaced in tests.
     """
 
     def __init__(self, domain: int, open_view: Callable[[int], View] = View) -> None:
@@ -64,18 +64,18 @@ class Live:
         self._open_view = open_view
         self.context: Context | None = None
         self.trouble = ""
-        """Why there is no graph to see."""
+        """The reason why the graph cannot be joined; empty if there is none."""
         self.numbers = Numbers()
         self.concurrency: ConcurrencyReport | None = None
         self.asked_at = 0.0
-        """When the processes were asked for it, by the monotonic clock."""
+        """The time of the request for `concurrency`, by the monotonic clock."""
         self.deadlocks: list[Deadlock] = []
         self.processes: dict[str, ProcessToken] = {}
         """The graphflow processes of the domain, by session."""
         self.changes = 0
-        """How often a node or endpoint has come or gone."""
+        """Number of nodes and endpoints that have come or gone."""
         self._looked_at = -1
-        """The number of changes at which misfits were looked for."""
+        """The value of `changes` at the last search for mismatches."""
         self._ends: dict[str, list[Entity]] = {}
         self._misfits: dict[str, str] = {}
         self._nothing = GraphCache()
@@ -87,14 +87,14 @@ class Live:
         self._looking: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
-        """Join the graph; on failure `trouble` says why."""
+        """Join the graph; on failure, `trouble` gives the reason."""
         try:
             await self.join(await Context.open(self.domain, mode="client", deadlock="off"))
         except GraphflowError as error:
             self.trouble = str(error)
 
     async def join(self, context: Context) -> None:
-        """Join the graph by a context that is open already."""
+        """Join the graph with an open context."""
         self.context = context
         node = Node(
             f"_graphflow_console_{os.getpid()}",
@@ -128,7 +128,7 @@ class Live:
 
     @property
     def stuck_nodes(self) -> set[str]:
-        """The nodes in the rings that were found."""
+        """The nodes in the deadlocks that were found."""
         if self.concurrency is None:
             return set()
         activities = self.concurrency.graph.activities
@@ -136,7 +136,7 @@ class Live:
 
     @property
     def misfits(self) -> dict[str, str]:
-        """Mismatches of publishers and subscriptions, by topic; looked for when the graph has changed."""
+        """Mismatches of publishers and subscriptions by topic, updated when the graph has changed."""
         if self._looked_at != self.changes:
             self._looked_at = self.changes
             self._ends = {}
@@ -148,21 +148,21 @@ class Live:
         return self._misfits
 
     def misfits_of(self, node: str) -> int:
-        """Topics on which something of a node does not fit."""
+        """Return the number of topics on which an endpoint of a node has a mismatch."""
         return sum(any(e.node_name == node for e in self._ends[topic]) for topic in self.misfits)
 
     def others(self) -> Iterator[Entity]:
-        """Nodes and endpoints but for those of this console, which would count as a publisher of what it drives."""
+        """Iterate over nodes and endpoints, except those of this console, which publishes to nodes that it drives."""
         own = "" if self.context is None else self.context.session.zid
         return (entity for entity in self.cache if entity.zid != own)
 
     @property
     def node(self) -> Node | None:
-        """The console's own hidden node, once it is in the graph."""
+        """The console's own hidden node, once it has joined the graph."""
         return self._node
 
     def want(self, what: str) -> None:
-        """Keep `numbers` or `concurrency` fresh; to be said again at every look."""
+        """Request that `numbers` or `concurrency` be kept fresh. Views repeat the request at every update."""
         self._wanted[what] = time.monotonic()
 
     async def _look(self) -> None:
@@ -195,10 +195,10 @@ class Live:
             return []
 
     async def ask(self, work: Callable[[View], T]) -> T:
-        """Do something with a blocking view of the graph, in a thread.
+        """Run a function in a thread with a blocking view of the graph.
 
         Raises:
-            GraphflowError: Whatever `work` raises, or nothing is running.
+            GraphflowError: Raised by `work`, or the graph has not been joined.
         """
         if self.context is None:
             raise GraphflowError(self.trouble or "not connected to the graph yet")
@@ -210,7 +210,7 @@ class Live:
         return await self.context.in_thread(with_view)
 
     async def source_of(self, stamp: float, text: str) -> str | None:
-        """The file and line that wrote a log record, as /rosout has told since we listen; None if it has not."""
+        """Return the file and line that wrote a log record, according to /rosout; None if no message matches."""
         if self._rosout is None:
             return None
         while self._rosout.statistics()["waiting"]:
@@ -222,14 +222,14 @@ class Live:
         return next((place for _, said, place in near if said.startswith(text[:100])), None)
 
     def publisher(self, type_: type[Any], topic: str) -> Any:
-        """A publisher of the console's own on a topic; made once, and only in an open graph."""
+        """Return the console's own publisher on a topic, created once. The graph must be open."""
         assert self._node is not None
         if ("topic", topic) not in self._made:
             self._made["topic", topic] = self._node.create_publisher(type_, topic)
         return self._made["topic", topic]
 
     def action_client(self, type_: type[Any], action: str) -> Any:
-        """A client of an action; as `publisher`."""
+        """Return the console's own client of an action; see `publisher`."""
         assert self._node is not None
         if ("action", action) not in self._made:
             self._made["action", action] = self._node.create_action_client(type_, action)

@@ -1,4 +1,4 @@
-"""What all views of a console look at: the supervisor's word, the logs, the live graph."""
+"""The data sources that all views of a console share: the supervisor, the logs and the running graph."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Hub:
     """The sources of one console.
 
     Args:
-        supervision: None where no supervisor of ours started the nodes.
-        command: The words that start `graphflow` in a process of its own.
+        supervision: The connection to the supervisor; None for nodes that none of ours started.
+        command: The command line that starts `graphflow` in another process.
         verbs: Reads the verbs of the command line; slow.
-        history: The commands typed so far; without it they are forgotten with the console.
+        history: The command history; without it, commands are forgotten with the console.
     """
 
     def __init__(
@@ -45,31 +45,31 @@ class Hub:
         self.history = history or History()
         self.logs = Logs()
         self.live: Live | None = None
-        """None until the first screen has been drawn: importing it takes longer than that."""
+        """None until the first screen has been drawn, since the import takes longer than that."""
         self.selected = ""
-        """The node that is chosen in the list of nodes."""
+        """The node selected in the list of nodes."""
         self.muted: set[str] = set()
-        """Nodes that are left out of merged logs."""
+        """Nodes hidden from merged logs."""
         self.seen: dict[str, tuple[int, int]] = {}
-        """How many errors and warnings of each node had come when its log was looked at."""
+        """Number of errors and warnings by node when its log was last shown."""
 
     @property
     def graph(self) -> str:
-        """The graph's name, or the domain where there is none."""
+        """The graph's name, or the domain if it has none."""
         return self.supervision.run.graph if self.supervision is not None else f"domain {self.domain}"
 
     @property
     def plan(self) -> Plan | None:
-        """What the graph file says, where there is one."""
+        """The resolved graph file, if there is one."""
         return self.supervision.plan if self.supervision is not None else None
 
     @property
     def folder(self) -> Path:
-        """What the plan's file names are relative to."""
+        """The folder to which file names in the plan are relative."""
         return self.supervision.folder if self.supervision is not None else Path()
 
     def log_files(self, about: str = "") -> list[tuple[str, tuple[str, ...]]]:
-        """Each log with the nodes that write it: all, or those of a node or of a namespace."""
+        """Return each log file with the nodes that write it: all, or those of a node or namespace."""
         rows = self.supervision.nodes.values() if self.supervision is not None else ()
         below = f"{about.rstrip('/')}/"
         wanted = {row["log"] for row in rows if not about or row["node"] == about or row["node"].startswith(below)}
@@ -80,7 +80,7 @@ class Hub:
         return [(log, tuple(nodes)) for log, nodes in found.items()]
 
     def own_logs(self, about: str) -> Logs | None:
-        """The records of a node or namespace, read from its own files; None where they cannot be read here."""
+        """Read the records of a node or namespace from its own files; None if they are not on this machine."""
         files = [file for file in self.log_files(about) if Path(file[0]).exists()]
         if not files:
             return None
@@ -89,17 +89,17 @@ class Hub:
         return logs
 
     def unseen(self, node: str) -> tuple[int, int]:
-        """Errors and warnings of a node since its log was looked at."""
+        """Return the numbers of errors and warnings of a node since its log was last shown."""
         errors, warnings = self.seen.get(node, (0, 0))
         return self.logs.errors[node] - errors, self.logs.warnings[node] - warnings
 
     def nodes(self) -> list[str]:
-        """All nodes: the supervisor's, and those that others have started."""
+        """Return all nodes: the supervisor's first, then others of the domain."""
         mine = list(self.supervision.nodes) if self.supervision is not None else []
         seen = self.live.cache.nodes(hidden=False) if self.live is not None else []
         return [*mine, *(name for name in seen if name not in mine)]
 
     def announce(self, text: str) -> None:
-        """Tell the other consoles what this one has done."""
+        """Report an action of this console to the other consoles."""
         if self.supervision is not None:
             self.supervision.announce(text)

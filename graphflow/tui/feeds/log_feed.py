@@ -1,7 +1,6 @@
-"""What all nodes have written: their log files, followed, in one bounded list in the order of time.
+"""The log files of all nodes, followed and merged by time into one bounded list.
 
-A record is known by its file and the offset at which it begins there, so that however often a console comes and goes,
-it shows each record once.
+A record is identified by its file and offset, so that it is shown once however often consoles attach and detach.
 """
 
 from __future__ import annotations
@@ -16,19 +15,19 @@ from typing import NamedTuple
 RECORDS = 40_000
 """Records kept, of all nodes together."""
 SERIOUS = 5_000
-"""Warnings and errors kept, however many other records come after them."""
+"""Warnings and errors kept, however many other records follow them."""
 WARNING, ERROR = 2, 3
 """Indices of LEVELS."""
 BACKLOG = 4 << 20
-"""Bytes of each file that a console reads when it comes."""
+"""Bytes read from the end of each file when a console attaches."""
 AT_ONCE = 1 << 20
-"""Bytes read of a file in one go."""
+"""Maximum bytes of one read."""
 LINE_BOUND = 4_000
-"""Characters kept of one line."""
+"""Maximum characters of a line; the rest is dropped."""
 LOGGERS = 1000
-"""Loggers of one file whose nodes are remembered."""
+"""Loggers per file whose nodes are remembered."""
 RACE = "RACE: "
-"""How the report of a lost update begins: see `deadlock.races`."""
+"""The beginning of a lost update's report: see `deadlock.races`."""
 LEVELS = ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 _LINE = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[(\d{1,12}\.\d{1,9})\] \[([^\]]{1,300})\]: ?(.*)", re.DOTALL)
 _ESCAPES = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?|[\x00-\x08\x0b-\x1f\x7f-\x9f]")
@@ -44,33 +43,33 @@ class Record(NamedTuple):
     node: str
     text: str
     is_more: bool
-    """Whether the line goes on with the record before it, as a traceback's lines do."""
+    """Whether the line continues the record before it, as those of a traceback do."""
     file: str
     offset: int
     times: int = 1
-    """How often the line came in a row."""
+    """Number of consecutive occurrences."""
 
     def repeats(self, other: Record) -> bool:
-        """Whether this is the same line once more."""
+        """Return whether a record repeats this one."""
         return not self.is_more and (self.text, self.node, self.level) == (other.text, other.node, other.level)
 
 
 def plain_text(text: str) -> str:
-    """A line without anything that a terminal would obey."""
+    """Remove the control characters and escape sequences that a terminal would interpret."""
     return _ESCAPES.sub("", text).expandtabs(4)
 
 
 class LogFile:
-    """One log file, read from where it was left.
+    """One log file, read incrementally.
 
     Args:
-        nodes: The nodes that write it; the first is where lines without a name come from.
+        nodes: The nodes that write it; lines without a logger belong to the first.
     """
 
     def __init__(self, path: Path, nodes: tuple[str, ...]) -> None:
         self.path = path
         self.skipped = 0
-        """Bytes at the beginning that were not read."""
+        """Bytes at the beginning that were skipped."""
         self._offset = -1
         self._rest = b""
         self._nodes = nodes
@@ -78,14 +77,14 @@ class LogFile:
         self._last = Record(0.0, 1, nodes[0], "", False, path.name, 0)
 
     def read(self) -> list[Record]:
-        """What is new, at most `AT_ONCE` bytes of it."""
+        """Read new records, from at most `AT_ONCE` bytes."""
         try:
             with self.path.open("rb") as file:
                 size = file.seek(0, 2)
                 if self._offset < 0:
                     self._offset = self._begin(size)
                     self.skipped = self._offset
-                if size < self._offset:  # it was emptied
+                if size < self._offset:  # the file was truncated
                     self._offset, self._rest = 0, b""
                 if size == self._offset:
                     return []
@@ -96,9 +95,9 @@ class LogFile:
         begin = self._offset - len(self._rest)
         self._offset += len(data)
         *lines, self._rest = (self._rest + data).split(b"\n")
-        if len(self._rest) > 2 * AT_ONCE:  # a line without an end
+        if len(self._rest) > 2 * AT_ONCE:  # an incomplete line
             lines, self._rest = [*lines, self._rest], b""
-        if begin == self.skipped and begin and lines:  # the first is the end of a line that was skipped
+        if begin == self.skipped and begin and lines:  # after a skip, the first line is incomplete
             begin += len(lines.pop(0)) + 1
             self.skipped = begin
         return list(self._records(lines, begin))
@@ -122,7 +121,7 @@ class LogFile:
             offset += len(raw) + 1
 
     def _node(self, logger: str) -> str:
-        """The node that a logger belongs to: `arm.hand` may be the node /arm/hand, or a logger of the node /arm."""
+        """Return the node of a logger: `arm.hand` may be the node /arm/hand, or a logger of the node /arm."""
         name = "/" + logger.replace(".", "/")
         above = [n for n in self._nodes if name == n or name.startswith(f"{n}/")]
         node = max(above, key=len, default=self._nodes[0])
@@ -137,30 +136,30 @@ class Logs:
     def __init__(self, bound: int = RECORDS) -> None:
         self.records: deque[Record] = deque(maxlen=bound)
         self.total = 0
-        """Records ever added; the newest has this number less one."""
+        """Records ever added; the index of the newest is one less."""
         self.serious: deque[Record] = deque(maxlen=SERIOUS)
-        """The warnings and errors among them, and those that had to go since."""
+        """Warnings and errors, including those that are no longer in `records`."""
         self.counts: Counter[str] = Counter()
-        """Records by node."""
+        """Number of records by node."""
         self.warnings: Counter[str] = Counter()
         self.errors: Counter[str] = Counter()
-        """By node; a traceback's lines count as one."""
+        """Number of errors by node; a traceback counts once."""
         self.last_error: dict[str, Record] = {}
-        """By node, the newest last."""
+        """The last error by node, newest last."""
         self.races: list[list[Record]] = []
-        """The reports of lost updates, line by line; a race is reported once."""
+        """The reports of lost updates as lists of lines; each race is reported once."""
         self._report: dict[str, list[Record]] = {}
-        """By node, the one of these that is being read."""
+        """The unfinished report by node."""
         self._files: dict[Path, LogFile] = {}
 
     def follow(self, files: Iterable[tuple[str, tuple[str, ...]]]) -> None:
-        """Read these files too: pairs of path and the nodes that write there."""
+        """Follow more files: pairs of a path and the nodes that write to it."""
         for path, nodes in files:
             if Path(path) not in self._files:
                 self._files[Path(path)] = LogFile(Path(path), nodes)
 
     def read(self) -> int:
-        """Take in what was written meanwhile; returns how many records."""
+        """Read new records from all files; return their number."""
         fresh = [record for file in self._files.values() for record in file.read()]
         if len(self._files) > 1 and fresh:
             fresh.sort(key=lambda record: record.stamp)
@@ -168,7 +167,7 @@ class Logs:
         return len(fresh)
 
     def add(self, fresh: list[Record]) -> None:
-        """Take in records from elsewhere."""
+        """Add records from another source."""
         for record in fresh:
             self.counts[record.node] += 1
             if record.level >= WARNING:
@@ -177,7 +176,7 @@ class Logs:
         self.total += len(fresh)
 
     def _note(self, record: Record) -> None:
-        """Keep a warning or an error."""
+        """Remember a warning or an error."""
         self.serious.append(record)
         if record.is_more:
             self._report.get(record.node, []).append(record)
@@ -195,11 +194,11 @@ class Logs:
 
     @property
     def lost(self) -> int:
-        """Records that are not kept any more."""
+        """Number of records that are no longer kept."""
         return self.total - len(self.records)
 
     def since(self, number: int) -> Iterator[Record]:
-        """The records from a number on, as far as they are still there."""
+        """Return the records from an index on, as far as they are still kept."""
         first = self.total - len(self.records)
         start = max(0, number - first)
         return islice(self.records, start, None)

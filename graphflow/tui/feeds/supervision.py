@@ -1,4 +1,4 @@
-"""The console's line to the supervisor: what it says of processes, and what it is asked to do."""
+"""The connection to the supervisor: its events, and requests to it."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from graphflow.supervisor.rundir import GraphRun
 from graphflow.system import terminal_name
 
 ASK_EVERY = 1.0
-"""Seconds between two looks at the list of nodes."""
+"""Seconds between two requests for the list of nodes."""
 LINE_LIMIT = 1 << 22
-"""Bytes that one line of the supervisor's may have."""
+"""Maximum bytes of one line from the supervisor."""
 EVENTS = 500
 _OVER = ("ended", "failed", "given_up")
 """States of nodes that have ended for good."""
 LEAVE_WITHIN = 1.0
-"""Seconds in which a supervisor reads what it was asked last."""
+"""Seconds to wait for the supervisor to read the last requests."""
 
 logger = logging.getLogger("graphflow.console")
 
 
 class Supervision:
-    """One run as its supervisor tells it.
+    """One run as reported by its supervisor.
 
     Args:
         run: The run.
@@ -40,28 +40,28 @@ class Supervision:
     def __init__(self, run: GraphRun, heard: Callable[[dict[str, Any]], None]) -> None:
         self.run = run
         self.name = terminal_name()
-        """What other consoles call this one."""
+        """The name of this console in other consoles."""
         self.nodes: dict[str, dict[str, Any]] = {}
         """The rows of `ps` by node."""
         self.consoles: list[dict[str, Any]] = []
         self.events: deque[dict[str, Any]] = deque(maxlen=EVENTS)
         self.hello: dict[str, Any] = {}
         self.plan: Plan | None = None
-        """What the graph file says, once the supervisor has told."""
+        """The resolved graph file, once the supervisor has sent it."""
         self.folder = Path()
-        """What the plan's file names are relative to."""
+        """The folder to which file names in the plan are relative."""
         self.is_connected = False
         self._over = asyncio.Event()
         self._is_leaving = False
         self.is_lost = False
-        """Whether nothing more is to be heard of the graph."""
+        """Whether the connection is lost for good."""
         self.exit_code: int | None = None
         """The graph's exit code, once it has ended."""
         self._heard = heard
         self._stream: ControlStream | None = None
 
     async def follow(self) -> None:
-        """Stay connected until the graph has ended or its supervisor has gone."""
+        """Stay connected until the graph or its supervisor has ended."""
         why = "the supervisor has gone"
         asking: asyncio.Task[None] | None = None
         try:
@@ -89,14 +89,14 @@ class Supervision:
         self._heard({"event": "lost", "message": why})
 
     def _without_supervisor(self, row: dict[str, Any], why: str) -> dict[str, Any]:
-        """The last row of a node: of a graph that has ended, so has the node; else nobody tells any more how it is."""
+        """Return the final row of a node: ended if the graph has ended, otherwise unknown."""
         if row["state"] in _OVER:
             return row
         state = "lost" if self.exit_code is None else "ended"
         return {**row, "state": state, "pid": None, "since": time.time(), "detail": why if state == "lost" else ""}
 
     async def leave(self) -> None:
-        """Hang up once the supervisor has read all requests; what it was asked last counts, too."""
+        """Disconnect once the supervisor has read all requests, including the last one."""
         if self._stream is None or self._over.is_set():
             return
         self._is_leaving = True
@@ -113,16 +113,16 @@ class Supervision:
             self.send(do="ps")
 
     def send(self, **request: Any) -> bool:
-        """Send a request; returns whether there was anybody to send it to."""
+        """Send a request; return whether there was a connection."""
         return self._stream is not None and self._stream.send(**request, by=self.name)
 
     def announce(self, text: str) -> None:
-        """Tell other consoles what this one has done."""
+        """Report an action of this console to the other consoles."""
         self.send(do="announce", text=text)
 
     @property
     def version_note(self) -> str:
-        """What to say when supervisor and console are of different versions."""
+        """The warning if supervisor and console are of different versions; else empty."""
         other = self.hello.get("version", __version__)
         return "" if other == __version__ else f"the graph runs with graphflow {other}, this console is {__version__}"
 

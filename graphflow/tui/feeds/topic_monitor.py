@@ -1,4 +1,4 @@
-"""Listening to one topic for a view: the latest message, and when the last ones came."""
+"""A subscription for a view: the latest message of a topic, and the times of the last ones."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 
 
 class TopicMonitor:
-    """What arrives on one topic: the latest message, and when the last ones came."""
+    """The latest message of one topic, and the arrival times of the last ones."""
 
     STAMPS = 2000
-    """Arrivals remembered."""
+    """Arrival times remembered."""
 
     def __init__(self, live: Live, topic: str) -> None:
         self.topic = topic
         self.trouble = ""
-        """Why nothing is heard."""
+        """The reason why there is no subscription; empty if there is none."""
         self.type_name = ""
         self.count = 0
         self.message: Any = None
         self.info: Any = None
         self.arrivals: deque[float] = deque(maxlen=self.STAMPS)
-        """When messages arrived, in seconds by the monotonic clock."""
+        """Arrival times in seconds, by the monotonic clock."""
         self.heard: Callable[[Any, float], None] | None = None
-        """Called with each message and its arrival, on the loop."""
+        """Called with each message and its arrival time, on the event loop."""
         self._live = live
         self._subscription: Any = None
 
@@ -43,16 +43,16 @@ class TopicMonitor:
 
     @property
     def dropped(self) -> int:
-        """Messages that came too fast and were not looked at."""
+        """Number of messages dropped because they came too fast."""
         return 0 if self._subscription is None else int(self._subscription.dropped)
 
     @property
     def lost(self) -> int:
-        """Messages that never arrived, as gaps in their publishers' numbers tell."""
+        """Number of messages that never arrived, by gaps in their publishers' sequence numbers."""
         return 0 if self._subscription is None else int(self._subscription.lost)
 
     def look(self) -> None:
-        """Begin to listen as soon as the topic is there."""
+        """Subscribe once the topic exists."""
         if self._subscription is not None or self._live.node is None:
             return
         topics = self._live.cache.topics(hidden=True)

@@ -1,4 +1,4 @@
-"""The clipboard, by a program where there is one: many terminals ignore the escape sequence that Textual writes."""
+"""Copying by an external program, if there is one: many terminals ignore the escape sequence that Textual writes."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import subprocess
 import sys
 
 LIMIT = 2.0
-"""Seconds that such a program may take."""
+"""Seconds that the program may take."""
 
 
 def program() -> tuple[str, ...]:
-    """The words of a program that copies what it reads; none where only the terminal can."""
+    """Return the command line of a program that copies its input; empty if there is none."""
     candidates: list[tuple[bool, tuple[str, ...]]] = [
         (bool(os.environ.get("TMUX")), ("tmux", "load-buffer", "-w", "-")),
         (bool(os.environ.get("WAYLAND_DISPLAY")), ("wl-copy",)),
@@ -24,9 +24,9 @@ def program() -> tuple[str, ...]:
 
 
 def copy_by(words: tuple[str, ...], text: str) -> str:
-    """Have a program copy a text; returns why it could not, empty if it did. Blocks for `LIMIT` at most."""
+    """Copy a text by a program; return the error, empty on success. Blocks for `LIMIT` at most."""
     try:
-        # Programs of X11 and Wayland stay to answer for the selection: nobody waits for their output.
+        # Programs of X11 and Wayland stay alive to serve the selection, so their output must not be awaited.
         done = subprocess.run(
             words,
             input=text.encode(),

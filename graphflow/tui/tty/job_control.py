@@ -1,4 +1,4 @@
-"""The console as a job of its shell: stopped by Ctrl-Z and others, and continued."""
+"""The console as a job of its shell: suspended by Ctrl-Z, and resumed."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class JobControl:
     """Gives the terminal to the shell, and takes it back.
 
     Args:
-        app: The console, whose terminal it is.
-        taken: Called when it has the terminal again.
+        app: The console that owns the terminal.
+        taken: Called when the console has the terminal again.
     """
 
     def __init__(self, app: App[Any], taken: Callable[[], object]) -> None:
@@ -25,14 +25,14 @@ class JobControl:
 
     @property
     def has_shell(self) -> bool:
-        """Whether there may be a shell behind the console."""
+        """Whether a shell may be able to resume the console."""
         return not (self._app.is_headless or self._app.is_web or sys.platform == "win32")
 
     def hear_signals(self) -> None:
-        """Take the terminal anew when the process goes on after a SIGSTOP.
+        """Handle SIGCONT and SIGTSTP in place of Textual.
 
-        Textual would start it a second time beside the first, whose threads then keep the process from ending. A
-        SIGTSTP of others would leave the terminal as it is: Ctrl-Z goes through `pause`.
+        After a SIGSTOP, Textual would start a second driver beside the first, whose threads then keep the process from
+        exiting. A SIGTSTP would leave the terminal in raw mode: Ctrl-Z goes through `pause` instead.
         """
         if self.has_shell:
             loop = asyncio.get_running_loop()
@@ -40,13 +40,13 @@ class JobControl:
             loop.add_signal_handler(signal.SIGTSTP, lambda: None)
 
     def _take_terminal(self) -> None:
-        with self._app.suspend():  # to leave the terminal and come back is what sets it up
+        with self._app.suspend():  # suspending and resuming the driver sets the terminal up
             self._taken()
 
     def pause(self) -> None:
-        """Stop until the shell says `fg`; the graph runs on.
+        """Suspend the process until the shell's `fg`; the graph runs on.
 
-        Where no shell could continue it, the signal does nothing, and the console goes on at once.
+        If no shell could resume it, the signal has no effect, and the console goes on at once.
         """
         loop = asyncio.get_running_loop()
         loop.remove_signal_handler(signal.SIGTSTP)

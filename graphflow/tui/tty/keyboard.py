@@ -1,8 +1,8 @@
-"""Keys on their way: one after the other however fast they are typed, the prefix and what follows it taken out.
+"""The queue of typed keys: handled strictly one after the other, with the prefix and its followers taken out.
 
-Textual sends a letter straight to what has the focus, and a key that is bound by way of the app. Of `topics`, enter,
-`0` typed at once, the `0` would come before the enter. So here the next key is handed on when what the one before has
-set off is done: a message follows it along its way, twice, and has then met everything that the key has caused.
+Textual posts a letter directly to the focused widget, but a bound key by way of the app. Of `topics`, enter, `0` typed
+at once, the `0` would overtake the enter. Therefore a key is passed on only when the one before has taken full effect:
+a marker message travels its route twice, and so arrives behind everything that the key has caused.
 """
 
 from __future__ import annotations
@@ -21,28 +21,28 @@ from graphflow.tui.context import ConsoleApp
 from graphflow.tui.widgets.bars import WhichKey
 
 WHICH_KEY_AFTER = 0.4
-"""Seconds after the prefix at which the keys that may follow are shown."""
+"""Seconds after the prefix at which the possible next keys are shown."""
 ROUNDS = 2
-"""How often a key's way is gone: the first time the key itself is met, then what it has caused."""
+"""Rounds of the marker: the first arrives behind the key itself, the second behind the effects of the key."""
 DONE_AFTER = 0.25
-"""Seconds after which a key is taken to be done: what had the focus has gone, and the message with it."""
+"""Seconds after which a key counts as done: its widget may have been removed, and the marker with it."""
 HELD_BOUND = 10_000
-"""Keys that may wait; what is typed beyond them is lost."""
+"""Maximum number of queued keys; further ones are dropped."""
 
 Typed = events.Key | events.Paste
 
 
 class Keyboard:
-    """Hands keys on, in their order.
+    """Passes keys on in their order.
 
     Args:
-        console: What the keys are typed to.
-        hand_on: Gives a key to what has the focus.
-        do: Carries out the action that a key after the prefix means.
+        console: The console that receives the keys.
+        hand_on: Passes a key to the focused widget.
+        do: Carries out the action of a key after the prefix.
     """
 
     class Followed(Message):
-        """A key's way has been gone once more."""
+        """The marker behind a key has arrived."""
 
         def __init__(self, number: int, rounds: int) -> None:
             super().__init__()
@@ -66,16 +66,16 @@ class Keyboard:
 
     @property
     def is_quiet(self) -> bool:
-        """Whether everything that was typed is done."""
+        """Whether all keys have taken effect."""
         return not self._held and self._under_way_since is None
 
     async def type(self, event: Typed) -> None:
-        """Take a key in."""
+        """Enqueue a key."""
         self._held.append(event)
         await self.go_on()
 
     async def go_on(self) -> None:
-        """Hand the next key on, unless one is under way or its pane is yet to have the focus."""
+        """Pass the next key on, unless one is under way or its pane is still to be focused."""
         console = self._console
         while self._held and self._under_way_since is None:
             is_for_panes = len(console.screen_stack) == 1
@@ -90,7 +90,7 @@ class Keyboard:
             self._follow(ROUNDS)
 
     async def followed(self, event: Followed) -> None:
-        """Take in that a key's way has been gone."""
+        """Handle the arrival of a marker."""
         if event.number != self._number or self._under_way_since is None:
             return
         if event.rounds > 1:
@@ -100,14 +100,14 @@ class Keyboard:
         await self.go_on()
 
     async def look(self, now: float) -> None:
-        """Give up following a key when what it was given to has gone."""
+        """Stop waiting for a key whose target is gone."""
         since = self._under_way_since
         if since is not None and (now - since > DONE_AFTER or self._console.screen is not self._screen):
             self._under_way_since = None
         await self.go_on()
 
     def _brings_focus_back(self) -> bool:
-        """Whether nothing has the focus, since what had it was hidden, and the pane can have it again."""
+        """Restore the pane's focus after the focused widget was hidden; return whether that is possible."""
         return self._console.focused is None and self._console.workspace.regain_focus()
 
     def _follow(self, rounds: int) -> None:
@@ -117,13 +117,13 @@ class Keyboard:
     # the prefix
 
     def _takes(self, event: events.Key) -> bool:
-        """Whether a key is the prefix, or follows it."""
+        """Return whether a key is the prefix, or follows it."""
         console = self._console
         console.hints.look(time.monotonic(), pressed=True)
         if self._chord_open:
             self._close_chord()
             if event.key == console.prefix:
-                return False  # twice: for what has the focus
+                return False  # typed twice: meant for the focused widget
             action = self._chords.get(OPTION_KEYS.get(event.key, event.key))
             prefix, key = shown(console.prefix), shown(event.key)
             if action is not None:

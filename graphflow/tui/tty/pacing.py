@@ -1,7 +1,7 @@
-"""Frames on slow terminals: where one is still being written, the next ones are left out, and then all is drawn anew.
+"""Flow control for slow terminals: skip frames while one is being written, then redraw the whole screen.
 
-Textual queues thirty frames for its writing thread. On a link of 20 kB/s that is what a key waits for until its effect
-is seen.
+Textual queues up to thirty frames for its writing thread. On a link of 20 kB/s, the effect of a key would appear only
+after all of them.
 """
 
 from __future__ import annotations
@@ -11,29 +11,29 @@ from collections.abc import Callable
 from typing import Any
 
 LATE = 0.05
-"""Seconds that a frame may wait for Textual's writing thread before the terminal is taken for slow."""
+"""Seconds that a frame may wait for Textual's writing thread before the terminal counts as slow."""
 
 
 class Pacing:
-    """Whether the terminal keeps up with one console.
+    """The decision to write or skip frames of one console.
 
     Args:
-        clock: Seconds since some moment.
+        clock: A monotonic clock in seconds.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.owes = False
-        """Whether frames were left out since the screen was drawn as a whole."""
+        """Whether frames were skipped since the last full redraw."""
         self.left_out = 0
         self._clock = clock
         self._waits_since: float | None = None
-        """When frames were first seen to wait; None if none did when it was looked at last."""
+        """The time since which frames have been waiting; None if none was at the last check."""
 
     def admits(self, driver: Any) -> bool:
-        """Whether another frame may be written now; counts it, if not.
+        """Return whether another frame may be written now; count it as skipped if not.
 
         Args:
-            driver: Textual's, which writes in a thread of its own.
+            driver: Textual's driver, which writes in a thread of its own.
         """
         if not waiting(driver):
             self._waits_since = None
@@ -46,7 +46,7 @@ class Pacing:
         return False
 
     def catches_up(self, driver: Any) -> bool:
-        """Whether frames were left out, and the terminal has taken what was written: now all is to be drawn."""
+        """Return whether a full redraw is due: frames were skipped, and the terminal has caught up."""
         if not self.owes or waiting(driver):
             return False
         self.owes = False
@@ -54,7 +54,7 @@ class Pacing:
 
 
 def waiting(driver: Any) -> int:
-    """The writes that the terminal has not taken yet; none for drivers that do not tell."""
+    """Return the number of pending writes; 0 for drivers without a writing thread."""
     thread = getattr(driver, "_writer_thread", None)
     queue = getattr(thread, "_queue", None)
     return 0 if queue is None else int(queue.qsize())

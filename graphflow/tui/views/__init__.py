@@ -1,1 +1,1 @@
-"""The views, one module each; each says `VIEW = <its class>`."""
+"""The views, one module each, whose class is bound to `VIEW`."""

@@ -1,4 +1,4 @@
-"""In place of a view that cannot be shown: why not."""
+"""The substitute for a view that cannot be shown."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from graphflow.tui.view import View
 
 
 def broken(why: str) -> type[View]:
-    """A view that says why there is none."""
+    """Return a view class that shows the reason."""
 
     class Broken(View):
         NAME = "broken"

@@ -1,4 +1,4 @@
-"""Services: all of them, and a form for the request of one; what was answered, and what was asked before."""
+"""Services, with a form for calls, the responses, and earlier requests."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
 from graphflow.wire.liveliness import Kind
 
 CALL_LIMIT = 10.0
-"""Seconds that a service has to answer."""
+"""Seconds that a service has to respond."""
 _OF_EVERY_NODE = (
     "/describe_parameters",
     "/get_parameter_types",
@@ -120,7 +120,7 @@ class Calls(TableView):
         self.do_open_form()
 
     def do_open_form(self) -> None:
-        if self._form is not None:  # one without fields, where enter finds nothing to go to
+        if self._form is not None:  # an empty request has no input to focus
             self.do_send()
         elif self.key:
             self._open(self.key)

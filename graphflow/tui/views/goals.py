@@ -1,4 +1,4 @@
-"""Actions and their goals: how each goes on, its feedback; cancelled by a key, sent by a form."""
+"""Actions and their goals: status and feedback; goals can be cancelled, and sent by a form."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "cancele
 _INKS = ("dim", "warn", "accent", "warn", "good", "dim", "bad")
 _GLYPHS = ("?", "◌", "◐", "◑", "●", "○", "✖")
 GOALS = 500
-"""Goals that are remembered; the oldest that has ended goes first."""
+"""Goals remembered; ended ones are dropped first, the oldest of them first."""
 ACTIONS_BOUND = 50
 CANCEL_LIMIT = 5.0
 FEEDBACK = 2000
-"""Characters of a goal's feedback that are kept."""
+"""Maximum characters kept of a goal's feedback."""
 
 
 @dataclass
 class Goal:
-    """One goal as its action's topics tell it."""
+    """One goal as published by its action server."""
 
     action: str
     id: bytes

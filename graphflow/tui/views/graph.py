@@ -1,4 +1,4 @@
-"""The graph as boxes and arrows: nodes, topics with their rates, and in red what does not fit together."""
+"""The graph as boxes and arrows: nodes, topics with their rates, and mismatches in red."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from graphflow.tui.widgets.colours import Colours
 from graphflow.tui.widgets.line_view import LineView
 
 BOXES = 120
-"""Boxes that are laid out; a larger graph is collapsed by its namespaces first."""
+"""Maximum boxes; larger graphs are first collapsed by namespace."""
 SIDEWAYS = 20
-"""Columns that one press of an arrow key scrolls."""
+"""Columns scrolled by one press of an arrow key."""
 
 
 class Boxes(LineView):
-    """The drawn graph, which scrolls both ways."""
+    """The drawing, which scrolls both ways."""
 
     wide = 0
 
@@ -39,7 +39,7 @@ class Boxes(LineView):
         self.sideways(1)
 
     def sideways(self, step: int) -> None:
-        """Scroll by so many steps to the right."""
+        """Scroll to the right by a number of steps."""
         self.scroll_relative(x=step * SIDEWAYS, animate=False, immediate=True)
 
     @property
@@ -51,7 +51,7 @@ class Boxes(LineView):
 
 
 class Graph(View):
-    """The graph."""
+    """The graph as a drawing."""
 
     NAME = "graph"
     DOC = "nodes and topics as boxes and arrows"
@@ -197,7 +197,7 @@ def _label(topic: str, rate: float | None) -> str:
 
 
 def _rows(drawing: Drawing, made: Picture, chosen: str, colours: Colours) -> Iterator[Text]:
-    """The drawn graph, a text a row."""
+    """Return the drawing as one text per row."""
     topics = set(made.topics)
     bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
 

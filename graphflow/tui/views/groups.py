@@ -1,4 +1,4 @@
-"""Who holds which group, who waits, since when and where; a deadlock as a ring, and the key that ends it."""
+"""Groups, their holders and the waits between them; deadlocks as rings, with the key that ends each."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ from graphflow.tui.widgets.line_view import LineView
 ANSWER_LIMIT = 2.0
 """Seconds that a node has to change its groups."""
 JUDGED_AFTER, RESTARTED_WITHIN = 2.5, 12.0
-"""Seconds after which a change that has ended no deadlock is told; longer where the node is started again for it."""
+"""Seconds after which a change counts as ineffective; longer if it restarts the node."""
 SLOTS = 12
-"""Slots of a group that are drawn one by one."""
+"""Maximum slots of a group drawn individually."""
 
 
 class Row(NamedTuple):
-    """A line, and where in the source it points to."""
+    """A line, and the source location that it refers to."""
 
     text: Text
     place: str = ""
     told: Record | None = None
-    """The report whose line it is, for one that points to the line that /rosout has for it."""
+    """The log record of the line, if only /rosout knows its source location."""
 
 
 class RowLines(LineView):
-    """Lines that may point into the source."""
+    """Lines that may refer to source locations."""
 
     def draw(self, row: Row) -> Iterable[tuple[str, Style]]:
         return super().draw(row.text)
@@ -56,12 +56,12 @@ Ring = frozenset[tuple[str, str]]
 
 
 class Applied(NamedTuple):
-    """A change that was made, and what was stuck before it."""
+    """A change made here, and the deadlocks before it."""
 
     fix: Fix
     rings: dict[Ring, str]
     at: float
-    """When, by the monotonic clock."""
+    """The time by the monotonic clock."""
 
 
 class Groups(View):
@@ -90,15 +90,15 @@ class Groups(View):
         self._deadlocks: list[Deadlock] = []
         self._graph = WaitGraph()
         self._fixes: list[list[Fix]] = []
-        """The changes that would end each of the deadlocks."""
+        """The changes that would end each deadlock."""
         self._made: list[Fix] = []
-        """Changes made here, which are not in the graph file yet."""
+        """Changes made here that are not in the graph file yet."""
         self._applied: Applied | None = None
-        """The last of them, until what became of it is known."""
+        """The last change, until its effect is known."""
         self._outcome = ""
-        """The result of the last change, in words."""
+        """A description of the last change's effect."""
         self._is_freed = False
-        """Whether changes made here, or in the graph file meanwhile, have ended all deadlocks."""
+        """Whether changes, made here or in the graph file, have ended all deadlocks."""
         self._everything = False
 
     def compose(self) -> ComposeResult:
@@ -147,11 +147,11 @@ class Groups(View):
         self._lines.scroll_to(y=top, animate=False, immediate=True)
 
     def _rings(self) -> dict[Ring, str]:
-        """The deadlocks as their headlines, by their members and the queues that those wait for."""
+        """The headlines of the deadlocks, by their members and the queues that those wait for."""
         return {_key(deadlock): headline(deadlock, self._graph) for deadlock in self._deadlocks}
 
     def _judge(self, applied: Applied, asked_at: float, now: float) -> None:
-        """Tell what has become of a change, once the answers are newer than it."""
+        """Determine the effect of a change, once there is a report newer than it."""
         if asked_at <= applied.at:
             return
         rings = self._rings()
@@ -173,7 +173,7 @@ class Groups(View):
             self._outcome = f"One ended; {which}: f again."
             self.say(f"ended: {_first_line(ended[0])}; {which}: f again")
 
-    # what is drawn
+    # rows
 
     def _deadlock_rows(self) -> Iterator[Row]:
         colours, graph = self.colours, self._graph
@@ -187,7 +187,7 @@ class Groups(View):
             yield Row(Text(""))
 
     def _fix_rows(self, deadlock: Deadlock, found: list[Fix]) -> Iterator[Row]:
-        """The ways to end a deadlock: those that a key makes, else those in the code."""
+        """Return the remedies of a deadlock: those that a key applies, otherwise those in the code."""
         colours, graph = self.colours, self._graph
         for i, fix in enumerate(found):
             caution = f"   ({fix.caution})" if fix.caution else ""
@@ -217,7 +217,7 @@ class Groups(View):
                 yield Row(Text(f"   {plain_text(line)}", style=colours.text))
 
     def _ring(self, deadlock: Deadlock) -> Iterator[Row]:
-        """The ring, drawn: each member waits for the one below, the last for the first."""
+        """Draw the ring: each member waits for the one below, the last for the first."""
         colours, graph, last = self.colours, self._graph, len(deadlock.ring) - 1
         for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
             activity = graph.activities[name]
@@ -240,7 +240,7 @@ class Groups(View):
             yield Row(Text("   └── back to the first" if i == last else "   │  ▼", style=colours.bad))
 
     def _outcome_rows(self) -> Iterator[Row]:
-        """The result of the last change, above the deadlocks that are left, which look like those before it."""
+        """Return the effect of the last change, above the remaining deadlocks, which look like those before it."""
         colours, is_over = self.colours, not self._deadlocks
         if self._made and self._outcome:
             yield Row(
@@ -251,7 +251,7 @@ class Groups(View):
             )
 
     def _race_rows(self) -> Iterator[Row]:
-        """Updates that were lost: the source alone can be changed, so each line points there."""
+        """Return the lost updates. Only a change of the source prevents them, so each line refers to it."""
         colours = self.colours
         for report in self.hub.logs.races:
             for i, line in enumerate(report):
@@ -353,7 +353,7 @@ class Groups(View):
         return action.hint and has.get(action.name, True)
 
     def _refusal(self) -> str:
-        """Why there is nothing to apply; empty where there is."""
+        """Return the reason why nothing can be applied; empty if something can."""
         if not self._deadlocks:
             return "a race is ended in the code: enter opens it" if self.hub.logs.races else "there is no deadlock"
         return "" if any(self._fixes) else "no key ends it; what does stands below the ring"
@@ -397,7 +397,7 @@ class Groups(View):
         self._outcome = "The node is being started again ..." if isinstance(fix, Thread) else ""
         self._applied = Applied(fix, rings, time.monotonic())
         self.did(fix.command)
-        if not isinstance(fix, Thread):  # the supervisor tells the others of a restart
+        if not isinstance(fix, Thread):  # the supervisor announces restarts itself
             self.hub.announce(fix.command.removeprefix("graphflow "))
 
     def do_write(self) -> None:
@@ -458,7 +458,7 @@ def _place(activity: ActivityView) -> str:
 
 
 def _key(deadlock: Deadlock) -> Ring:
-    """The identity of a deadlock between two looks: who waits, and for which handler."""
+    """Return the identity of a deadlock across reports: the waiting nodes and handlers."""
     return frozenset((name, edge.queue) for name, edge in zip(deadlock.ring, deadlock.edges, strict=True))
 
 
@@ -472,7 +472,7 @@ def _short(place: str) -> str:
 
 
 def _slots(taken: int, limit: int | None) -> str:
-    """`■□` for a limit of two, one of them taken."""
+    """Return `■□` for two slots, one of them taken."""
     if limit is None or limit > SLOTS:
         return f"{taken} held"
     return "■" * min(taken, limit) + "□" * max(0, limit - taken)

@@ -1,4 +1,4 @@
-"""All keys: the console's and those of every view, from the one table they are made of; found by typing."""
+"""All keys of the console and of its views, from the table of actions, with a search."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _SCROLL = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 
 class KeyLines(LineView):
-    """Keys in a column, and beside it what they do, over several lines if need be."""
+    """Keys in a column, and their descriptions, wrapped if needed."""
 
     def hanging(self, row: Text) -> int | None:
         return KEYS_WIDTH + 3 if row.plain.startswith("  ") else None
 
 
 class Help(View):
-    """All keys, first those of the view that one comes from: the option `first`."""
+    """All keys, beginning with those of the view that opened the help: the option `first`."""
 
     NAME = "help"
     DOC = "all keys of the console and of every view"
@@ -92,7 +92,7 @@ class Help(View):
     def _section(
         self, head: Text, actions: Iterable[Action], wanted: str, *, show_empty: bool = False
     ) -> Iterator[Text]:
-        """A headline and its actions, as far as they have what is wanted."""
+        """Return a heading and the actions that match the search; empty if none does."""
         rows = [self._row(keys_of(a, self.console.prefix), a.title, a.verb) for a in actions]
         rows = [row for row in rows if wanted in row.plain.lower() or wanted in head.plain.lower()]
         if rows or show_empty:

@@ -1,4 +1,4 @@
-"""The logs: of all nodes in the order of time, of one node, or of those below a namespace."""
+"""Log records: of all nodes merged by time, of one node, or of a namespace."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from graphflow.tui.widgets.line_view import KEPT, LineView
 _PLACE = re.compile(r'(?:File "([^"]+)", line (\d+))|((?:[\w./-]+/)?[\w-]+\.(?:py|yaml)):(\d+)')
 _NAME_WIDTH = 18
 MORE_ROOM, MORE_INDENT = 60, 2
-"""Columns beside the names that the further lines of a report need; with fewer, they begin at that column."""
+"""Minimum columns beside the names for a report's further lines; with fewer, they begin at column MORE_INDENT."""
 
 
 class LogLines(LineView):
-    """The records, each on one line."""
+    """Records, one line each."""
 
     HAS_SEARCH = False
 
@@ -38,7 +38,7 @@ class LogLines(LineView):
         return indent + len(text) - len(text.lstrip(" "))
 
     def _indented(self, row: Record) -> tuple[int, str]:
-        """The column at which a record begins, and its text: where there is little room, what goes on stands left."""
+        """Return the column at which a record begins, and its text; in little room, further lines move to the left."""
         if not row.is_more or self._log.size.width - self._log.indent >= MORE_ROOM:
             return self._log.indent, row.text
         text = row.text.lstrip(" ")
@@ -102,11 +102,11 @@ class Log(View):
         self._lines = LogLines(self)
         self._filter = Input(str(self.options.get("filter", "")), placeholder="regular expression", classes="find")
         self._own: Logs | None = None
-        """The records of one node or namespace, read from its own files: however much others write, none is missing."""
+        """The records of one node or namespace, read from its own files, so that no other node displaces them."""
         self._read = 0
-        """Number of the first record that has not been looked at."""
+        """The index of the first unread record."""
         self._goes_to = str(self.options.pop("at", ""))
-        """The record to go to first: its file and offset."""
+        """The record to go to first, by file and offset."""
         self._bad = ""
         self._muted: frozenset[str] = frozenset()
 
@@ -180,7 +180,7 @@ class Log(View):
         self._go_to_record()
 
     def _add(self, fresh: list[Record]) -> None:
-        """Show more records; a line that comes several times in a row only once."""
+        """Append records; consecutive repetitions only once."""
         lines = self._lines
         folded = list(_folded(fresh))
         last = lines.last_row
@@ -191,7 +191,7 @@ class Log(View):
             lines.extend(folded)
 
     def _go_to_record(self) -> None:
-        """Put the cursor on the record that was asked for, once it is there."""
+        """Move the cursor to the requested record, once it has been read."""
         lines = self._lines
         for i in range(len(lines.rows)):
             record = lines.row_that_begins(i)
@@ -213,7 +213,7 @@ class Log(View):
         return self.pattern is None or self.pattern.search(record.text) is not None
 
     def _again(self) -> None:
-        """Look at all records once more: what is shown has changed."""
+        """Read all records again after a change of filter."""
         self._muted = frozenset(self.hub.muted)
         source = self._source
         kept = source.serious if self.level >= WARNING else source.since(0)
@@ -240,7 +240,7 @@ class Log(View):
         self._lines.focus()
 
     def key_escape(self) -> None:
-        """Take the filter away."""
+        """Clear the filter."""
         self._filter.value = ""
         self._filter.remove_class("shown")
         self._lines.focus()
@@ -298,7 +298,7 @@ class Log(View):
         self._go_to_match(-1)
 
     def _go_to_match(self, step: int) -> None:
-        """Without a filter that hides the rest: warnings and errors, the marks in a long log."""
+        """Go to a warning or an error without hiding the other records."""
         lines = self._lines
         at = lines.cursor if lines.cursor is not None else len(lines.rows) - (step > 0)
         for i in range(at + step, len(lines.rows) if step > 0 else -1, step):
@@ -331,7 +331,7 @@ class Log(View):
 
 
 def _folded(records: Iterable[Record]) -> Iterator[Record]:
-    """The records, those that are the same as the one before counted on it."""
+    """Merge consecutive equal records, counting them in the first."""
     last: Record | None = None
     for record in records:
         if last is not None and record.repeats(last):
@@ -345,7 +345,7 @@ def _folded(records: Iterable[Record]) -> Iterator[Record]:
 
 
 def place_in(text: str) -> str | None:
-    """The file and line that a line of a log names: `nodes/arrival.py:41`; None for none."""
+    """Return the file and line that a log line contains, such as `nodes/arrival.py:41`; None if there is none."""
     found = _PLACE.search(text)
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""A prompt: any verb of graphflow, run in a process of its own, whose output streams into the pane."""
+"""A prompt for verbs of graphflow, each run in a process of its own, whose output streams into the pane."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from graphflow.tui.widgets.line_view import LineView
 
 CHUNK = 1 << 16
 WAITING = 2_000
-"""Lines that may wait to be drawn; what comes faster is counted and left out."""
+"""Maximum lines waiting to be drawn; further ones are counted and dropped."""
 WELCOME = (
     "Any verb of graphflow: topic echo /turtle1/pose, param set ..., action send_goal ...",
     "tab completes, ↑ recalls, ^c ends what runs; f2 shows a view here instead.",
@@ -33,7 +33,7 @@ WELCOME = (
 
 
 class Prompt(View):
-    """A line to type in, and what came of it."""
+    """A command line, and the output of its commands."""
 
     NAME = "prompt"
     DOC = "type any graphflow verb; its output streams here"
@@ -55,9 +55,9 @@ class Prompt(View):
         self._lost = 0
         self._at = 0
         self._was_interrupted = False
-        """Whether the command that runs, or ran last, was asked to end."""
+        """Whether the current or last command was interrupted."""
         self._offered: list[str] = []
-        """The completions that were printed last."""
+        """The completions shown last."""
 
     def compose(self) -> ComposeResult:
         yield self._lines
@@ -67,7 +67,7 @@ class Prompt(View):
         self._at = len(self.hub.history.lines)
         if self.about and self._runs_at_once:
             self._run(self.about, at_once=True)
-        elif self.about:  # it came back with the windows: what it did need not be wanted twice
+        elif self.about:  # restored with the windows: not run again, since it may have effects
             self._input.value = self.about
             self._lines.extend([Text("enter runs this again", style=self.colours.dim)])
         else:
@@ -94,7 +94,7 @@ class Prompt(View):
         self._fresh.clear()
         self._lines.extend(rows)
 
-    # the line
+    # the command line
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         event.stop()
@@ -110,7 +110,7 @@ class Prompt(View):
         self._run(text)
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        if event.value == ":":  # as anywhere else: no verb begins with it
+        if event.value == ":":  # as in any prompt: no verb begins with it
             self._input.value = ""
             self.console.deeds.do_command()
 
@@ -123,7 +123,7 @@ class Prompt(View):
             self._input.cursor_position = len(self._input.value)
 
     def do_complete(self) -> None:
-        """Complete what is being typed; show the choices where there are several."""
+        """Complete the command; show the candidates if there are several."""
         self.work(self._complete, group="complete")
 
     async def _complete(self) -> None:
@@ -135,7 +135,7 @@ class Prompt(View):
             shown = "  ".join(choices[:60]) + (f"  ... {len(choices)} in all" if len(choices) > 60 else "")
             self._lines.extend([Text(shown, style=self.colours.dim)])
 
-    # what runs
+    # the process
 
     def _run(self, text: str, *, at_once: bool = False) -> None:
         self._runs_at_once = at_once
@@ -178,14 +178,14 @@ class Prompt(View):
             code = await process.wait()
             if code:
                 self._fresh.append((f"exit code {code}", "bad"))
-            if self._runs_at_once and not self._was_interrupted:  # opened to be read, from the top
+            if self._runs_at_once and not self._was_interrupted:  # to be read from the top
                 self.look(0.0)
                 self._lines.hold()
                 self._lines.scroll_home(animate=False, immediate=True)
         finally:
             if process.returncode is None:
                 process.kill()
-                await process.communicate()  # to its end, so that nothing of it stays open
+                await process.communicate()  # drain the pipe, so that it is closed
             self._process = None
 
     async def _read(self, stream: asyncio.StreamReader, style: str) -> None:
@@ -204,7 +204,7 @@ class Prompt(View):
             self._fresh.append((plain_text(rest.decode(errors="replace")), style))
 
     def interrupt(self) -> bool:
-        """End what runs, or clear the line: in a shell, Ctrl-C never goes further than that."""
+        """Interrupt the command, or clear the line; as in a shell, Ctrl-C does no more than that."""
         if self._process is None or self._process.returncode is not None:
             self._input.value = ""
             self.say(f"nothing runs here any more; {shown(self.console.prefix)} S asks to stop the graph")
@@ -222,10 +222,10 @@ class Prompt(View):
 
 
 def _refusal(words: list[str], prefix: str) -> str:
-    """Why a verb does not run in a pane; empty where it does.
+    """Return why a verb cannot run in a pane; empty if it can.
 
     Args:
-        prefix: The prefix key, as people write it.
+        prefix: The prefix key as displayed.
     """
     first = words[0] if words else ""
     if first in ("attach", "console"):

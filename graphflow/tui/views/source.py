@@ -1,4 +1,4 @@
-"""A file and a line of it, to read: where something waits, or where a line of a log was written."""
+"""A source file at a line: a wait, or the origin of a log record."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from graphflow.tui.view import View
 from graphflow.tui.widgets.line_view import LineView
 
 LONGEST = 1 << 20
-"""Bytes of a file that are shown."""
+"""Maximum bytes shown of a file."""
 LOOKED_AT = 5000
-"""Files that are looked at to find one by its name alone."""
+"""Maximum files searched for one known only by name."""
 
 
 class Source(View):
-    """A file, at a line."""
+    """A file at a line."""
 
     NAME = "source"
     DOC = "the file and line of a wait or a log line"
@@ -81,7 +81,7 @@ class Source(View):
         self.call_after_refresh(self.do_back)
 
     def on_resize(self) -> None:
-        """Keep the line in the middle, until another one is chosen: a new pane has its size only after a while."""
+        """Keep the line centred until the user moves: a new pane gets its size only later."""
         if self._lines.cursor == self._at:
             self.call_after_refresh(self.do_back)
 
@@ -111,7 +111,7 @@ class Source(View):
 
 
 def edit(view: View, file: Path, line: int) -> None:
-    """Open a file in the user's editor, which has the terminal meanwhile."""
+    """Open a file in the user's editor, which takes over the terminal."""
     editor = os.environ.get("VISUAL") or os.environ.get("EDITOR")
     if not editor:
         view.say("set EDITOR, for example export EDITOR=nano", bad=True)
@@ -125,7 +125,7 @@ def edit(view: View, file: Path, line: int) -> None:
         view.say(f"EDITOR is {editor!r}, and there is no such program: install it, or export EDITOR=nano", bad=True)
         return
     trouble = ""
-    with view.app.suspend():  # which Textual does not end when something is raised in it
+    with view.app.suspend():  # Textual does not leave `suspend` cleanly when something is raised in it
         try:
             subprocess.run([*words, f"+{line}", str(file)], check=False)
         except OSError as error:
@@ -135,7 +135,7 @@ def edit(view: View, file: Path, line: int) -> None:
 
 
 def find_file(name: str, roots: list[Path]) -> Path | None:
-    """A file by its path, or by its name below one of the folders."""
+    """Find a file by its path, or by its name below one of the folders."""
     path = Path(name)
     for root in roots:
         if (root / path).is_file():

@@ -1,4 +1,4 @@
-"""A deadlock to look at and to end: the groups, and above them what this example is about and what to press next."""
+"""A step of the guided tour: a deadlock in the groups view, with a guide above it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from graphflow.tui.views.groups import Groups
 class Tour(Groups):
     """The groups of an example, with a guide.
 
-    Options: `title`, what goes wrong here; `step`, such as `3/11 classic`; `seconds` until it has; `fixed`, what the
-    graph file says where this is the repaired example.
+    Options: `title`, the fault of the example; `step`, such as `3/11 classic`; `seconds` until the fault appears;
+    `fixed`, the comment in the graph file if this is the repaired example.
     """
 
     NAME = "tour"
@@ -50,7 +50,7 @@ class Tour(Groups):
         self._guide.update(text)
 
     def _advice(self) -> tuple[str, list[tuple[str, str]]]:
-        """What there is to see now, and the keys that lead on."""
+        """Return the description of the situation, and the keys that lead on."""
         is_last = str(self.options.get("step", "")).partition(" ")[0].partition("/")[::2]
         go_on = ("n", "end the tour" if is_last[0] == is_last[1] else "the next example")
         repaired = ("n", "the same graph, repaired in its file")
@@ -84,7 +84,7 @@ class Tour(Groups):
         return "No ring: nothing waits for ever here, things happen in the wrong order. See the log.", [repaired]
 
     def do_go_on(self) -> None:
-        """Leave for what comes next."""
+        """Leave for the next step."""
         is_done = bool(self.options.get("fixed")) or self._is_freed
         self.console.run_worker(self.console.leave("next" if is_done else "fixed"))
 

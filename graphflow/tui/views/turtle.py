@@ -1,4 +1,4 @@
-"""The turtles as they draw: turtlesim's window in the terminal, and its keys."""
+"""Turtlesim's window in the terminal, with its keys."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from graphflow.tui.widgets.canvas import WORLD, Drawing, TurtleCanvas, read_pict
 if TYPE_CHECKING:
     from graphflow.introspect.graph_view import View as Graph
 
-# What messages need is imported when there is a graph: this view is in the first window that is drawn.
+# Modules of messages are imported once there is a graph: this view is in the first window to be drawn.
 
 POSES = ("turtlesim/msg/Pose", "turtlesim_msgs/msg/Pose")
 SPAWN = ("turtlesim/srv/Spawn", "turtlesim_msgs/srv/Spawn")
 TURTLES = 50
-"""Turtles that are followed."""
+"""Maximum turtles followed."""
 PICTURE_EVERY = 3.0
-"""Seconds between two pictures of everything drawn, which also show what clear, set_pen and teleports do."""
+"""Seconds between two pictures, which also show the effects of clear, set_pen and teleports."""
 PICTURE_SHARE = 0.01
-"""The share of time that taking pictures may cost."""
+"""Maximum share of time spent on pictures."""
 JUMP = 1.0
-"""Metres between two poses that no turtle drives: it was teleported."""
+"""Metres between two poses beyond which the turtle was teleported."""
 LINEAR, ANGULAR = 2.0, 2.0
-"""What one press of an arrow commands, in m/s and rad/s, as teleop does."""
+"""Velocities of one press of an arrow key, in m/s and rad/s, as in teleop."""
 TURNS = {"g": 0, "t": 45, "r": 90, "e": 135, "d": 180, "c": -135, "v": -90, "b": -45}
-"""Teleop's keys and the degrees they turn to: where they lie around the f."""
+"""Teleop's keys and their headings in degrees, as the keys are arranged around the f."""
 TURN_LABEL = f"{''.join(TURNS)} turn"
 
 
@@ -71,7 +71,7 @@ class Turtles(View):
         self._canvas = TurtleCanvas(self._drawing)
         self._driven = self.about
         self._wanted = ""
-        """A turtle that was asked for, to be driven as soon as it is there."""
+        """A requested turtle, to be driven once it exists."""
         self._picture_at = 0.0
         self._seen = -1
         self._empty = Static("waiting for a turtle: no node publishes a turtlesim pose yet", classes="hint")
@@ -125,7 +125,9 @@ class Turtles(View):
             if name not in self._taps:
                 tap = self._taps[name] = TopicMonitor(self.hub.live, topic)
                 tap.heard = self._heard(name)
-                self.hub.live.publisher(Twist, f"/{name}/cmd_vel")  # so that it is known when a key is pressed
+                self.hub.live.publisher(
+                    Twist, f"/{name}/cmd_vel"
+                )  # early, so that the heading is known at the first key
         if self._wanted in self._taps:
             self._driven, self._wanted = self._wanted, ""
         if self._driven not in self._taps and self._taps:
@@ -138,7 +140,7 @@ class Turtles(View):
         return heard
 
     async def _take_picture(self) -> None:
-        """What was drawn before we looked, and what poses do not tell."""
+        """Fetch a picture: strokes from before the view was opened, and changes that poses do not show."""
         from graphflow.msgs.std_srvs.srv import Trigger
 
         assert self.hub.live is not None
@@ -154,7 +156,7 @@ class Turtles(View):
         try:
             picture = read_picture(await self.hub.live.ask(call))
         except GraphflowError:
-            return  # the turtles are drawn by their poses all the same
+            return  # without pictures, turtles are still drawn by their poses
         took = time.monotonic() - began
         self._picture_at = time.monotonic() + max(PICTURE_EVERY, took / PICTURE_SHARE)
         self._drawing.take(picture, began)
@@ -181,7 +183,7 @@ class Turtles(View):
             self.say(f"{others[0]} drives {self._driven} too; a adds a turtle of your own")
 
     def _drivers(self, topic: str) -> list[str]:
-        """The nodes that drive a turtle; consoles, which are hidden nodes, left out."""
+        """Return the nodes that drive a turtle, except consoles, which are hidden nodes."""
         from graphflow.wire.liveliness import Kind
 
         assert self.hub.live is not None
@@ -224,7 +226,7 @@ class Turtles(View):
         self.work(self._nothing, group="turn")
 
     async def _nothing(self) -> None:
-        """Takes the place of a turn that is under way, which cancels it."""
+        """Do nothing; replaces a turn under way, which cancels it."""
 
     def do_next_turtle(self) -> None:
         names = list(self._taps)

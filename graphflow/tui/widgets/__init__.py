@@ -1,1 +1,1 @@
-"""The building blocks of views: tables, forms, dialogs, drawings, and the styles that they share."""
+"""Building blocks of views: tables, forms, dialogs, drawings, and their styles."""

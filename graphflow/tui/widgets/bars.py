@@ -1,4 +1,4 @@
-"""The lines at the bottom: what can be pressed now, which windows there are, and the keys after the prefix."""
+"""The bars at the bottom: the available keys, the windows, and the keys after the prefix."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from textual.widget import Widget
 from graphflow.tui.commands.actions import console_actions, shown
 
 MESSAGE_SECONDS = 6.0
-"""How long a message stays in place of the hints."""
+"""Seconds for which a message replaces the hints."""
 SEEN_AFTER = 1.5
-"""Seconds after which a key takes it away."""
+"""Seconds after which a key dismisses a message."""
 
 
 class StateMark(NamedTuple):
-    """A glyph for a node's state, beside its word."""
+    """The glyph and style of a node's state; the state itself is always written beside it."""
 
     glyph: str
     colours: str
@@ -52,7 +52,7 @@ MARKS = {
 
 
 def word_of(row: Mapping[str, Any], stuck: Container[str]) -> str:
-    """The state of a node for people: that of its process, of its life cycle, or `deadlock`.
+    """Return the state of a node for display: that of its process, of its lifecycle, or `deadlock`.
 
     Args:
         row: Its row of `ps`.
@@ -64,14 +64,14 @@ def word_of(row: Mapping[str, Any], stuck: Container[str]) -> str:
 
 
 class Bar(Widget):
-    """One line or more of text made of pieces."""
+    """A bar of styled text."""
 
     @property
     def console_app(self) -> Any:
         return self.app
 
     def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
-        """What the line says."""
+        """Return the styled pieces of a line."""
         raise NotImplementedError
 
     def render_line(self, y: int) -> Strip:
@@ -81,21 +81,21 @@ class Bar(Widget):
 
 
 class Hints(Bar):
-    """What can be pressed now; for a while, what has just happened."""
+    """The keys available now, or for a while the latest message."""
 
     def __init__(self) -> None:
         super().__init__()
         self._message: tuple[str, str, float] | None = None
 
     def say(self, text: str, colours: str) -> None:
-        """Show a message for a while; but what went wrong gives way only when it has been seen."""
+        """Show a message for a while. An error stays until it has been seen."""
         if colours == "text" and self._message is not None and self._message[1] == "bad":
             return
         self._message = (text, colours, time.monotonic() + MESSAGE_SECONDS)
         self.refresh()
 
     def look(self, now: float, *, pressed: bool = False) -> None:
-        """Take a message down when its time is over, or when it has been seen and a key is pressed."""
+        """Dismiss a message after its time, or at the first key once it has been seen."""
         if self._message is not None and now > self._message[2] - (MESSAGE_SECONDS - SEEN_AFTER if pressed else 0.0):
             self._message = None
             self.refresh()
@@ -114,7 +114,7 @@ class Hints(Bar):
         return found
 
     def _shown(self, width: int) -> list[tuple[str, str, str]]:
-        """The actions of the focused view for which there is room: name, key, title."""
+        """Return key and title of the focused view's actions, as far as they fit."""
         view = self.console_app.focused_view
         room = width - 1
         found = []
@@ -129,7 +129,7 @@ class Hints(Bar):
         return found
 
     def on_click(self, event: events.Click) -> None:
-        """A click on what can be pressed does it; on a message it takes it away."""
+        """Carry out the action under the mouse, or dismiss the message."""
         if self._message is not None:
             self._message = None
             self.refresh()
@@ -143,7 +143,7 @@ class Hints(Bar):
 
 
 class Status(Bar):
-    """Which graph, which windows, how the nodes are, and the two keys that one must know."""
+    """The graph, its windows, the states of its nodes, and the two most important keys."""
 
     def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
         colours, states = self.console_app.colours, self._states()
@@ -158,7 +158,7 @@ class Status(Bar):
         return f" [{self.console_app.hub.graph}] "
 
     def _windows(self, width: int) -> list[tuple[int, tuple[str, Style]]]:
-        """The windows that have room beside the states, the current one among them, each with its number."""
+        """Return the windows that fit beside the states, always including the current one, each with its number."""
         app, colours = self.console_app, self.console_app.colours
         windows = app.windows
         found = []
@@ -243,7 +243,7 @@ def _width(pieces: Iterable[tuple[str, Style]]) -> int:
 
 
 def _fitting(widths: Sequence[int], at: int, room: int) -> tuple[int, int]:
-    """The first and the last (exclusive) of neighbours that have room, with a mark on each side where others are."""
+    """Return the range of neighbours that fit, as first and last (exclusive), with a mark where some are left out."""
     first, last = 0, len(widths)
     while last - first > 1 and sum(widths[first:last]) + (first > 0) + (last < len(widths)) > room:
         if at - first > last - 1 - at:
@@ -254,13 +254,13 @@ def _fitting(widths: Sequence[int], at: int, room: int) -> tuple[int, int]:
 
 
 class WhichKey(Bar):
-    """The keys that may follow the prefix, shown when the next one is slow to come."""
+    """The keys after the prefix, shown if the next key does not follow soon."""
 
     def on_mount(self) -> None:
         self.display = False
 
     def open(self) -> None:
-        """Show as many lines as it takes."""
+        """Show the bar, with as many lines as needed."""
         self.styles.height = min(self._rows(), max(4, self.app.size.height - 4))
         self.display = True
 
@@ -287,5 +287,5 @@ class WhichKey(Bar):
 
 
 def _joined(keys: list[str]) -> str:
-    """Keys of one entry: the digits as a range, the rest one after the other."""
+    """Join the keys of one entry: digits as a range, others one after the other."""
     return "0-9" if len(keys) == 10 else "".join(keys)

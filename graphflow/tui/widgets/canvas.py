@@ -1,4 +1,4 @@
-"""Drawing with dots: braille cells of two by four, and what turtles draw with them."""
+"""Drawings in braille characters of two by four dots, and the drawings of turtles."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from textual.widget import Widget
 from graphflow.tui.widgets.colours import Colours
 
 WORLD = 11.0889
-"""Width and height of turtlesim's world in metres: 500 pixels less one, 45 to the metre."""
+"""Width and height of turtlesim's world in metres: 500 pixels less one, at 45 per metre."""
 PIXELS, SCALE = 500, 45.0
 PICTURE_BOUND = 4 << 20
-"""Characters of a picture that are read."""
+"""Maximum characters of a picture."""
 RECENT = 20_000
 """Moves remembered between two pictures."""
 DEFAULT_PEN = (0xB3, 0xB8, 0xFF)
 _STROKE = re.compile(r'<polyline points="([^"]{1,200000})" stroke="#([0-9a-fA-F]{6})" stroke-width="(\d{1,3})"')
 _HEADS = "▶◥▲◤◀◣▼◢"
-"""Triangles that point to the east, north-east, north, ..."""
+"""Triangles pointing east, north-east, north, ..."""
 _DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """The bit of each dot of a braille cell, by row and column. Source: Unicode, U+2800."""
 
@@ -36,23 +36,23 @@ RGB = tuple[int, int, int]
 
 
 class Dots:
-    """A board of dots, each cell of which has one colour."""
+    """A grid of dots; each cell of two by four has one colour."""
 
     def __init__(self, width: int, height: int) -> None:
         self.width, self.height = width, height
         self._bits = [bytearray(width) for _ in range(height)]
         self._colours: list[list[RGB | None]] = [[None] * width for _ in range(height)]
         self.changed: set[tuple[int, int]] = set()
-        """The cells, by column and row, that have changed since somebody emptied this."""
+        """Changed cells by column and row; emptied by the reader."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, colour: RGB) -> None:
-        """Draw from one dot to another; dots count from the top left."""
+        """Draw a line between two dots, counted from the top left."""
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
         for i in range(steps + 1):
             self.dot(round(x0 + (x1 - x0) * i / steps), round(y0 + (y1 - y0) * i / steps), colour)
 
     def dot(self, x: int, y: int, colour: RGB) -> None:
-        """Set one dot, if it is on the board."""
+        """Set a dot, unless it is outside."""
         if 0 <= x < 2 * self.width and 0 <= y < 4 * self.height:
             column, row, bit = x >> 1, y >> 2, _DOTS[y & 3][x & 1]
             if not self._bits[row][column] & bit or self._colours[row][column] != colour:
@@ -61,7 +61,7 @@ class Dots:
                 self.changed.add((column, row))
 
     def row(self, y: int) -> list[tuple[str, RGB | None]]:
-        """One row of cells as runs of text of one colour."""
+        """Return a row of cells as runs of text of one colour."""
         runs: list[tuple[str, RGB | None]] = []
         for bits, colour in zip(self._bits[y], self._colours[y], strict=True):
             text = chr(0x2800 + bits) if bits else " "
@@ -81,7 +81,7 @@ class Line(NamedTuple):
 
 @dataclass
 class Turtle:
-    """Where a turtle is, in metres and radians, and what it draws with."""
+    """A turtle: its position in metres, its heading in radians, and its pen."""
 
     x: float
     y: float
@@ -90,10 +90,10 @@ class Turtle:
 
 
 class Move(NamedTuple):
-    """A turtle has drawn a line."""
+    """A line drawn by a turtle between two poses."""
 
     at: float
-    """When, by the monotonic clock."""
+    """The time by the monotonic clock."""
     colour: RGB
     x0: float
     y0: float
@@ -103,19 +103,19 @@ class Move(NamedTuple):
 
 @dataclass
 class Drawing:
-    """What turtles have drawn: a picture from the simulator, and the moves since."""
+    """The drawing of all turtles: the last picture from the simulator, and the moves since."""
 
     lines: list[Line] = field(default_factory=list)
     recent: deque[Move] = field(default_factory=lambda: deque(maxlen=RECENT))
     turtles: dict[str, Turtle] = field(default_factory=dict)
     pictures: int = 0
-    """How often a picture has come."""
+    """Number of pictures received."""
     moves: int = 0
-    """How many moves there have been."""
+    """Number of moves."""
     now: float = 0.0
 
     def moved(self, name: str, x: float, y: float, theta: float, jump: float) -> None:
-        """A turtle is somewhere. Where it was not carried (`jump` metres or more), it has drawn a line."""
+        """Record a turtle's pose. It has drawn a line, unless it was teleported by `jump` metres or more."""
         if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(theta)):
             return
         turtle = self.turtles.get(name)
@@ -129,7 +129,7 @@ class Drawing:
         turtle.x, turtle.y, turtle.theta = x, y, theta
 
     def take(self, lines: list[Line], asked: float) -> None:
-        """A picture has come, asked for at some time: earlier moves are in it."""
+        """Take a picture requested at some time. It includes all earlier moves."""
         self.lines = lines
         while self.recent and self.recent[0].at < asked:
             self.recent.popleft()
@@ -142,7 +142,7 @@ class Drawing:
 
 
 def read_picture(svg: str) -> list[Line]:
-    """The strokes of turtlesim's picture."""
+    """Parse the strokes in turtlesim's picture."""
     lines = []
     for points, colour, _ in _STROKE.findall(svg[:PICTURE_BOUND]):
         rgb = (int(colour[:2], 16), int(colour[2:4], 16), int(colour[4:], 16))
@@ -157,11 +157,11 @@ def read_picture(svg: str) -> list[Line]:
 
 
 LONGEST = 20
-"""Letters of a turtle's name that are drawn."""
+"""Maximum letters of a turtle's name."""
 
 
 class Placed(NamedTuple):
-    """Where a turtle is drawn."""
+    """The place of a turtle in cells."""
 
     column: int
     row: int
@@ -174,7 +174,7 @@ class Placed(NamedTuple):
 
 
 class TurtleCanvas(Widget):
-    """A drawing on the screen, as large as fits, its height as its width."""
+    """A drawing on the screen, as large as fits, with equal width and height."""
 
     def __init__(self, drawing: Drawing) -> None:
         super().__init__()
@@ -185,7 +185,7 @@ class TurtleCanvas(Widget):
         self._placed: dict[str, Placed] = {}
 
     def redraw(self) -> None:
-        """Draw what is new; everything, when the size or the picture has changed."""
+        """Draw the changes; everything if the size or the picture has changed."""
         drawing, (width, height) = self._drawing, self.size
         wanted = (width, height, drawing.pictures)
         is_new = wanted != self._drawn
@@ -215,7 +215,7 @@ class TurtleCanvas(Widget):
         changed.clear()
 
     def _place(self) -> dict[str, Placed]:
-        """The cells of all turtles: a name is above its turtle, or below if another name is there."""
+        """Return the cells of all turtles. A name is above its turtle, or below if another name is there."""
         placed: dict[str, Placed] = {}
         taken: set[tuple[int, int]] = set()
         for name, turtle in self._drawing.turtles.items():
@@ -230,7 +230,7 @@ class TurtleCanvas(Widget):
 
     @property
     def _scale(self) -> float:
-        """Dots to the metre."""
+        """Dots per metre."""
         return max(1.0, min(2 * self._dots.width, 4 * self._dots.height) - 1) / WORLD
 
     def _dot(self, x: float, y: float) -> tuple[float, float]:
@@ -251,7 +251,7 @@ class TurtleCanvas(Widget):
             style = base + self._pen(colour) if colour is not None else base
             cells += [(c, style) for c in text]
         self._border(cells, y, base + colours.dim)
-        # As they were when what is to be drawn was found out: by now they may have gone on.
+        # The turtles as of `redraw`, which computed the cells: they may have moved meanwhile.
         for i, (name, at) in enumerate(self._placed.items()):
             style = base + colours.nodes[(i + 1) % len(colours.nodes)] + Style(bold=True)
             if at.row == y and 0 <= at.column < len(cells):
@@ -263,7 +263,7 @@ class TurtleCanvas(Widget):
         return Strip([Segment(text, style) for text, style in cells]).simplify()
 
     def _border(self, cells: list[tuple[str, Style]], y: int, style: Style) -> None:
-        """The edges of the world, where nothing is drawn on them."""
+        """Draw the edges of the world."""
         (left, top), (right, bottom) = self._dot(0.0, WORLD), self._dot(WORLD, 0.0)
         first, last = int(left) >> 1, min(len(cells) - 1, int(right) >> 1)
         if not int(top) >> 2 <= y <= int(bottom) >> 2:
@@ -278,7 +278,7 @@ class TurtleCanvas(Widget):
         return colours
 
     def _pen(self, colour: RGB) -> Style:
-        """A pen as it can be seen: darker on a light ground."""
+        """Return a visible colour for a pen: darker on a light background."""
         if not self._colours.is_dark:
             colour = (int(colour[0] * 0.55), int(colour[1] * 0.55), int(colour[2] * 0.65))
         elif max(colour) < 90:
@@ -287,7 +287,7 @@ class TurtleCanvas(Widget):
 
 
 def _regions(cells: Iterable[tuple[int, int]]) -> list[Region]:
-    """A region for each row that has some of the cells, as wide as they are apart."""
+    """Return one region per row that has any of the cells."""
     rows: dict[int, list[int]] = {}
     for column, row in cells:
         rows.setdefault(row, []).append(column)

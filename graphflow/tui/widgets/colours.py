@@ -1,4 +1,4 @@
-"""Colours: two themes of our own, and the styles that views draw with, made from whatever theme is in force."""
+"""Two themes, and the styles that views derive from the current theme."""
 
 from __future__ import annotations
 
@@ -66,16 +66,16 @@ class Colours:
     is_dark: bool
 
     def node(self, name: str) -> Style:
-        """A node's colour, the same wherever it is named."""
+        """Return the colour of a node, the same in all views."""
         return self.nodes[sum(name.encode()) % len(self.nodes)]
 
     def level(self, level: int) -> Style:
-        """The colour of a log level, by its index."""
+        """Return the colour of a log level, given by index."""
         return (self.dim, self.text, self.warn, self.bad, self.bad)[level]
 
 
 def recolouring(old: Colours, new: Colours) -> Callable[[Text], None]:
-    """A function that gives text drawn in one theme the styles of another."""
+    """Return a function that converts text from the styles of one theme to those of another."""
     names = ("match", "cursor", "bad", "warn", "good", "accent", "strong", "dim", "text")
     styles: dict[StyleType, Style] = dict(zip(old.nodes, cycle(new.nodes), strict=False))
     styles |= {getattr(old, name): getattr(new, name) for name in names}
@@ -88,7 +88,7 @@ def recolouring(old: Colours, new: Colours) -> Callable[[Text], None]:
 
 
 def make_colours(app: App[Any]) -> Colours:
-    """The styles that fit the theme in force."""
+    """Derive the styles from the current theme."""
     theme = app.current_theme
     variables = app.get_css_variables()
 
@@ -114,7 +114,7 @@ def make_colours(app: App[Any]) -> Colours:
 
 
 def _colour(text: str | None) -> RichColor | None:
-    """A theme's colour as Rich takes it; ansi themes name theirs `ansi_blue`."""
+    """Convert a theme's colour to Rich's notation; ansi themes name theirs `ansi_blue`."""
     if text is None:
         return None
     try:

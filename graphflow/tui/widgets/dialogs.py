@@ -1,4 +1,4 @@
-"""What the console asks: one key of several, one line of text, one of many things."""
+"""Dialogs: a choice by key, a line of text, and a list to pick from."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class Choice(NamedTuple):
 
     key: str
     word: str
-    """What the answer is, as the button says it."""
+    """The label of the button."""
 
 
 class Ask(ModalScreen[str | None]):
-    """A question with a few answers, each a key and a button. The result is the answer's key, None for none."""
+    """A question with a few answers, each with a key and a button. The result is the answer's key, or None."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "dismiss(None)", show=False)]
 
@@ -45,8 +45,8 @@ class Ask(ModalScreen[str | None]):
                 yield Button(r"\[esc] back", name="")
 
     def on_mount(self) -> None:
-        """Enter, pressed by mistake, goes back."""
-        for button in list(self.query(Button))[-1:]:  # none, if the console is being left at this moment
+        """Focus the last button, which cancels, so that an accidental enter does no harm."""
+        for button in list(self.query(Button))[-1:]:  # no button, if the console is being left at this moment
             button.focus()
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
@@ -62,11 +62,11 @@ class Ask(ModalScreen[str | None]):
 
 
 class AskToStop(Ask):
-    """Whether to leave or to stop the graph. Ctrl-C, the key that asks, is no answer."""
+    """The question whether to leave or to stop the graph. Ctrl-C, which opens it, is no answer."""
 
 
 class AskLine(ModalScreen[str | None]):
-    """One line of text; None when it was given up."""
+    """An input of one line. The result is None if it was cancelled."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "dismiss(None)", show=False)]
 
@@ -84,7 +84,7 @@ class AskLine(ModalScreen[str | None]):
 
 
 class Item(NamedTuple):
-    """One thing that can be picked."""
+    """An entry of a list to pick from."""
 
     text: str
     detail: str
@@ -92,11 +92,11 @@ class Item(NamedTuple):
 
 
 SHOWN = 200
-"""Things that a list shows at once; typing narrows it."""
+"""Maximum entries shown at once; typing narrows the list."""
 
 
 class Pick(ModalScreen[Any]):
-    """One of many things, found by typing parts of its name. The result is its value; None when it was given up."""
+    """A list to pick from, searched by typing parts of a name. The result is the value, or None if cancelled."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "dismiss(None)", show=False),
@@ -142,7 +142,7 @@ class Pick(ModalScreen[Any]):
         options.highlighted = 0 if self._found else None
 
     def add(self, items: Iterable[Item]) -> None:
-        """Offer more, as it becomes known."""
+        """Add entries while the list is open."""
         self._items += items
         if self.is_mounted:
             self._show(self.query_one(Input).value)
@@ -166,7 +166,7 @@ class Pick(ModalScreen[Any]):
 
 
 def _rank(item: Item, wanted: str, matcher: Matcher) -> tuple[int, float]:
-    """How well a thing is what was typed: by its name, its first word, its beginning, a part of it, or by letters."""
+    """Rank an entry for a search: by whole name, first word, beginning, substring, or scattered letters."""
     name = item.text.lower()
     nearness = (name == wanted, wanted in name.split(), name.startswith(wanted), wanted in name)
     rank = next((len(nearness) - i for i, is_so in enumerate(nearness) if is_so), 0)
@@ -182,7 +182,7 @@ def _line(item: Item, width: int, room: int, dim: Style) -> Text:
 
 
 class Note(ModalScreen[None]):
-    """Something to read, until any of the keys that end it."""
+    """A text to read, dismissed by certain keys."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,enter,f1", "dismiss", show=False)]
 

@@ -1,4 +1,4 @@
-"""Writing into the graph file: the change is shown first, and the file is whole at every moment."""
+"""Changes of the graph file: shown before they are written, and written atomically."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def write_nodes(
     """Change nodes in the graph file.
 
     Args:
-        change: Makes the new text, given where in the file each node is.
-        what: What is written, for the question.
-        written: Called when it has been.
+        change: Returns the new text, given the place of each node in the file.
+        what: A description of the change, for the question.
+        written: Called after the file has been written.
     """
     hub = console.hub
     if hub.plan is None or hub.supervision is None:
@@ -54,7 +54,7 @@ def write_file(
     what: str,
     written: Callable[[], None] = lambda: None,
 ) -> None:
-    """Show what a change would do to a file and, if the user agrees, write it."""
+    """Show the change of a file as a diff, and write it if the user confirms."""
     try:
         before = file.read_text(encoding="utf-8")
         after = change(before)
@@ -85,7 +85,7 @@ def write_file(
 
 
 def _must_load(file: Path, text: str) -> None:
-    """Check that the new text is a graph file, beside the old one, where its includes are found."""
+    """Check that the new text loads as a graph file, in the same folder, so that its includes are found."""
     with tempfile.NamedTemporaryFile("w", suffix=".yaml", dir=file.parent, encoding="utf-8") as trial:
         trial.write(text)
         trial.flush()
@@ -98,7 +98,7 @@ def _must_load(file: Path, text: str) -> None:
 
 
 def _replace(file: Path, text: str) -> None:
-    """Write a file whole or not at all."""
+    """Replace a file atomically."""
     handle, name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}-")
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as fresh:

@@ -1,4 +1,4 @@
-"""A form made of an interface: a line for each field, filled in with its default."""
+"""A form for a message type: one line per field, filled in with its default."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from graphflow.msgs.base import Message
 from graphflow.msgs.values import from_plain
 
 FIELDS = 60
-"""Lines of a form; what is nested deeper is written as YAML in one of them."""
+"""Maximum lines of a form; deeper fields are written as YAML in one line."""
 DEPTH = 3
 
 
 class Form(VerticalScroll):
-    """Lines to fill in; `message` reads them.
+    """Input lines for the fields of a message; `message` reads them.
 
-    Tab, enter and the arrows go from line to line; enter in the last one is `Completed`.
+    Tab, enter and the arrows move between lines; enter in the last one posts `Completed`.
 
     Args:
-        type_: The class of the message to make.
-        past: The values of earlier messages, as `values` gave them.
+        type_: The class of the message.
+        past: The values of earlier messages, as `values` returned them.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -47,7 +47,7 @@ class Form(VerticalScroll):
     """
 
     class Edited(Posted):
-        """Something in the form has changed."""
+        """The user has changed a field."""
 
     class Completed(Posted):
         """Enter was pressed in the last line."""
@@ -76,7 +76,7 @@ class Form(VerticalScroll):
             return
 
     def action_step(self, step: int) -> None:
-        """Go to another line; after the last comes the first."""
+        """Move to another line; the first follows the last."""
         lines = list(self.query(Input))
         if lines:
             at = next((i for i, line in enumerate(lines) if line.has_focus), -step)
@@ -95,7 +95,7 @@ class Form(VerticalScroll):
         self.post_message(self.Edited())
 
     def fault(self, line: Input) -> str:
-        """The fault of a line; empty for none."""
+        """Return the fault of a line; empty if there is none."""
         try:
             from_plain(self.type, self._values([line]))
         except EncodeError as error:
@@ -103,7 +103,7 @@ class Form(VerticalScroll):
         return ""
 
     def first_fault(self) -> str:
-        """The fault of the first line that has one, which gets the focus; empty for none."""
+        """Return the first fault and focus its line; empty if there is none."""
         for line in self.query(Input):
             if fault := self.fault(line):
                 self.screen.set_focus(line)
@@ -111,7 +111,7 @@ class Form(VerticalScroll):
         return ""
 
     def values(self) -> dict[str, Any]:
-        """What differs from the defaults, nested as the message is.
+        """Return the values that differ from the defaults, nested as in the message.
 
         Raises:
             EncodeError: A line is not YAML.
@@ -134,7 +134,7 @@ class Form(VerticalScroll):
         return found
 
     def fill(self, values: dict[str, Any]) -> None:
-        """Put values in, as `values` gave them; defaults elsewhere."""
+        """Fill in values as returned by `values`, with defaults elsewhere."""
         for path, _, default in self._fields:
             value: Any = values
             for part in path.split("."):
@@ -143,10 +143,10 @@ class Form(VerticalScroll):
             line.value = _text(default if value is None else value)
 
     def recall(self, step: int) -> str:
-        """Fill in the values of an earlier or later message; after the last come the defaults.
+        """Fill in the values of an earlier or later message; the defaults follow the last.
 
         Returns:
-            Which one it is; empty if there is none.
+            Its position, for display; empty if there is none.
         """
         if not self._past:
             return ""
@@ -155,13 +155,13 @@ class Form(VerticalScroll):
         return f"{self._at + 1} of {len(self._past)} made before" if self._at < len(self._past) else "the defaults"
 
     def keep(self) -> None:
-        """Count what is filled in as the newest message made."""
+        """Add the current values to the past messages."""
         if self.values() not in self._past[-1:]:
             self._past.append(self.values())
         self._at = len(self._past) - 1
 
     def message(self) -> Message:
-        """The message.
+        """Return the message.
 
         Raises:
             EncodeError: A value does not fit; the text names the field.
@@ -170,7 +170,7 @@ class Form(VerticalScroll):
 
 
 def form_for(type_name: str, past: Sequence[dict[str, Any]] = ()) -> Form:
-    """A form for a message type. Arguments: As for `Form`.
+    """Make a form for the type of that name; further arguments as for `Form`.
 
     Raises:
         GraphflowError: The type is not known here.
@@ -198,6 +198,6 @@ def _value(text: str, type_name: str, path: str) -> Any:
         return text
     try:
         value = parse_value(text)
-    except Exception as error:  # the reader's own kinds of error
+    except Exception as error:  # errors of the YAML reader
         raise EncodeError(f"{path}: {error}") from None
     return float(value) if type_name.startswith("float") and type(value) is int else value

@@ -1,4 +1,4 @@
-"""Many lines of text, of which only those on screen are ever drawn."""
+"""A view of many lines of text, of which only the visible ones are drawn."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from graphflow.tui.widgets.colours import Colours
 
 KEPT = 20_000
 WRAPS_INTO = 50
-"""Lines that one row becomes at most where long ones are wrapped."""
+"""Maximum lines of one wrapped row."""
 _INDENT = re.compile(r"[ │]*")
-"""What stands at the beginning of each line of a wrapped row: a frame's border goes on."""
+"""The beginning that is repeated on each line of a wrapped row, so that the border of a box continues."""
 _DEEPEST = 24
-"""Columns that an indent has at most."""
+"""Maximum columns of an indent."""
 
 
 class Part(NamedTuple):
@@ -37,15 +37,15 @@ class Part(NamedTuple):
     """The column of the row at which the piece begins."""
     end: int
     indent: int
-    """Columns of the row's beginning, or if `is_blank` as many spaces, that stand before the piece."""
+    """Columns before the piece, copied from the row's beginning or, if `is_blank`, left blank."""
     is_blank: bool = False
 
 
 def breaks(text: str, width: int, hanging: int | None = None) -> Iterator[tuple[int, int, int]]:
-    """Where to break a row, between words if need be in them: start, end and indent of each piece, in columns.
+    """Return the start, end and indent of each piece of a row, in columns, preferably broken between words.
 
     Args:
-        hanging: The indent of what goes on; None for that of the row.
+        hanging: The indent of further lines; None for that of the row.
     """
     found = _INDENT.match(text)
     indent = hanging if hanging is not None else found.end() if found else 0
@@ -68,12 +68,12 @@ def breaks(text: str, width: int, hanging: int | None = None) -> Iterator[tuple[
 
 
 class LineView(ScrollView, can_focus=True):
-    """Lines that grow at the end and are followed there, until one scrolls up.
+    """Lines that grow at the end, where the view follows them until the user scrolls up.
 
     Args:
-        bound: Lines kept; the oldest go first.
-        wraps: Whether long rows go on in the next line, rather than being cut off.
-        copies: Whether `y` copies the chosen line; in some views it copies something else.
+        bound: Maximum lines; the oldest are dropped.
+        wraps: Whether long rows are wrapped rather than cut off.
+        copies: Whether `y` copies the selected line; some views bind it to something else.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -90,10 +90,10 @@ class LineView(ScrollView, can_focus=True):
     ]
 
     HAS_SEARCH: ClassVar[bool] = True
-    """Whether `/` searches here; what has a filter of its own needs no search."""
+    """Whether `/` searches the lines; views with a filter of their own need no search."""
 
     class Wanted(Message):
-        """Something is to be searched for."""
+        """The user requests a search."""
 
         def __init__(self, lines: LineView) -> None:
             super().__init__()
@@ -108,7 +108,7 @@ class LineView(ScrollView, can_focus=True):
         self.rows: deque[Any] = deque(maxlen=bound)
         self.follows = True
         self.cursor: int | None = None
-        """The index of the chosen row, while one is chosen."""
+        """The index of the selected row; None if there is none."""
 
     @property
     def colours(self) -> Colours:
@@ -116,20 +116,20 @@ class LineView(ScrollView, can_focus=True):
         return colours
 
     def draw(self, row: Any) -> Iterable[tuple[str, Style]]:
-        """One row as pieces of text; for subclasses whose rows are not plain text."""
+        """Return a row as pieces of text; overridden by views whose rows are not plain text."""
         if isinstance(row, Text):
             whole = row.style if isinstance(row.style, Style) else self.colours.text
-            for segment in row.render(self.app.console):  # it leaves the style of the whole to who draws
+            for segment in row.render(self.app.console):  # the style of the whole line is left to the caller
                 yield segment.text, segment.style or whole
         else:
             yield str(row), self.colours.text
 
     def hanging(self, row: Any) -> int | None:
-        """Columns by which what goes on in the next line is indented; None for as many as the row begins with."""
+        """Return the indent of a row's further lines; None for that of the row."""
         return None
 
     def replace_last(self, row: Any) -> None:
-        """Show another row in place of the last one."""
+        """Replace the last row."""
         while self.rows:
             if self.row_that_begins(len(self.rows) - 1) is not None:
                 self.rows.pop()
@@ -138,14 +138,14 @@ class LineView(ScrollView, can_focus=True):
         self.extend([row])
 
     def extend(self, rows: Iterable[Any]) -> None:
-        """Add rows at the end."""
+        """Append rows."""
         before = len(self.rows)
         fresh = list(self._parts(rows))
         self.rows.extend(fresh)
         self._moved(lost=before + len(fresh) - len(self.rows))
 
     def replace(self, rows: Iterable[Any]) -> None:
-        """Show other rows."""
+        """Replace all rows."""
         fresh = list(self._parts(rows))
         self.rows.clear()
         self.rows.extend(fresh)
@@ -154,28 +154,28 @@ class LineView(ScrollView, can_focus=True):
 
     @property
     def chosen(self) -> Any:
-        """The row that is chosen; None for none."""
+        """The selected row; None if there is none."""
         if self.cursor is None or not 0 <= self.cursor < len(self.rows):
             return None
         return _whole(self.rows[self.cursor])
 
     @property
     def last_row(self) -> Any:
-        """The newest row; None where there is none."""
+        """The last row; None if there is none."""
         return _whole(self.rows[-1]) if self.rows else None
 
     @property
     def whole_rows(self) -> Iterator[Any]:
-        """The rows as they were given, each once."""
+        """The rows as they were added, without the splits of wrapping."""
         return (_whole(row) for row in self.rows if not isinstance(row, Part) or row.start == 0)
 
     def row_that_begins(self, index: int) -> Any:
-        """The row that begins in a line; None where one goes on."""
+        """Return the row whose first line this is; None for a further line of a row."""
         row = self.rows[index]
         return None if isinstance(row, Part) and row.start else _whole(row)
 
     def _parts(self, rows: Iterable[Any]) -> Iterator[Any]:
-        """The rows as lines: the long ones in parts, if they wrap."""
+        """Convert rows to lines, splitting the long ones if they wrap."""
         width = self._wrapped_at = self.scrollable_content_region.width
         if not self.wraps or not width:
             yield from rows
@@ -189,12 +189,12 @@ class LineView(ScrollView, can_focus=True):
                 yield from (Part(row, *piece, hanging is not None) for piece in breaks(text, width, hanging))
 
     def wrap(self, wraps: bool) -> None:
-        """Let long rows go on in the next line, or not."""
+        """Turn wrapping on or off."""
         self.wraps = wraps
         self.replace(list(self.whole_rows))
 
     def recolour(self, recolour: Callable[[Text], None]) -> None:
-        """Follow a change of the theme; rows that are no text are drawn in the one in force anyway."""
+        """Apply a change of theme to rows of text; other rows read the current theme when drawn."""
         for row in self.whole_rows:
             if isinstance(row, Text):
                 recolour(row)
@@ -255,9 +255,9 @@ class LineView(ScrollView, can_focus=True):
         self.search(self.sought, step)
 
     def search(self, text: str, step: int) -> bool:
-        """Go to the next line with a text, or the one before; returns whether there is one.
+        """Go to the next line with a text, or the previous one; return whether there is one.
 
-        Small letters stand for capital ones too.
+        The search ignores case.
         """
         self.sought = text
         count = len(self.rows)
@@ -277,7 +277,7 @@ class LineView(ScrollView, can_focus=True):
     # moving
 
     def hold(self) -> None:
-        """Stop following, so that what is read stays where it is."""
+        """Stop following, so that the lines in view stay in place."""
         self.follows = False
 
     def action_move(self, step: int) -> None:
@@ -290,7 +290,7 @@ class LineView(ScrollView, can_focus=True):
         self.show_row(self.cursor)
 
     def show_row(self, index: int) -> None:
-        """Scroll just enough to have a row on screen."""
+        """Scroll as little as possible to bring a row into view."""
         height, top = self.scrollable_content_region.height, self.scroll_offset.y
         if index < top:
             self.scroll_to(y=index, animate=False, immediate=True)

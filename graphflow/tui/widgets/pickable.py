@@ -1,4 +1,4 @@
-"""What can be picked: views for a pane, and everything in the graph that has one."""
+"""The entries of pickers: views, and everything in the graph that has a view."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from graphflow.introspect.graph_view import View as Graph
 
 NODES = 100
-"""Nodes that are asked for their parameters."""
+"""Maximum nodes whose parameters are listed."""
 ANSWER_LIMIT = 1.0
 
 
 def contents(hub: Hub) -> list[Item]:
-    """Views that show something without being told more, then those of each thing in the graph."""
+    """Return the views that need no subject, then those of each thing in the graph."""
     plain = [name for name in known_views() if name not in VIEWS or not VIEWS[name].needs_it]
     return [*(Item(name, describe(name), Content(name)) for name in plain), *things(hub)]
 
 
 def things(hub: Hub) -> list[Item]:
-    """Nodes, topics, services, actions: each with the views that are about it."""
+    """Return nodes, topics, services and actions, each with the views of it."""
     found = []
     for node in hub.nodes():
         found += [Item(f"log {node}", "what it writes", Content("log", node))]
@@ -55,7 +55,7 @@ def _names(graph: Graph, node: str) -> list[str]:
 
 
 async def parameters(hub: Hub) -> list[Item]:
-    """The parameters of all nodes that answer, each with the view of its node's."""
+    """Return the parameters of all nodes that reply, each with the parameter view of its node."""
     live = hub.live
     if live is None or live.context is None:
         return []
@@ -67,6 +67,6 @@ async def parameters(hub: Hub) -> list[Item]:
         try:
             names = await live.ask(partial(_names, node=node))
         except GraphflowError:
-            continue  # it is missing from a list of what can be found
+            continue  # a node that does not reply is only missing from the list
         found += [Item(f"param {name}", node, Content("params", node)) for name in names]
     return found

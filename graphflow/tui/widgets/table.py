@@ -1,4 +1,4 @@
-"""A view that is a table: rows that come, go and change, found by typing, put in order, chosen by a cursor."""
+"""A view that is a table, with incremental search, sorting and a cursor that stays on its row."""
 
 from __future__ import annotations
 
@@ -22,28 +22,25 @@ Cells = tuple[Text | str, ...]
 FIND = Action("find_row", "find", keys=("slash",), hint=True)
 ORDER = Action("order", "order", keys=("o",), hint=True)
 ROWS = 2000
-"""Rows shown; a find narrows what there is."""
+"""Maximum rows shown; a search narrows them."""
 STRETCH_LEAST = 16
-"""Cells that a last column which takes the rest of the line has at least."""
+"""Minimum cells of a last column that takes the rest of the line."""
 _QUANTITY = re.compile(r"(-?[\d.,]+) ?(ms|[a-zA-Z%]*)")
 _UNITS = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0, "k": 1e3, "M": 1e6, "G": 1e9}
 
 
 class TableView(View):
-    """A view of rows, each known by a key.
-
-    Subclasses say COLUMNS and `rows`.
-    """
+    """A view of rows identified by keys. Subclasses set COLUMNS and implement `rows`."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = ()
     KEEPS: ClassVar[int | None] = None
-    """Columns that stay where there is no room; the others go, the last of SHED first. None: the table scrolls."""
+    """Number of columns that always stay; the last of SHED are hidden first. None: hide none, scroll instead."""
     SHED: ClassVar[tuple[str, ...]] = ()
-    """The columns in the order of their worth; empty for the order in which they stand."""
+    """The columns by importance; empty for their order in the table."""
     STRETCHES: ClassVar[bool] = False
-    """Whether the last column takes what room is left."""
+    """Whether the last column takes the remaining width."""
     EMPTY: ClassVar[str] = "nothing there yet"
-    """What stands in place of the rows where there are none."""
+    """The text in place of an empty table."""
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
@@ -54,10 +51,10 @@ class TableView(View):
         )
         self._shown: dict[str, Cells] = {}
         self._total = self._found = 0
-        """Rows that there are, and of them those that the find leaves and that are shown."""
+        """Number of all rows, and of those that match the search."""
         self._columns: tuple[str, ...] = ()
         self._filled = False
-        """Whether rows have come since they were drawn last."""
+        """Whether rows were added since the last draw."""
 
     def compose(self) -> ComposeResult:
         yield self.table
@@ -65,7 +62,7 @@ class TableView(View):
         yield self._find
 
     def rows(self) -> Mapping[str, Cells]:
-        """The rows as they should be, in order."""
+        """Return the rows in their order."""
         raise NotImplementedError
 
     def look(self, now: float) -> None:
@@ -78,7 +75,7 @@ class TableView(View):
         self.show_rows(dict(list(self.ordered(rows).items())[:ROWS]))
 
     def why_empty(self) -> str:
-        """Why there are no rows."""
+        """Return the reason why there are no rows."""
         if self._find.value:
             return f"no row has {self._find.value!r}; esc shows all"
         return self.EMPTY
@@ -90,16 +87,16 @@ class TableView(View):
         find = f"[/{self._find.value}] " if self._find.value else ""
         return f"{find}{self._found} of {self._total}"
 
-    # the order
+    # sorting
 
     @property
     def _order(self) -> tuple[str, bool]:
-        """The column by which the rows are ordered, empty for none, and whether backwards."""
+        """Return the column to sort by, empty for none, and whether to reverse it."""
         column = str(self.options.get("order", ""))
         return column.removeprefix("-"), column.startswith("-")
 
     def ordered(self, rows: dict[str, Cells]) -> dict[str, Cells]:
-        """The rows in the order that was chosen; those without a value come last."""
+        """Sort the rows by the chosen column; rows without a value come last."""
         column, backwards = self._order
         if column not in self.COLUMNS:
             return rows
@@ -109,7 +106,7 @@ class TableView(View):
         return {key: rows[key] for key in (*filled, *(key for key in rows if key not in set(filled)))}
 
     def do_order(self) -> None:
-        """Ask for a column; the same one once more turns the order round."""
+        """Let the user choose a column; choosing the current one reverses the order."""
         now, backwards = self._order
 
         def picked(column: str | None) -> None:
@@ -132,10 +129,10 @@ class TableView(View):
         name, backwards = self._order
         return f"{column} {'▼' if backwards else '▲'}" if column == name and column else column
 
-    # what is shown
+    # rows and columns
 
     def show_rows(self, rows: dict[str, Cells]) -> None:
-        """Change what differs; the cursor stays on its row."""
+        """Update the rows that differ; the cursor stays on its row."""
         self.set_class(not rows, "-empty")
         if not rows:
             self._empty.update(self.why_empty())
@@ -161,7 +158,7 @@ class TableView(View):
         self.look(0.0)
 
     def _fitting(self, rows: dict[str, Cells]) -> tuple[tuple[str, ...], int]:
-        """The columns for which there is room, and the cells that are left for the last one if it stretches."""
+        """Return the columns that fit, and the width left for a last one that stretches."""
         room = self.table.size.width
         if self.KEEPS is None or not room:
             return self.COLUMNS, 0
@@ -181,7 +178,7 @@ class TableView(View):
         return tuple(column for column in self.COLUMNS if column in found), rest
 
     def _draw_again(self) -> None:
-        """Have the rows drawn anew: the table keeps what it has drawn between their coming and its measuring them."""
+        """Redraw all rows: the table caches rows drawn before it has measured them."""
         for key, cells in list(self._shown.items())[:1]:
             self.table.update_cell(key, self.COLUMNS[0], cells[0])
 
@@ -201,7 +198,7 @@ class TableView(View):
 
     @property
     def key(self) -> str:
-        """The key of the row that is chosen; empty for none."""
+        """The key of the selected row; empty if there is none."""
         return self._row_key
 
     @property
@@ -211,7 +208,7 @@ class TableView(View):
         return keys[row] if 0 <= row < len(keys) else ""
 
     def choose(self, key: str) -> None:
-        """Put the cursor on a row."""
+        """Move the cursor to a row."""
         if key in self._shown:
             self.table.move_cursor(row=list(self._shown).index(key), animate=False)
 
@@ -234,7 +231,7 @@ class TableView(View):
             self.table.focus()
 
     def key_escape(self) -> None:
-        """Take the find away."""
+        """Clear the search."""
         self._find.value = ""
         self._find.remove_class("shown")
         self.table.focus()
@@ -245,7 +242,7 @@ def _words(cells: Cells) -> str:
 
 
 def _cropped(cell: Text | str, width: int) -> Text | str:
-    """A cell on one line, cut where there is no room."""
+    """Return a cell as one line, cropped to the width."""
     if cell_len(str(cell)) <= width:
         return cell
     text = cell.copy() if isinstance(cell, Text) else Text(cell)
@@ -254,7 +251,7 @@ def _cropped(cell: Text | str, width: int) -> Text | str:
 
 
 def _magnitude(text: str) -> tuple[float, str]:
-    """The sort key of a cell: its quantity with its unit, else its words."""
+    """Return the sort key of a cell: a quantity with its unit, otherwise the text."""
     found = _QUANTITY.match(text)
     if found is None:
         return float("inf"), text.lower()

@@ -1,4 +1,4 @@
-"""The line of a first visit: how to move, to leave and to stop. Once it is put away it does not come again."""
+"""The line for newcomers: how to move, to leave and to stop. Once dismissed, it does not return."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ def _mark() -> Path:
 
 
 def is_first_visit() -> bool:
-    """Whether this user has not yet put the line away."""
+    """Return whether this user has not yet dismissed the line."""
     return not _mark().exists()
 
 
 class Welcome(Bar):
-    """What one must know, in the order in which it is needed; the end is cut off where there is no room."""
+    """The essentials, most important first; the end is cut off if there is no room."""
 
     def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
         colours, prefix = self.console_app.colours, shown(self.console_app.prefix)
@@ -43,7 +43,7 @@ class Welcome(Bar):
         self.put_away()
 
     def put_away(self) -> None:
-        """Hide the line, for good."""
+        """Hide the line for good."""
         self.display = False
         try:
             _mark().parent.mkdir(parents=True, exist_ok=True)

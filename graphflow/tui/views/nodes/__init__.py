@@ -1,1 +1,1 @@
-"""The views of nodes: the list of them, and the details, parameters, links, costs and crash of one."""
+"""The views of nodes: the list, and the details, parameters, links, resource use and crash of one."""

@@ -1,4 +1,4 @@
-"""Why a node is not there any more: how it ended, its traceback, its last words; and how to have it back."""
+"""The end of a node: its exit status, traceback and last output, and how to start it again."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from graphflow.workspace.project import INSTALLED_DEMOS, PACKAGE
 
 LAST_LINES = 20
 _LIBRARY = re.compile(r"/lib\d*/python3|/(site|dist)-packages/")
-"""What is in the path of every file that is not the user's own."""
+"""Matches the path of files that are not the user's own."""
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
 
 
 class Crash(View):
-    """The evidence of an end."""
+    """The evidence of a crash."""
 
     NAME = "crash"
     DOC = "how a node ended, its traceback and last words"
@@ -47,7 +47,7 @@ class Crash(View):
         self._lines.follows = False
         self._seen: object = None
         self._own: Logs | None = None
-        """Its log, read from its file."""
+        """The node's log, read from its file."""
 
     def compose(self) -> ComposeResult:
         yield self._lines
@@ -108,7 +108,7 @@ class Crash(View):
         return [record for record in self._logs.since(0) if record.node == self.about]
 
     def _place(self) -> tuple[str, int] | None:
-        """The user's innermost line in the traceback, else the innermost."""
+        """Return the innermost frame of the traceback in the user's code, otherwise the innermost."""
         trace = traceback_of(self._records())
         frames = [(m[1], int(m[2])) for record in trace if (m := _FRAME.search(record.text))]
         own = [frame for frame in frames if _is_own(f'File "{frame[0]}"')]
@@ -137,7 +137,7 @@ class Crash(View):
 
 
 def traceback_of(records: list[Record]) -> list[Record]:
-    """The lines of the last traceback among a node's records."""
+    """Return the lines of the last traceback among a node's records."""
     start = next((i for i in range(len(records) - 1, -1, -1) if records[i].text.startswith("Traceback (most")), None)
     if start is None:
         return []

@@ -1,4 +1,4 @@
-"""The node that is chosen in the list of nodes: its log, parameters, topics, groups and end, as tabs; and all logs."""
+"""Details of the selected node as tabs: log, parameters, topics, groups and crash; and the logs of all nodes."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from graphflow.tui.registry import view_class
 from graphflow.tui.view import View
 
 ALL = "all"
-"""The tab that is about no node: the logs of all."""
+"""The tab with the logs of all nodes."""
 TABS = {ALL: "all", "log": "log", "params": "params", "topics": "topics", "groups": "groups", "crash": "history"}
-"""The views of a node, and what their tabs are called."""
+"""The views of a node, and the labels of their tabs."""
 SETTLED_AFTER = 0.15
-"""Seconds for which the cursor rests on a node before it is shown: passing by costs nothing."""
+"""Seconds for which the cursor rests on a node before it is shown, so that passing over nodes costs nothing."""
 
 
 class Detail(View):
-    """One view of the chosen node; the others are a key away."""
+    """One view of the selected node, with tabs for the others."""
 
     NAME = "detail"
     DOC = "the chosen node: log, params, topics, groups, history; all logs"
@@ -64,7 +64,7 @@ class Detail(View):
         return {"node": self.about} if self.about else {}
 
     def shows(self, content: Content) -> bool:
-        """Whether something that is asked for has a tab here; it is opened then."""
+        """Open the tab for the requested content; return whether there is one."""
         if content.view not in TABS or not content.about or content.about != self.hub.selected:
             return False
         self.options["tab"] = content.view
@@ -82,7 +82,7 @@ class Detail(View):
             self._inner.look(now)
 
     def _show_tab(self) -> None:
-        """Show the tab's view of the chosen node."""
+        """Show the tab's view of the selected node."""
         self.about = self.hub.selected
         if self._tab == ALL:
             if self._inner is None or self._inner.about or self._inner.NAME != "log":
@@ -91,7 +91,7 @@ class Detail(View):
             self._replace(Content(self._tab, self.about))
 
     def _replace(self, content: Content) -> None:
-        """Show another view, or the same of another node."""
+        """Replace the view, or show another node in it."""
         had_focus = self.has_focus or (self._inner is not None and self._inner.has_focus_within)
         if self._inner is not None:
             self._inner.remove()
@@ -102,7 +102,7 @@ class Detail(View):
             self.call_after_refresh(self.focus_inside)
 
     def do_tab(self, step: str) -> None:
-        """Go to the next tab, or the one before."""
+        """Go to the next tab, or the previous one."""
         tabs = list(TABS)
         self.options["tab"] = tabs[(tabs.index(self._tab) + int(step)) % len(tabs)]
         self._show_tab()

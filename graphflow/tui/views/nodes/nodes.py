@@ -1,4 +1,4 @@
-"""The nodes of the graph: how they are, what went wrong, how fast they publish, what they cost."""
+"""The nodes of the graph: states, errors, rates and resource use."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ from graphflow.tui.widgets.dialogs import Item, Pick
 from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
 
 WORDS = {"foreign": "not ours", "ready": "running"}
-"""States of which users know another word."""
+"""Names of states for display where they differ."""
 GROUPINGS = ("", "namespace", "process", "host")
 GROUP = "group "
-"""The key of a group's row begins with it; no name of a node has a space."""
+"""The prefix of the keys of group rows; the names of nodes contain no space."""
 ANSWER_LIMIT, CHANGE_LIMIT = 2.0, 60.0
-"""Seconds that a node has to tell its state, and to change it."""
+"""Seconds that a node has to report its state, and to change it."""
 TRANSITIONS, LABEL = 32, 40
-"""Transitions that are offered, and characters of their labels."""
+"""Maximum transitions offered, and maximum characters of their labels."""
 LOG_SPAN = 2.0
-"""Seconds over which the lines of logs are counted."""
+"""Seconds over which log lines are counted."""
 FLOOD = 100.0
-"""Lines a second from which on a log is called a flood."""
+"""Lines per second from which a log is marked as a flood."""
 
 
 class Costs:
-    """What processes cost, between two looks."""
+    """Resource use of processes, measured between updates."""
 
     def __init__(self) -> None:
         self._known: dict[int, psutil.Process] = {}
 
     def look(self, pid: int) -> tuple[float, int] | None:
-        """Per cent of one core since the last look, and bytes of memory; None where there is no such process."""
+        """Return per cent of one core since the last call, and bytes of memory; None if the process is gone."""
         try:
             process = self._known.get(pid)
             if process is None:
@@ -138,7 +138,7 @@ class Nodes(TableView):
         return found
 
     def _troubles(self, name: str) -> Text:
-        """Errors and warnings since the log was looked at, and topics on which something does not fit."""
+        """Return errors and warnings since the log was last shown, and topics with a mismatch."""
         colours, live = self.colours, self.hub.live
         errors, warnings = self.hub.unseen(name)
         misfits = live.misfits_of(name) if live is not None else 0
@@ -151,7 +151,7 @@ class Nodes(TableView):
         return Text(" ").join(Text(text, style=style) for text, style in shown)
 
     def _last_trouble(self, name: str, row: dict[str, Any] | None) -> Text:
-        """Why a node is not well, else the newest error in its log."""
+        """Return why a node is not well, otherwise the last error in its log."""
         if row is not None and row["detail"]:
             return Text(plain_text(row["detail"]).replace("\n", " "), style=self.colours.bad)
         error = self.hub.logs.last_error.get(name)
@@ -159,7 +159,7 @@ class Nodes(TableView):
         return Text("" if error is None else error.text, style=style)
 
     def _count_logs(self) -> None:
-        """How many lines a second each node writes."""
+        """Update the rates of log lines per node."""
         now, counts = time.monotonic(), self.hub.logs.counts
         if now - self._counted_at >= LOG_SPAN:
             span, before = now - self._counted_at, self._log_counts
@@ -228,13 +228,13 @@ class Nodes(TableView):
         return {e.node_name: hosts[e.zid] for e in live.cache if e.zid in hosts}
 
     def do_group(self) -> None:
-        """Go on to the next way of grouping."""
+        """Switch to the next grouping."""
         at = GROUPINGS.index(self.options.get("by", "")) + 1
         self.options["by"] = GROUPINGS[at % len(GROUPINGS)]
         self.look(0.0)
 
     def do_fold(self) -> None:
-        """Fold the group that is chosen, or the one of the node that is; or unfold it."""
+        """Fold or unfold the selected group, or that of the selected node."""
         group_of = self._grouping()
         if group_of is None or not (chosen := self._row_key):
             self.say("b groups the nodes first")
@@ -246,12 +246,12 @@ class Nodes(TableView):
 
     @property
     def key(self) -> str:
-        """The node that is chosen; empty for none."""
+        """The selected node; empty if there is none."""
         found = self._row_key
         return "" if found.startswith(GROUP) else found
 
     def _pids_of_others(self) -> dict[str, int]:
-        """Process ids of nodes on this machine that somebody else has started."""
+        """Return the process ids of nodes on this machine that we did not start."""
         live = self.hub.live
         if live is None:
             return {}
@@ -308,7 +308,7 @@ class Nodes(TableView):
             self.console.deeds.stop_node(self.key)
 
     def do_transition(self) -> None:
-        """Ask for one of the transitions that the node can make now, and have it made."""
+        """Let the user choose one of the transitions available now, and request it."""
         node, live = self.key, self.hub.live
         if not node or live is None:
             return
@@ -340,7 +340,7 @@ class Nodes(TableView):
 
 
 def _label(thing: Any) -> str:
-    """The label of a state or a transition, which another process has made up."""
+    """Return the printable label of a state or transition, which another process chose."""
     return plain_text(thing.label[:LABEL])
 
 

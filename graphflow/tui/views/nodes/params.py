@@ -1,4 +1,4 @@
-"""The parameters of nodes: what they are, what they may be, where they come from; changed in place."""
+"""The parameters of nodes: values, limits and origins, edited in place."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from graphflow.tui.widgets.table import FIND, Cells, TableView
 from graphflow.wire.liveliness import Kind
 
 ANSWER_LIMIT = 2.0
-"""Seconds that a node has to answer."""
+"""Seconds that a node has to reply."""
 NODES = 100
-"""Nodes whose parameters are shown at once."""
+"""Maximum nodes whose parameters are shown at once."""
 
 
 class Row(NamedTuple):
@@ -67,9 +67,9 @@ class Params(TableView):
         super().__init__(hub, content)
         self._rows: dict[str, Row] = {}
         self._changed: dict[tuple[str, str], Any] = {}
-        """Values set while looking on, by node and name."""
+        """Values changed while the view is open, by node and name."""
         self._before: list[tuple[Row, Any]] = []
-        """Parameters set here, with the values that they had."""
+        """Parameters set here, with their previous values."""
         self._edited = ""
         self._input = Input(classes="find")
         self._events: TopicMonitor | None = None
@@ -77,7 +77,7 @@ class Params(TableView):
         self._stale = True
         self._of: list[str] = []
         self._trouble = ""
-        """What went wrong when a node was asked last."""
+        """The error of the last request to a node."""
         self._is_asking = True
 
     def compose(self) -> ComposeResult:
@@ -175,7 +175,7 @@ class Params(TableView):
         return found
 
     def _source(self, row: Row) -> str:
-        """Where the value comes from, as far as it can be known."""
+        """Return the origin of a value, as far as it is known."""
         if (row.node, row.name) in self._changed:
             return "changed"
         plan = self.hub.plan
@@ -188,7 +188,7 @@ class Params(TableView):
         same = setting.value == row.value
         return f"{setting.place.file.rpartition('/')[2]}:{setting.place.line}" if same else "changed"
 
-    # changing
+    # editing
 
     def on_data_table_row_selected(self) -> None:
         self.do_change()
@@ -220,7 +220,7 @@ class Params(TableView):
         self._before.append((row, row.value))
 
     def do_undo(self) -> None:
-        """Give the parameter that was set last the value that it had before."""
+        """Restore the previous value of the parameter that was set last."""
         if not self._before:
             self.say("no parameter was set in this pane")
             return

@@ -1,4 +1,4 @@
-"""What the processes of the graph cost, the dearest first."""
+"""The resource use of the graph's processes, highest first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A tree: each node, below it its topics, services and actions, and below those the nodes at their other end."""
+"""Nodes as a tree: below each its topics, services and actions, and below those the nodes at the other end."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ WORDS = {
     Kind.CLIENT: "calls",
 }
 OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
-"""Types of the topics and services that every node has."""
+"""Types of the topics and services of every node."""
 
 
 class Link(NamedTuple):
-    """One end of a topic, a service or an action."""
+    """One end of a topic, service or action."""
 
     node: str
     kind: Kind
@@ -52,7 +52,7 @@ class Link(NamedTuple):
 
 
 def links(entities: Iterable[Entity]) -> Iterator[Link]:
-    """The ends that users have written: those of an action as one, and none that every node has."""
+    """Return the endpoints of a node's own code, those of an action as one; not the ones that every node has."""
     for entity in entities:
         if is_hidden(entity.node_name):  # another console
             continue
@@ -64,7 +64,7 @@ def links(entities: Iterable[Entity]) -> Iterator[Link]:
 
 
 class Tree(TableView):
-    """All nodes folded, or one with everything below it."""
+    """All nodes folded, or one node unfolded."""
 
     NAME = "tree"
     DOC = "each node's topics, services and actions, and who is at the other end"
@@ -146,7 +146,7 @@ class Tree(TableView):
         self.open("goals" if is_action else "echo" if is_topic else "calls", name)
 
     def do_fold(self) -> None:
-        """Fold the row that is chosen, or the one that it is below; or unfold it."""
+        """Fold or unfold the selected row, or its parent."""
         key = "\n".join(self.key.split("\n")[:3])
         if key:
             self._turned.remove(key) if key in self._turned else self._turned.append(key)

@@ -1,1 +1,1 @@
-"""The views of topics: the list of them, and the messages, rate and curves of one."""
+"""The views of topics: the list, and the messages, rate and curves of one."""

@@ -1,4 +1,4 @@
-"""The messages of one topic: the latest, or all that can be read."""
+"""The messages of one topic: the latest, or as a stream."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from graphflow.tui.view import View
 from graphflow.tui.widgets.line_view import LineView
 
 ELEMENTS = 32
-"""Elements and characters shown of long arrays and strings."""
+"""Maximum elements and characters shown of arrays and strings."""
 LINES = 2000
 
 

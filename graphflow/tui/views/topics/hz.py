@@ -1,4 +1,4 @@
-"""How fast a topic is, how evenly, and what got lost."""
+"""The rate of a topic, its jitter and its losses."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 
 WINDOW = 5.0
-"""Seconds over which the numbers are taken."""
+"""Seconds over which the rate is averaged."""
 HISTORY = 120
-"""Half seconds that the line shows."""
+"""Half seconds of the rate's history."""
 
 
 class Hz(View):

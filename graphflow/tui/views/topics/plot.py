@@ -22,13 +22,13 @@ from graphflow.tui.widgets.dialogs import Item, Pick
 
 SECONDS = 30.0
 AXES = ("unit", "each", "one")
-"""Which curves share a chart: those of one unit, none, or all."""
+"""The sharing of charts: curves of one unit, none, or all."""
 SAMPLES_PER_SECOND = 50.0
-"""Samples kept; what comes faster is thinned out."""
+"""Samples kept per second; faster topics are thinned out."""
 
 
 class Plot(View):
-    """Curves of a topic's numbers: `/turtle1/pose.x,theta`, or all of them."""
+    """Curves of a topic's numeric fields: `/turtle1/pose.x,theta`, or all of them."""
 
     NAME = "plot"
     DOC = "numbers of a topic as curves: /turtle1/pose.x,theta"
@@ -135,14 +135,14 @@ class Plot(View):
 
     @property
     def _axes(self) -> str:
-        """How the curves share charts. Layouts that were kept by earlier versions say True for `each`."""
-        if self.app.no_color:  # nothing else tells curves of one chart apart
+        """The sharing of charts. Layouts saved by earlier versions have True for `each`."""
+        if self.app.no_color:  # colour alone tells curves of one chart apart
             return "each"
         given = self.options.get("axes")
         return "each" if given is True else given if given in AXES else AXES[0]
 
     def _groups(self) -> list[list[int]]:
-        """The curves that share a chart, by their numbers."""
+        """Return the curves of each chart, by index."""
         groups: dict[object, list[int]] = {}
         for i, curve in enumerate(self._curves):
             groups.setdefault({"unit": curve.unit, "each": i, "one": 0}[self._axes], []).append(i)
@@ -158,7 +158,7 @@ class Plot(View):
         return f"plot {self.content.about}"
 
     def do_fields(self) -> None:
-        """Ask for a field to show, or to leave out; asked again until it is left by escape."""
+        """Let the user show or hide fields, one after the other, until escape."""
         if not self._type_name:
             self.say(self._tap.trouble if self._tap is not None and self._tap.trouble else "no message yet")
             return
@@ -177,7 +177,7 @@ class Plot(View):
         self.app.push_screen(Pick(f"Fields of {self._topic}: enter shows one, or leaves it out", items), picked)
 
     def do_axes(self) -> None:
-        """Let fields of one unit share a chart, none, or all: one that is large makes the others flat."""
+        """Switch between charts by unit, by field, and one for all, where a large curve flattens the others."""
         if self.app.no_color:
             self.say("without colours, each curve has an axis of its own")
             return

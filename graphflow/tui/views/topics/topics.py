@@ -1,4 +1,4 @@
-"""All topics, or those of a node: their types, who is on them, how fast they are, and what does not fit."""
+"""The topics of the graph or of a node: types, endpoints, rates and mismatches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from graphflow.wire.liveliness import Entity, Kind
 
 
 class Topics(TableView):
-    """All topics."""
+    """The list of topics."""
 
     NAME = "topics"
     DOC = "every topic: type, publishers, subscriptions, rate"
