@@ -12,15 +12,16 @@
 A pane is the name of a view, or `{view: subject}` with the view's options beside it. `rows` and `columns`
 split the space among panes; `size` is a share of it, 50 being half. A plain list of panes is arranged by `layout`.
 
-The result is plain data, in the form that a console saves with a run: {"prefix", "theme", "windows": [{"name", "layout",
-"root"}]}, where a root is {"view", "about", "options", "size"} or {"split": "rows" or "columns", "of", "size"}.
+The result is plain data, in the form that a console saves with a run:
+{"prefix", "theme", "windows": [{"name", "layout", "root"}]}, where a root is
+{"view", "about", "options", "size"} or {"split": "rows" or "columns", "of", "size"}.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING
 
 from graphflow.console.views import VIEWS, ViewForm, known_views
 from graphflow.errors import Place
@@ -40,7 +41,7 @@ _SPLITS = ("rows", "columns")
 Complain = Callable[[Place, str], None]
 
 
-def console_section(src: Source, complain: Complain) -> dict[str, Any] | None:
+def console_section(src: Source, complain: Complain) -> dict[str, object] | None:
     """Read the section of a file; return None if there is none.
 
     Args:
@@ -54,42 +55,41 @@ class _Section:
     def __init__(self, src: Source, complain: Complain) -> None:
         self._src, self._complain = src, complain
 
-    def read(self, data: Any) -> dict[str, Any]:
+    def read(self, data: object) -> dict[str, object]:
         at: source.Path = ("console",)
-        data = self._mapping(data, at, ("prefix", "theme", "windows"), "console: {windows: [{panes: [nodes, log]}]}")
-        if data is None:
+        section = self._mapping(data, at, ("prefix", "theme", "windows"), "console: {windows: [{panes: [nodes, log]}]}")
+        if section is None:
             return {}
-        self._choice(data, at, "theme", THEMES)
-        prefix = data.get("prefix")
+        self._choice(section, at, "theme", THEMES)
+        prefix = section.get("prefix")
         if prefix is not None and not (isinstance(prefix, str) and _PREFIX.match(prefix)):
             self._complain(self._src.place((*at, "prefix")), f"prefix: expected ctrl and a letter, got {prefix!r}")
-        windows = data.get("windows") or []
+        windows = section.get("windows") or []
         if not isinstance(windows, list):
             self._complain(self._src.place((*at, "windows")), "windows: expected a list of windows")
             windows = []
         return {
             "prefix": prefix,
-            "theme": data.get("theme"),
+            "theme": section.get("theme"),
             "windows": [self._window(window, (*at, "windows", i)) for i, window in enumerate(windows)],
         }
 
-    def _window(self, data: Any, at: source.Path) -> dict[str, Any]:
-        data = self._mapping(data, at, ("name", "layout", "panes"), "{name: drive, panes: [nodes, log]}")
-        if data is None:
+    def _window(self, data: object, at: source.Path) -> dict[str, object]:
+        window = self._mapping(data, at, ("name", "layout", "panes"), "{name: drive, panes: [nodes, log]}")
+        if window is None:
             return {}
-        self._choice(data, at, "layout", LAYOUTS)
-        panes = data.get("panes")
+        self._choice(window, at, "layout", LAYOUTS)
+        panes = window.get("panes")
         if isinstance(panes, list):
-            panes = {"columns": panes}
-            root = self._split(panes, (*at, "panes"), (*at, "panes"))
+            root = self._split({"columns": panes}, (*at, "panes"), (*at, "panes"))
         elif panes is None:
             self._complain(self._src.place(at), "a window needs panes, for example panes: [nodes, log]")
             root = {}
         else:
             root = self._pane(panes, (*at, "panes"))
-        return {"name": str(data.get("name") or ""), "layout": data.get("layout"), "root": root}
+        return {"name": str(window.get("name") or ""), "layout": window.get("layout"), "root": root}
 
-    def _pane(self, data: Any, at: source.Path) -> dict[str, Any]:
+    def _pane(self, data: object, at: source.Path) -> dict[str, object]:
         if isinstance(data, str):
             data = {data: ""}
         if not isinstance(data, dict) or not data:
@@ -100,10 +100,10 @@ class _Section:
             return self._split(data, at, (*at, split))
         return self._view(data, at)
 
-    def _split(self, data: dict[str, Any], at: source.Path, below: source.Path) -> dict[str, Any]:
+    def _split(self, data: dict[str, object], at: source.Path, below: source.Path) -> dict[str, object]:
         split = next(key for key in _SPLITS if key in data)
         for key in set(data) - {split, "size"}:
-            self._complain(self._src.key_place((*at, key)), f"{key!r} cannot stand beside {split}; only size can")
+            self._complain(self._src.key_place((*at, key)), f"{key!r} is not allowed beside {split}; only size is")
         of = data[split]
         if not isinstance(of, list) or not of:
             self._complain(self._src.place(below), f"{split}: expected a list of views, got {of!r}")
@@ -111,12 +111,12 @@ class _Section:
         panes = [self._pane(pane, (*below, i)) for i, pane in enumerate(of)]
         return {"split": split, "of": panes, "size": self._size(data, at)}
 
-    def _view(self, data: dict[str, Any], at: source.Path) -> dict[str, Any]:
+    def _view(self, data: dict[str, object], at: source.Path) -> dict[str, object]:
         known = known_views()
         view = next((key for key in data if key in known), None)
         if view is None:
-            word = next(iter(data))
-            self._complain(self._src.place(at), f"{word!r} is no view{did_you_mean(word, known) or _all(known)}")
+            word = str(next(iter(data)))
+            self._complain(self._src.place(at), f"{word!r} is not a view{did_you_mean(word, known) or _all(known)}")
             return {}
         form = VIEWS.get(view)
         about = data[view]
@@ -126,18 +126,19 @@ class _Section:
         options = {k: v for k, v in data.items() if k not in (view, "size")}
         return {"view": view, "about": about, "options": options, "size": self._size(data, at)}
 
-    def _check(self, form: ViewForm, view: str, about: str, data: dict[str, Any], at: source.Path) -> None:
+    def _check(self, form: ViewForm, view: str, about: str, data: dict[str, object], at: source.Path) -> None:
         if form.needs_it and not about:
             self._complain(self._src.place(at), f"{view} needs a {form.about}: {{{view}: ...}}")
         if about and not form.about:
-            self._complain(self._src.place(at), f"{view} is about everything; write {view} alone")
+            self._complain(self._src.place(at), f"{view} takes no argument; write {view} alone")
         for key in set(data) - {view, "size", *form.options}:
             text = f"{view} has no option {key!r}{did_you_mean(key, form.options) or _all(form.options)}"
             self._complain(self._src.key_place((*at, key)), text)
         if view == "log":
             self._choice(data, at, "level", _LEVELS)
-            if isinstance(data.get("filter"), str):
-                self._regex(data["filter"], (*at, "filter"))
+            pattern = data.get("filter")
+            if isinstance(pattern, str):
+                self._regex(pattern, (*at, "filter"))
 
     def _regex(self, text: str, at: source.Path) -> None:
         try:
@@ -145,14 +146,14 @@ class _Section:
         except re.error as error:
             self._complain(self._src.place(at), f"filter: not a regular expression: {error}")
 
-    def _size(self, data: dict[str, Any], at: source.Path) -> float:
+    def _size(self, data: dict[str, object], at: source.Path) -> float:
         size = data.get("size", 0)
         if isinstance(size, bool) or not isinstance(size, (int, float)) or not 0 <= size <= 100:
             self._complain(self._src.place((*at, "size")), f"size: expected a share from 1 to 100, got {size!r}")
             return 0.0
         return float(size)
 
-    def _choice(self, data: dict[str, Any], at: source.Path, key: str, choices: tuple[str, ...]) -> None:
+    def _choice(self, data: dict[str, object], at: source.Path, key: str, choices: tuple[str, ...]) -> None:
         value = data.get(key)
         if value is not None and value not in choices:
             near = nearest(str(value), choices)
@@ -160,7 +161,7 @@ class _Section:
             text = f"{key}: expected one of {', '.join(choices)}, got {value!r}{guess}"
             self._complain(self._src.place((*at, key)), text)
 
-    def _mapping(self, data: Any, at: source.Path, keys: tuple[str, ...], example: str) -> dict[str, Any] | None:
+    def _mapping(self, data: object, at: source.Path, keys: tuple[str, ...], example: str) -> dict[str, object] | None:
         if not isinstance(data, dict):
             where = str(at[-1]) if isinstance(at[-1], str) else "a window"
             self._complain(self._src.place(at), f"{where}: expected a mapping, for example {example}")
@@ -171,5 +172,5 @@ class _Section:
         return data
 
 
-def _all(words: Any) -> str:
-    return f"; there are {', '.join(words)}" if words else "; it has none"
+def _all(names: Collection[str]) -> str:
+    return f"; there are {', '.join(names)}" if names else "; it has none"

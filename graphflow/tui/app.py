@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding
+from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from graphflow.supervisor.rundir import running
@@ -15,6 +15,7 @@ from graphflow.tui.commands.actions import console_actions, shown
 from graphflow.tui.commands.console_commands import ConsoleCommands
 from graphflow.tui.context import ConsoleApp
 from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.feeds.supervision import Event
 from graphflow.tui.home import open_home
 from graphflow.tui.layout import Layout
 from graphflow.tui.pane_area import Workspace
@@ -52,7 +53,7 @@ class Console(ConsoleApp):
 
     CSS_PATH = "app.tcss"
     ENABLE_COMMAND_PALETTE = False
-    BINDINGS: ClassVar[list[Any]] = [
+    BINDINGS: ClassVar[list[BindingType]] = [
         Binding(",".join(action.keys), f"do('{action.name}')", action.title, show=False, priority="ctrl+" in key)
         for action in console_actions()
         for key in action.keys[:1]
@@ -71,10 +72,10 @@ class Console(ConsoleApp):
         if not self.windows.windows:
             open_home(self.windows, hub)
         self.workspace = Workspace(self.windows, self._make_view)
-        self.deeds = ConsoleCommands(self)
+        self.commands = ConsoleCommands(self)
         self.hints = Hints()
         self.status = Status()
-        self.keyboard = Keyboard(self, super().on_event, self.deeds.do)
+        self.keyboard = Keyboard(self, super().on_event, self.commands.do)
         self.welcome = Welcome()
         self.welcome.display = welcome
         self.job_control = JobControl(self, self.hints.refresh)
@@ -100,7 +101,7 @@ class Console(ConsoleApp):
         return MainScreen(id="_default")
 
     def on_mount(self) -> None:
-        self.job_control.hear_signals()
+        self.job_control.handle_signals()
         self.theme_changed_signal.subscribe(self, lambda _: self._new_colours())
         self.set_interval(PULSE, self._pulse)
         self.call_after_refresh(self._begin)
@@ -129,43 +130,62 @@ class Console(ConsoleApp):
     def on_descendant_focus(self) -> None:
         self.hints.refresh()
 
-    def heard(self, event: dict[str, Any]) -> None:
+    def handle_supervisor_event(self, event: Event) -> None:
         """Handle an event of the supervisor."""
         match event["event"]:
-            case "hello" if self.hub.supervision and self.hub.supervision.version_note:
-                self.say(self.hub.supervision.version_note)
             case "ps":
                 self.hub.logs.follow(self.hub.log_files())
-            case "announced" if self.hub.supervision and event["by"] != self.hub.supervision.name:
-                self.say(f"{event['text']} by {event['by']}")
             case "stopping":
                 self._stopped_for = str(event["reason"])
-                self.say(f"stopping ({self._stopped_for})")
-            case "note" | "said":
-                self.say(event["text"])
-            case "step" if not event["ok"]:
-                self.say(f"step {event['step']} FAILED: {event['text']}", bad=True)
-            case "error":
-                self.say(event["message"], bad=True)
             case "exited" if event["unexpected"]:
-                self._crashed(event)
-            case "end":
-                code = event["exit_code"]
-                why = f" ({self._stopped_for})" if self._stopped_for else ""
-                self.say(f"the graph has ended{why}, exit code {code}; q leaves", bad=bool(code))
-            case "lost" if self.hub.supervision and self.hub.supervision.exit_code is None:
-                self.say(f"{event['message']}; q leaves", bad=True)
+                self.flags[self.windows.current] = "!"
+        if notice := self._notice_of(event):
+            self.say(notice)
+        elif failure := self._failure_of(event):
+            self.say(failure, bad=True)
         for frame in self.workspace.visible_frames:
             if frame.view.SHOWS_STATES:
                 frame.view.look_soon()
         self.status.refresh()
 
-    def _crashed(self, event: dict[str, Any]) -> None:
-        names = ", ".join(event["nodes"])
-        again = event.get("again")
-        follows = "" if again is None else f"; it is started again in {again:.1f} s"
-        self.say(f"{shown(self.prefix)} e shows why: {names} died, {event['how']}{follows}", bad=True)
-        self.flags[self.windows.current] = "!"
+    def _notice_of(self, event: Event) -> str:
+        """Return the message for an event that is no failure; empty for none."""
+        supervision = self.hub.supervision
+        match event["event"]:
+            case "hello" if supervision is not None:
+                return supervision.version_note
+            case "announced" if supervision is not None and event["by"] != supervision.name:
+                return f"{event['text']} by {event['by']}"
+            case "stopping":
+                return f"stopping ({event['reason']})"
+            case "note" | "said":
+                return str(event["text"])
+            case "end" if not event["exit_code"]:
+                return self._end_of(event)
+        return ""
+
+    def _failure_of(self, event: Event) -> str:
+        """Return the message for an event that is a failure; empty for none."""
+        supervision = self.hub.supervision
+        match event["event"]:
+            case "step" if not event["ok"]:
+                return f"step {event['step']} FAILED: {event['text']}"
+            case "error":
+                return str(event["message"])
+            case "exited" if event["unexpected"]:
+                again = event.get("again")
+                restart = "" if again is None else f"; it is started again in {again:.1f} s"
+                nodes = ", ".join(event["nodes"])
+                return f"{shown(self.prefix)} e shows why: {nodes} died, {event['how']}{restart}"
+            case "end" if event["exit_code"]:
+                return self._end_of(event)
+            case "lost" if supervision is not None and supervision.exit_code is None:
+                return f"{event['message']}; q leaves"
+        return ""
+
+    def _end_of(self, event: Event) -> str:
+        why = f" ({self._stopped_for})" if self._stopped_for else ""
+        return f"the graph has ended{why}, exit code {event['exit_code']}; q leaves"
 
     # updates
 
@@ -190,12 +210,11 @@ class Console(ConsoleApp):
                 if self._beats % 5 == 0:
                     frame.title_line.refresh_if_changed()
         if self._beats % 10 == 0:
-            self.deeds.look(now)
+            self.commands.look(now)
             self.hints.look(now)
             self.status.refresh()
 
-    def _make_view(self, content: object) -> View:
-        assert isinstance(content, Content)
+    def _make_view(self, content: Content) -> View:
         return view_class(content.view)(self.hub, content)
 
     def _new_colours(self) -> None:
@@ -210,7 +229,7 @@ class Console(ConsoleApp):
 
     def open_beside(self, content: Content) -> None:
         """Open a view beside the focused pane, or in a new window if there is no room."""
-        self.deeds.open_beside(content)
+        self.commands.open_beside(content)
 
     # keys
 
@@ -226,14 +245,14 @@ class Console(ConsoleApp):
     async def on_workspace_focus_arrived(self) -> None:
         await self.keyboard.go_on()
 
-    def on_line_view_wanted(self, event: LineView.Wanted) -> None:
-        self.deeds.search_in(event.lines)
+    def on_line_view_search_requested(self, event: LineView.SearchRequested) -> None:
+        self.commands.search_in(event.lines)
 
-    async def on_keyboard_followed(self, event: Keyboard.Followed) -> None:
-        await self.keyboard.followed(event)
+    async def on_keyboard_marker(self, event: Keyboard.Marker) -> None:
+        await self.keyboard.marker_arrived(event)
 
     def action_do(self, name: str) -> None:
-        self.deeds.do(name)
+        self.commands.do(name)
 
     def watch_app_focus(self, focus: bool) -> None:
         """Focus a dialog that opened while the terminal was out of focus."""

@@ -6,7 +6,6 @@ import asyncio
 import time
 from collections.abc import Awaitable, Callable
 
-from textual.app import App
 from textual.timer import Timer
 
 from graphflow.tui.commands.actions import shown
@@ -18,12 +17,12 @@ from graphflow.tui.tty import clipboard
 from graphflow.tui.tty.job_control import JobControl
 from graphflow.tui.view import View
 from graphflow.tui.widgets.bars import Hints, Status
-from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.colours import ThemedApp
 from graphflow.tui.widgets.welcome import Welcome
 
 MESSAGES = 500
 """Messages remembered."""
-KEEP_AFTER = 1.0
+SAVE_AFTER = 1.0
 """Seconds after the last change of the windows at which they are saved with the run."""
 LASTING = "lasting"
 """The worker group whose workers run until the console is left."""
@@ -31,7 +30,7 @@ LEAVE_WITHIN = 2.0
 """Seconds to wait for the panes' workers to end."""
 
 
-class ConsoleApp(App[str]):
+class ConsoleApp(ThemedApp):
     """The console as its views, bars and commands see it."""
 
     hints: Hints
@@ -39,7 +38,6 @@ class ConsoleApp(App[str]):
     welcome: Welcome
     workspace: Workspace
     job_control: JobControl
-    colours: Colours
 
     def __init__(self, hub: Hub, windows: Layout, prefix: str) -> None:
         super().__init__()
@@ -52,9 +50,9 @@ class ConsoleApp(App[str]):
         self.clipboard_text = ""
         self.last_shell = ""
         """The shell command equivalent to the last action."""
-        self.said: list[str] = []
+        self.messages: list[str] = []
         """The messages shown so far, oldest first."""
-        self._keep_timer: Timer | None = None
+        self._save_timer: Timer | None = None
 
     def spawn(self, work: Callable[[], Awaitable[None]]) -> None:
         """Run a coroutine function until the console is left."""
@@ -63,7 +61,7 @@ class ConsoleApp(App[str]):
     async def leave(self, how: str) -> None:
         """Leave the console. The graph runs on."""
         if self.hub.supervision is not None:
-            self.keep_layout_now()
+            self.save_layout()
         views = [frame.view for frame in self.workspace.frames.values()]
         for view in views:
             view.closed()
@@ -85,17 +83,17 @@ class ConsoleApp(App[str]):
 
     def say(self, text: str, *, bad: bool = False) -> None:
         """Show a message in the bottom line."""
-        self._note(text)
+        self._log_message(text)
         self.hints.say(text, "bad" if bad else "text")
 
-    def _note(self, text: str) -> None:
-        self.said.append(f"{time.strftime('%H:%M:%S')}  {text}")
-        del self.said[:-MESSAGES]
+    def _log_message(self, text: str) -> None:
+        self.messages.append(f"{time.strftime('%H:%M:%S')}  {text}")
+        del self.messages[:-MESSAGES]
 
     def did(self, shell: str) -> None:
         """Show the shell command equivalent to the action just taken."""
         self.last_shell = shell
-        self._note(f"$ {shell}")
+        self._log_message(f"$ {shell}")
         self.hints.say(f"$ {shell}   ({shown(self.prefix)} y copies)", "accent")
 
     def changed(self) -> None:
@@ -103,13 +101,13 @@ class ConsoleApp(App[str]):
         self.workspace.sync()
         self.status.refresh()
         self.hints.refresh()
-        if self._keep_timer is not None:
-            self._keep_timer.stop()
-        self._keep_timer = self.set_timer(KEEP_AFTER, self.keep_layout_now)
+        if self._save_timer is not None:
+            self._save_timer.stop()
+        self._save_timer = self.set_timer(SAVE_AFTER, self.save_layout)
 
-    def keep_layout_now(self) -> None:
+    def save_layout(self) -> None:
         """Save the windows with the run, so that the next console to attach restores them."""
-        self.workspace.keep_contents()
+        self.workspace.store_contents()
         if self.hub.supervision is not None:
             self.hub.supervision.send(do="keep_layout", layout=self.windows.to_json())
 
@@ -118,11 +116,6 @@ class ConsoleApp(App[str]):
         return self.windows.window
 
     def copy(self, text: str, what: str = "") -> None:
-        """Copy a text to the clipboard, and report it.
-
-        Args:
-            what: A description of the text; empty to quote the text itself.
-        """
         self.clipboard_text = text
         self.copy_to_clipboard(text)
         words = clipboard.program()
@@ -133,7 +126,7 @@ class ConsoleApp(App[str]):
             return
 
         async def copy() -> None:
-            trouble = await asyncio.to_thread(clipboard.copy_by, words, text)
+            trouble = await asyncio.to_thread(clipboard.copy_with, words, text)
             self.say(f"not copied: {trouble}" if trouble else f"copied {what or text}", bad=bool(trouble))
 
         self.spawn(copy)

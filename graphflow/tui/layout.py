@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from graphflow.tui.panes import MAX_PANES, MAX_WINDOWS, Axis, Content, Pane, Split, Window
@@ -66,7 +66,7 @@ class Layout:
 
     # as data
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Return the windows as plain data, to be saved with the run."""
         return {
             "current": self.current,
@@ -94,14 +94,14 @@ class Layout:
         try:
             windows = list(data["windows"])[:MAX_WINDOWS]
             for window in windows:
-                number = layout.open(str(window.get("name") or "")[:40], layout._read(window["root"], 0))
-                made = layout.windows[number]
+                number = layout.open(str(window.get("name") or "")[:40], layout.read_tree(window["root"]))
+                opened = layout.windows[number]
                 if window.get("layout"):
-                    _keep_or_arrange(made, str(window["layout"]), is_saved="focused" in window)
-                numbers = made.numbers
-                made.focused = numbers[int(window.get("focused", 0)) % len(numbers)]
-                made.last_focused = made.focused
-                made.zoomed = bool(window.get("zoomed"))
+                    _keep_or_arrange(opened, str(window["layout"]), is_saved="focused" in window)
+                numbers = opened.numbers
+                opened.focused = numbers[int(window.get("focused", 0)) % len(numbers)]
+                opened.last_focused = opened.focused
+                opened.zoomed = bool(window.get("zoomed"))
             current = int(data.get("current", 0))
         except (KeyError, TypeError, AttributeError, RecursionError) as error:
             raise ValueError(f"not a layout: {error!r}") from None
@@ -111,15 +111,16 @@ class Layout:
         layout.last = layout.current
         return layout
 
-    def _read(self, data: Any, depth: int) -> Pane | Split:
+    def read_tree(self, data: Mapping[str, Any]) -> Pane | Split:
+        """Read the tree of a window as `to_json` wrote it, with new pane numbers."""
         share = float(data.get("size") or 0.0)
         if "split" in data:
-            of: list[Pane | Split] = [self._read(inner, depth + 1) for inner in list(data["of"])[:MAX_PANES]]
-            given = [n.share for n in of if n.share > 0]
-            rest = max(100.0 - sum(given), 10.0) if given else 100.0
-            without = [n for n in of if n.share <= 0]
-            for node in without:
-                node.share = rest / len(without)
+            of: list[Pane | Split] = [self.read_tree(inner) for inner in list(data["of"])[:MAX_PANES]]
+            sized = [n.share for n in of if n.share > 0]
+            rest = max(100.0 - sum(sized), 10.0) if sized else 100.0
+            unsized = [n for n in of if n.share <= 0]
+            for node in unsized:
+                node.share = rest / len(unsized)
             if len(of) == 1:
                 of[0].share = share
                 return of[0]
@@ -145,19 +146,19 @@ def _panes(node: Pane | Split) -> Iterator[Pane]:
             yield from _panes(inner)
 
 
-def _to_json(node: Pane | Split) -> dict[str, Any]:
+def _to_json(node: Pane | Split) -> dict[str, object]:
     if isinstance(node, Pane):
         content = node.content
         return {"view": content.view, "about": content.about, "options": content.options, "size": node.share}
     return {"split": node.axis, "of": [_to_json(n) for n in node.of], "size": node.share}
 
 
-def to_section(layout: Layout) -> dict[str, Any]:
+def to_section(layout: Layout) -> dict[str, object]:
     """Convert the windows to the `console:` section of a graph file, with sizes as shares of 100."""
     return {"windows": [{"name": w.name, "panes": _section(w.root, None)} for w in layout.windows.values()]}
 
 
-def _section(node: Pane | Split, size: int | None) -> Any:
+def _section(node: Pane | Split, size: int | None) -> object:
     if isinstance(node, Pane):
         content = node.content
         options = dict(content.options)

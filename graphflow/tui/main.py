@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 os.environ["TEXTUAL_FPS"] = "20"  # read by Textual when it is imported
 
@@ -18,7 +17,7 @@ from graphflow.system import collect_normally
 from graphflow.tui.app import Console
 from graphflow.tui.commands.history import History, history_file
 from graphflow.tui.feeds.hub import Hub, Verbs
-from graphflow.tui.feeds.supervision import Supervision
+from graphflow.tui.feeds.supervision import Event, NodeRow, Supervision
 from graphflow.tui.layout import Layout
 from graphflow.tui.widgets.colours import DARK
 from graphflow.tui.widgets.welcome import is_first_visit
@@ -45,7 +44,7 @@ def open_console(
     command: tuple[str, ...],
     verbs: Callable[[], Verbs],
     prefix: str | None = None,
-    layout: dict[str, Any] | None = None,
+    layout: Mapping[str, object] | None = None,
 ) -> Left:
     """Show the console until it is left, following it from graph to graph.
 
@@ -78,19 +77,19 @@ def _show(
     command: tuple[str, ...],
     verbs: Callable[[], Verbs],
     prefix: str | None,
-    layout: dict[str, Any] | None,
+    layout: Mapping[str, object] | None,
 ) -> tuple[str, int | None]:
     hub = Hub(domain, None, command, verbs, History(history_file()))
-    hello: dict[str, Any] = {}
+    hello: Event = {}
     app: Console | None = None
     if run is not None:
-        hello, rows = _first_word(run)
+        hello, rows = _initial_state(run)
 
-        def heard(event: dict[str, Any]) -> None:
+        def on_event(event: Event) -> None:
             if app is not None:
-                app.heard(event)
+                app.handle_supervisor_event(event)
 
-        hub.supervision = Supervision(run, heard)
+        hub.supervision = Supervision(run, on_event)
         hub.supervision.hello = hello
         hub.supervision.nodes = {row["node"]: row for row in rows}
     section = hello.get("console") or {}
@@ -111,8 +110,8 @@ def _usual_prefix() -> str:
     return "ctrl+a" if os.environ.get("TMUX") else "ctrl+b"
 
 
-def _first_word(run: GraphRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """Wait for the supervisor's first event, so that the first frame already shows the right windows."""
+def _initial_state(run: GraphRun) -> tuple[Event, list[NodeRow]]:
+    """Read the supervisor's greeting and nodes, so that the first frame is already complete."""
     with ControlClient(run.socket) as client:
         client.send(do="hello")
         hello = next(client.receive(), {})
@@ -122,14 +121,14 @@ def _first_word(run: GraphRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     return hello, rows
 
 
-def _layout(*choices: dict[str, Any] | None) -> Layout | None:
+def _layout(*choices: Mapping[str, object] | None) -> Layout | None:
     """Return the first of several saved layouts that can be read."""
     for data in choices:
         if data and data.get("windows"):
             try:
                 return Layout.from_json(data)
             except ValueError:
-                logging.getLogger("graphflow.console").warning("the windows kept with the run cannot be read")
+                logging.getLogger("graphflow.console").warning("the windows saved with the run cannot be read")
     return None
 
 

@@ -16,9 +16,9 @@ from textual.widget import Widget
 
 from graphflow.introspect.drawing.layered import Rect
 from graphflow.tui.layout import Layout as Windows
-from graphflow.tui.panes import Divider, Window, drag
+from graphflow.tui.panes import Content, Divider, Window, drag
 from graphflow.tui.view import View
-from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.colours import colours_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,7 +48,7 @@ class Title(Widget):
 
     def render_line(self, y: int) -> Strip:
         frame, width = self._frame, self.size.width
-        colours: Colours = self.app.colours  # type: ignore[attr-defined]
+        colours = colours_of(self)
         focused = frame.is_focused
         base = self.rich_style + (colours.cursor if focused else Style())
         name, note = frame.view.title, frame.view.note
@@ -141,7 +141,7 @@ class Workspace(Widget):
     class FocusArrived(Message):
         """The pane that should have the focus has it, or cannot take it."""
 
-    def __init__(self, windows: Windows, make_view: Callable[[object], View]) -> None:
+    def __init__(self, windows: Windows, make_view: Callable[[Content], View]) -> None:
         super().__init__()
         self.windows = windows
         self.frames: dict[int, Frame] = {}
@@ -204,7 +204,7 @@ class Workspace(Widget):
     def regain_focus(self) -> bool:
         """Restore the focus of the focused pane; return whether the pane can take it."""
         frame = self.focused
-        if frame is None or not frame.view.heart.focusable:
+        if frame is None or not frame.view.focus_target.focusable:
             return False
         self.bring_focus()
         return True
@@ -223,16 +223,16 @@ class Workspace(Widget):
         self.focus_is_due = False
         self.post_message(self.FocusArrived())
 
-    def replace_view(self, number: int, content: object) -> None:
+    def replace_view(self, number: int, content: Content) -> None:
         """Replace the view in a pane."""
         frame = self.frames.pop(number, None)
         if frame is not None:
             frame.remove()
         pane = next(p for w in self.windows.windows.values() for p in w.panes() if p.number == number)
-        pane.content = content  # type: ignore[assignment]
+        pane.content = content
         self.sync()
 
-    def keep_contents(self) -> None:
+    def store_contents(self) -> None:
         """Store the views' current content in the windows, so that it is saved with them."""
         for window in self.windows.windows.values():
             for pane in window.panes():
@@ -249,7 +249,7 @@ class Workspace(Widget):
 
     def on_frame_focused(self, event: Frame.Focused) -> None:
         frame = self.frames.get(event.number)
-        if frame is None or not frame.has_focus_within or self.focus_is_due:  # the view is still there, or has moved
+        if frame is None or not frame.has_focus_within or self.focus_is_due:  # a late report: the focus has moved on
             return
         if event.number in self.window.numbers and event.number != self.window.focused:
             self.window.focus(event.number)
@@ -259,7 +259,7 @@ class Workspace(Widget):
 
     def render_line(self, y: int) -> Strip:
         width = self.size.width
-        colours: Colours = self.app.colours  # type: ignore[attr-defined]
+        colours = colours_of(self)
         base = self.rich_style
         bars = {
             d.place.x
@@ -289,12 +289,17 @@ class Workspace(Widget):
     def on_mouse_move(self, event: events.MouseMove) -> None:
         if self._dragged is None:
             return
-        held = self._dragged
-        to = int(event.x) if held.split.axis == "columns" else int(event.y)
-        if drag(held, to):
+        divider = self._dragged
+        to = int(event.x) if divider.split.axis == "columns" else int(event.y)
+        if drag(divider, to):
             self._place_again()
             self._dragged = next(
-                (d for d in self.window.dividers(*self.size) if d.split is held.split and d.before == held.before), None
+                (
+                    d
+                    for d in self.window.dividers(*self.size)
+                    if d.split is divider.split and d.before == divider.before
+                ),
+                None,
             )
 
     def on_mouse_up(self) -> None:

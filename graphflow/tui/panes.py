@@ -179,9 +179,9 @@ class Window:
         panes = list(self.panes())
         at = next(i for i, p in enumerate(panes) if p.number == number)
         other = panes[(at + step) % len(panes)]
-        mine = panes[at]
-        mine.number, other.number = other.number, mine.number
-        mine.content, other.content = other.content, mine.content
+        pane = panes[at]
+        pane.number, other.number = other.number, pane.number
+        pane.content, other.content = other.content, pane.content
 
     def neighbour(self, number: int, direction: Direction, width: int, height: int) -> int | None:
         """Return the pane adjacent to the middle of a pane's side; at the edge of the window, wrap around."""

@@ -16,7 +16,7 @@ from graphflow.errors import GraphflowError
 from graphflow.tui.commands.actions import Action, carry_out
 from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.panes import Content
-from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.colours import Colours, colours_of
 
 SOON = 0.1
 """Seconds by which an early update is delayed, so that a burst of events is drawn once."""
@@ -72,15 +72,15 @@ class View(Widget):
         """Redraw everything after a change of theme."""
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         """The widget that has the focus while the pane has: by default, the first focusable one."""
         return next((widget for widget in self.query("*") if widget.focusable), self)
 
     def focus_inside(self) -> None:
         """Take the focus."""
-        self.screen.set_focus(self.heart)
+        self.screen.set_focus(self.focus_target)
 
-    def asked_again(self, content: Content) -> None:
+    def reopened(self, content: Content) -> None:
         """Handle another request for the content shown, possibly with other options."""
 
     def closed(self) -> None:
@@ -116,8 +116,7 @@ class View(Widget):
 
     @property
     def colours(self) -> Colours:
-        colours: Colours = self.app.colours  # type: ignore[attr-defined]
-        return colours
+        return colours_of(self)
 
     @property
     def console(self) -> Any:

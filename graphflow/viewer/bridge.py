@@ -10,7 +10,7 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from http import HTTPStatus
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
@@ -19,14 +19,14 @@ from websockets.typing import Subprotocol
 
 from graphflow.errors import GraphflowError, TransportError, UsageFault, printable
 from graphflow.machines.cache import GraphCache
-from graphflow.msgs import registry
+from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.names import is_hidden
 from graphflow.qos import CLOCK
 from graphflow.runtime.node import Node
 from graphflow.viewer import protocol
-from graphflow.viewer.client import Client
-from graphflow.viewer.parameters import Parameters, Words
-from graphflow.viewer.protocol import told
+from graphflow.viewer.client import Client, Connections
+from graphflow.viewer.parameters import ParameterFields, Parameters
+from graphflow.viewer.protocol import control_message
 from graphflow.viewer.publications import ENCODINGS, Publications
 from graphflow.viewer.services import Services
 from graphflow.viewer.topics import Topics
@@ -38,7 +38,7 @@ logger = logging.getLogger("graphflow")
 
 GRACE = 1.0
 """Seconds to wait for viewers to close their connections."""
-LOOK_EVERY = 0.2
+UPDATE_INTERVAL = 0.2
 """Seconds between two updates while the graph changes."""
 CLIENTS_BOUND = 32
 """Maximum number of viewers."""
@@ -65,14 +65,14 @@ class Bridge:
         self._node, self._name, self._pages = node, name, pages
         self._is_read_only = is_read_only
         self._clients: set[Client] = set()
-        self._topics = Topics(node, self._tell)
-        self._services = Services(node, self._tell)
+        self._topics = Topics(node, self._broadcast)
+        self._services = Services(node, self._broadcast)
         self._publications = Publications(node)
         self._parameters = Parameters(node, self._changed)
         self._is_clocked = False
         """Whether /clock is subscribed to."""
         self._server: Server | None = None
-        self._following: asyncio.Task[None] | None = None
+        self._watching: asyncio.Task[None] | None = None
 
     async def open(self, host: str, port: int) -> int:
         """Start the server; return its port.
@@ -98,16 +98,16 @@ class Bridge:
             is_taken = isinstance(error, OSError) and error.errno == errno.EADDRINUSE
             hint = "; take another --port" if is_taken else "; --host is an address of this machine"
             why = ("the port is taken" if is_taken else _reason(error)) + hint
-            raise TransportError(f"viewers cannot be served on {host}:{port}: {why}") from None
-        self._look_for_clock()
-        self._following = asyncio.ensure_future(self._follow())
+            raise TransportError(f"cannot listen for viewers on {host}:{port}: {why}") from None
+        self._follow_clock()
+        self._watching = asyncio.ensure_future(self._watch_graph())
         found: int = next(iter(self._server.sockets)).getsockname()[1]
         return found
 
     async def close(self) -> None:
         """Stop the server and disconnect the viewers."""
-        if self._following is not None:
-            self._following.cancel()
+        if self._watching is not None:
+            self._watching.cancel()
         if self._server is not None:
             self._server.close()
             with contextlib.suppress(TimeoutError):
@@ -126,11 +126,12 @@ class Bridge:
         origin = request.headers.get("Origin", "")
         if origin and origin not in self._pages and not PAGES.fullmatch(origin):  # programs send no Origin
             logger.warning(
-                "a page of %s was refused; if it is your viewer: --allow-page %s", *[printable(origin[:200])] * 2
+                "a web page of %s was refused; if it is your viewer, allow it by --allow-page %s",
+                *[printable(origin[:200])] * 2,
             )
-            return connection.respond(HTTPStatus.FORBIDDEN, "this page may not look; see graphflow view --help\n")
+            return connection.respond(HTTPStatus.FORBIDDEN, "this page is not allowed; see graphflow view --help\n")
         if len(self._clients) >= CLIENTS_BOUND:
-            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"there are {CLIENTS_BOUND} viewers already\n")
+            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"there are already {CLIENTS_BOUND} viewers\n")
         return None
 
     async def _serve(self, connection: ServerConnection) -> None:
@@ -141,11 +142,11 @@ class Bridge:
         try:
             async for message in connection:
                 try:
-                    self._take(client, message)
+                    self._handle(client, message)
                 except GraphflowError as error:
                     client.warn(str(error))
         except ConnectionClosed:
-            logger.debug("a viewer has gone without a word")
+            logger.debug("a viewer has disconnected without a closing handshake")
         finally:
             self._clients.discard(client)
             writing.cancel()
@@ -154,63 +155,81 @@ class Bridge:
             self._publications.leave(client)
 
     def _greet(self, client: Client) -> None:
-        may = ["parameters", "parametersSubscribe", "connectionGraph"]
-        may += [] if self._is_read_only else ["clientPublish", "services"]
-        may += ["time"] if self._is_clocked else []
-        client.say(told("serverInfo", name=self._name, capabilities=may, supported_encodings=ENCODINGS, metadata={}))
+        capabilities = ["parameters", "parametersSubscribe", "connectionGraph"]
+        capabilities += [] if self._is_read_only else ["clientPublish", "services"]
+        capabilities += ["time"] if self._is_clocked else []
+        client.send_control(
+            control_message(
+                "serverInfo", name=self._name, capabilities=capabilities, supported_encodings=ENCODINGS, metadata={}
+            )
+        )
         self._topics.greet(client)
         if not self._is_read_only:
             self._services.greet(client)
 
-    def _take(self, client: Client, message: str | bytes) -> None:
+    def _handle(self, client: Client, message: str | bytes) -> None:
         """Carry out a client's request.
 
         Raises:
             GraphflowError: The request cannot be carried out; the text is for the client.
         """
-        said = protocol.read_text(message) if isinstance(message, str) else protocol.read_bytes(message)
-        match said:
+        request = protocol.read_text(message) if isinstance(message, str) else protocol.read_bytes(message)
+        if self._handle_query(client, request):
+            return
+        if self._is_read_only:
+            raise UsageFault("this server is read-only; see --allow-commands of graphflow view")
+        self._handle_command(client, request)
+
+    def _handle_query(self, client: Client, request: protocol.ClientMessage) -> bool:
+        """Carry out a request that only reads; return whether it is one."""
+        match request:
             case protocol.Subscribe():
-                _each(client, said.subscriptions, self._topics.subscribe)
+                _each(client, request.subscriptions, self._topics.subscribe)
             case protocol.Unsubscribe():
-                for number in said.subscription_ids:
+                for number in request.subscription_ids:
                     self._topics.unsubscribe(client, number)
             case protocol.GetParameters():
-                client.begin(lambda: self._show_parameters(client, said.parameter_names, said.id))
+                client.spawn(lambda: self._send_parameters(client, request.parameter_names, request.id))
             case protocol.FollowParameters():
-                self._follow_parameters(client, {*said.parameter_names}, wanted=said.op.startswith("s"))
+                is_start = request.op == "subscribeParameterUpdates"
+                self._follow_parameters(client, {*request.parameter_names}, wanted=is_start)
             case protocol.FollowGraph():
-                client.graph = {} if said.op.startswith("s") else None
-                self._show_graph(client, connections(self._node.context.cache))
-            case _ if self._is_read_only:
-                raise UsageFault("this server is for looking only; see --allow-commands of graphflow view")
+                client.graph = {} if request.op == "subscribeConnectionGraph" else None
+                self._send_graph(client, connections(self._node.context.cache))
+            case _:
+                return False
+        return True
+
+    def _handle_command(self, client: Client, request: protocol.ClientMessage) -> None:
+        """Carry out a request that publishes, calls or sets."""
+        match request:
             case protocol.SetParameters():
-                client.begin(lambda: self._set_parameters(client, said))
+                client.spawn(lambda: self._set_parameters(client, request))
             case protocol.Advertise():
-                _each(client, said.channels, self._publications.announce)
+                _each(client, request.channels, self._publications.announce)
             case protocol.Unadvertise():
-                for number in said.channel_ids:
+                for number in request.channel_ids:
                     self._publications.withdraw(client, number)
             case protocol.Message():
-                self._publications.publish(client, said)
+                self._publications.publish(client, request)
             case protocol.Call():
-                client.begin(lambda: self._services.call(client, said))
+                client.spawn(lambda: self._services.call(client, request))
 
-    def _tell(self, text: str | bytes) -> None:
+    def _broadcast(self, text: str | bytes) -> None:
         for client in self._clients:
-            client.say(text)
+            client.send_control(text)
 
     # parameters, time and graph
 
-    async def _show_parameters(self, client: Client, names: list[str], about: str | None) -> None:
-        client.say(told("parameterValues", parameters=await self._parameters.get(names), id=about))
+    async def _send_parameters(self, client: Client, names: list[str], about: str | None) -> None:
+        client.send_control(control_message("parameterValues", parameters=await self._parameters.get(names), id=about))
 
-    async def _set_parameters(self, client: Client, said: protocol.SetParameters) -> None:
+    async def _set_parameters(self, client: Client, request: protocol.SetParameters) -> None:
         try:
-            await self._parameters.set(said.parameters)
+            await self._parameters.set(request.parameters)
         finally:
-            if said.parameters:
-                await self._show_parameters(client, [value.name for value in said.parameters], said.id)
+            if request.parameters:
+                await self._send_parameters(client, [value.name for value in request.parameters], request.id)
 
     def _follow_parameters(self, client: Client, names: set[str], *, wanted: bool) -> None:
         """Start or stop reporting changes of parameters to a client: of those named, or of all if none is.
@@ -222,46 +241,47 @@ class Bridge:
             client.follows_all = wanted
         if not names and not wanted:
             client.followed.clear()
-        if wanted and len(client.followed | names) > protocol.MANY:
-            raise UsageFault(f"a viewer follows no more than {protocol.MANY} parameters; name none to follow all")
+        if wanted and len(client.followed | names) > protocol.ENTRIES_BOUND:
+            raise UsageFault(
+                f"a viewer cannot follow more than {protocol.ENTRIES_BOUND} parameters; name none to follow all"
+            )
         client.followed = client.followed | names if wanted else client.followed - names
 
-    def _changed(self, parameters: list[Words]) -> None:
+    def _changed(self, parameters: list[ParameterFields]) -> None:
         for client in self._clients:
             wanted = [p for p in parameters if client.follows_all or p["name"] in client.followed]
             if wanted:
-                client.say(told("parameterValues", parameters=wanted))
+                client.send_control(control_message("parameterValues", parameters=wanted))
 
-    def _ticked(self, message: Any) -> None:
+    def _clock_received(self, message: Clock) -> None:
         if message.clock.sec >= 0:
-            self._tell(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
+            self._broadcast(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
 
-    def _look_for_clock(self) -> None:
+    def _follow_clock(self) -> None:
         """Follow /clock once it has a publisher. Viewers that connect later use simulated time."""
         if not self._is_clocked and self._node.context.cache.endpoints(Kind.PUBLISHER, "/clock"):
             self._is_clocked = True
-            clock: Any = registry.interface_class("rosgraph_msgs/msg/Clock")
-            self._node.create_subscription(clock, "/clock", self._ticked, CLOCK)
+            self._node.create_subscription(Clock, "/clock", self._clock_received, CLOCK)
 
-    async def _follow(self) -> None:
+    async def _watch_graph(self) -> None:
         is_new = asyncio.Event()
         stop = self._node.context.on_change(lambda _: is_new.set())
         try:
             while True:
                 is_new.clear()
-                self._look_for_clock()
-                self._topics.look()
+                self._follow_clock()
+                self._topics.update()
                 if not self._is_read_only:
-                    self._services.look()
+                    self._services.update()
                 graph = connections(self._node.context.cache)
                 for client in self._clients:
-                    self._show_graph(client, graph)
+                    self._send_graph(client, graph)
                 await is_new.wait()
-                await asyncio.sleep(LOOK_EVERY)
+                await asyncio.sleep(UPDATE_INTERVAL)
         finally:
             stop()
 
-    def _show_graph(self, client: Client, graph: Connections) -> None:
+    def _send_graph(self, client: Client, graph: Connections) -> None:
         """Send a client the changes of the connection graph since its last update."""
         if client.graph is None or client.graph == graph:
             return
@@ -270,25 +290,25 @@ class Bridge:
             now, then = graph[part], known.get(part, {})
             update[part] = [{key: name, members: users} for name, users in now.items() if then.get(name) != users]
         topics = {*known.get("publishedTopics", ()), *known.get("subscribedTopics", ())}
-        left = {
+        removed = {
             "removedTopics": sorted(topics - {*graph["publishedTopics"], *graph["subscribedTopics"]}),
             "removedServices": sorted({*known.get("advertisedServices", ())} - {*graph["advertisedServices"]}),
         }
         client.graph = graph
-        client.say(told("connectionGraphUpdate", **update, **left))
+        client.send_control(control_message("connectionGraphUpdate", **update, **removed))
 
 
 def _each(client: Client, wanted: Iterable[T], work: Callable[[Client, T], None]) -> None:
     """Process the entries of a request one by one; a failed one is reported to the client, and the others go on."""
-    for one in wanted:
+    for entry in wanted:
         try:
-            work(client, one)
+            work(client, entry)
         except GraphflowError as error:
             client.warn(str(error))
 
 
-def _reason(error: Exception) -> str:
-    text = str(getattr(error, "strerror", "") or error)
+def _reason(error: OSError | UnicodeError) -> str:
+    text = (isinstance(error, OSError) and error.strerror) or str(error)
     return text.rpartition(": ")[2]
 
 
@@ -298,9 +318,6 @@ PARTS = {
     "advertisedServices": ("name", "providerIds"),
 }
 """The parts of the connection graph, with the keys of their entries."""
-
-Connections = dict[str, dict[str, list[str]]]
-"""The nodes of each topic or service, by part of the connection graph."""
 
 
 def connections(cache: GraphCache) -> Connections:

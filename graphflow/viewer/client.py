@@ -12,15 +12,17 @@ import itertools
 import logging
 from collections import deque
 from collections.abc import Awaitable, Callable
-from typing import Any
 
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from graphflow.errors import GraphflowError, printable
-from graphflow.viewer.protocol import told
+from graphflow.viewer.protocol import control_message
 
 logger = logging.getLogger("graphflow")
+
+Connections = dict[str, dict[str, list[str]]]
+"""The nodes of each topic or service, by part of the connection graph."""
 
 CHANNEL_BOUND = 64 << 10
 """Maximum bytes waiting in a channel; of larger messages, only the latest is kept."""
@@ -30,7 +32,7 @@ WINDOW = 256 << 10
 """Bytes of messages between two pings, which confirm that the viewer has read them."""
 WINDOWS = 2
 """Maximum unanswered pings before sending pauses."""
-WORDS_BOUND = 16 << 20
+CONTROL_BOUND = 16 << 20
 """Maximum bytes of control messages waiting; a viewer that exceeds it is disconnected."""
 TEXT_BOUND = 500
 """Maximum characters of a warning, which may quote the viewer's own input."""
@@ -43,32 +45,32 @@ class Client:
 
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
-        self._words: deque[str | bytes] = deque()
+        self._control: deque[str | bytes] = deque()
         self._waiting: dict[int, deque[bytes]] = {}
         """Messages waiting by channel, without empty queues."""
         self._turns = itertools.count(1)
         self._sent_at: dict[int, int] = {}
         """The turn in which each channel last sent."""
-        self._words_bytes = self._sent = self._unread = 0
+        self._control_bytes = self._sent = self._unread = 0
         """Bytes of control messages waiting; bytes of messages sent since the last ping; unanswered pings."""
         self._is_new = asyncio.Event()
-        self._work: set[asyncio.Task[Any]] = set()
+        self._work: set[asyncio.Task[None]] = set()
         self.dropped = 0
         """Messages dropped because the client reads too slowly."""
         self.followed: set[str] = set()
         """Parameters whose changes the client follows."""
         self.follows_all = False
         """Whether the client follows the changes of all parameters."""
-        self.graph: dict[str, Any] | None = None
+        self.graph: Connections | None = None
         """The connection graph last sent; None if the client does not follow it."""
 
-    def say(self, word: str | bytes) -> None:
+    def send_control(self, message: str | bytes) -> None:
         """Send a control message ahead of all other messages; disconnect a client that does not read."""
-        self._words.append(word)
-        self._words_bytes += len(word)
-        if self._words_bytes > WORDS_BOUND:
-            logger.warning("a viewer reads too slowly, and is sent away")
-            self._words.clear()
+        self._control.append(message)
+        self._control_bytes += len(message)
+        if self._control_bytes > CONTROL_BOUND:
+            logger.warning("a viewer reads too slowly and is disconnected")
+            self._control.clear()
             self.abort()
         self._is_new.set()
 
@@ -78,45 +80,45 @@ class Client:
 
     def warn(self, text: str) -> None:
         """Send a warning to be displayed."""
-        self.say(told("status", level=1, message=printable(text[:TEXT_BOUND])))
+        self.send_control(control_message("status", level=1, message=printable(text[:TEXT_BOUND])))
 
-    def show(self, channel: int, frame: bytes) -> None:
+    def send_message(self, channel: int, frame: bytes) -> None:
         """Queue a message of a channel."""
         waiting = self._waiting.setdefault(channel, deque())
         waiting.append(frame)
         while len(waiting) > 1 and (len(waiting) > CHANNEL_DEPTH or sum(map(len, waiting)) > CHANNEL_BOUND):
             waiting.popleft()
             if not self.dropped:
-                self.warn("this viewer reads too slowly: the oldest messages are left out")
+                self.warn("this viewer reads too slowly: the oldest messages are dropped")
             self.dropped += 1
         self._is_new.set()
 
-    def begin(self, work: Callable[[], Awaitable[None]]) -> None:
+    def spawn(self, work: Callable[[], Awaitable[None]]) -> None:
         """Run a slow request in a task; report its errors to the client."""
         if len(self._work) >= WORK_BOUND:
             self.warn(f"{WORK_BOUND} requests are under way already")
             return
-        task = asyncio.ensure_future(self._done(work))
+        task = asyncio.ensure_future(self._run(work))
         self._work.add(task)
         task.add_done_callback(self._work.discard)
 
-    async def _done(self, work: Callable[[], Awaitable[None]]) -> None:
+    async def _run(self, work: Callable[[], Awaitable[None]]) -> None:
         try:
             await work()
         except GraphflowError as error:
             self.warn(str(error))
         except Exception as error:  # the client's input may cause any error
-            logger.warning("a request of a viewer has failed", exc_info=error)
-            self.warn(f"this request has failed: {error!r}")
+            logger.warning("a viewer's request failed", exc_info=error)
+            self.warn(f"this request failed: {error!r}")
 
     async def write(self) -> None:
         """Send queued messages until the connection ends."""
         try:
             while True:
-                if self._words:
-                    word = self._words.popleft()
-                    self._words_bytes -= len(word)
-                    await self._connection.send(word)
+                if self._control:
+                    message = self._control.popleft()
+                    self._control_bytes -= len(message)
+                    await self._connection.send(message)
                 elif self._waiting and self._unread < WINDOWS:
                     await self._send(self._next())
                 else:
@@ -145,9 +147,9 @@ class Client:
         if self._sent >= WINDOW:
             self._sent = 0
             self._unread += 1
-            asyncio.ensure_future(await self._connection.ping()).add_done_callback(self._was_read)
+            asyncio.ensure_future(await self._connection.ping()).add_done_callback(self._ponged)
 
-    def _was_read(self, pong: asyncio.Future[float]) -> None:
+    def _ponged(self, pong: asyncio.Future[float]) -> None:
         """Handle a pong: the client has read everything before the ping, or has disconnected."""
         if not pong.cancelled():
             pong.exception()  # a lost connection is reported by the next send
@@ -162,6 +164,6 @@ class Client:
     def close(self) -> None:
         """Cancel all requests under way."""
         if self.dropped:
-            logger.warning("a viewer that has gone read too slowly: %s messages were left out", self.dropped)
+            logger.warning("a viewer that has left read too slowly: %s messages were dropped", self.dropped)
         for task in self._work:
             task.cancel()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import struct
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.alias_generators import to_camel
@@ -17,13 +17,13 @@ from graphflow.errors import DecodeError
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 """The names of the protocol, newest first."""
 
-MANY = 5_000
+ENTRIES_BOUND = 5_000
 """Maximum entries of one message from a client."""
 
 Id = Annotated[int, Field(ge=0, lt=1 << 32)]
 Name = Annotated[str, Field(max_length=1_000)]
-Names = Annotated[list[Name], Field(max_length=MANY)]
-Ids = Annotated[list[Id], Field(max_length=MANY)]
+Names = Annotated[list[Name], Field(max_length=ENTRIES_BOUND)]
+Ids = Annotated[list[Id], Field(max_length=ENTRIES_BOUND)]
 
 
 class _Part(BaseModel):
@@ -37,7 +37,7 @@ class Subscription(_Part):
     channel_id: Id
 
 
-class Announced(_Part):
+class ClientChannel(_Part):
     """A channel on which the client will publish."""
 
     id: Id
@@ -51,13 +51,13 @@ class Value(_Part):
     """A parameter with its value; without one, it is to be unset."""
 
     name: Name
-    value: Any = None
+    value: object = None
     type: Name | None = None
 
 
 class Subscribe(_Part):
     op: Literal["subscribe"]
-    subscriptions: Annotated[list[Subscription], Field(max_length=MANY)]
+    subscriptions: Annotated[list[Subscription], Field(max_length=ENTRIES_BOUND)]
 
 
 class Unsubscribe(_Part):
@@ -67,7 +67,7 @@ class Unsubscribe(_Part):
 
 class Advertise(_Part):
     op: Literal["advertise"]
-    channels: Annotated[list[Announced], Field(max_length=MANY)]
+    channels: Annotated[list[ClientChannel], Field(max_length=ENTRIES_BOUND)]
 
 
 class Unadvertise(_Part):
@@ -83,7 +83,7 @@ class GetParameters(_Part):
 
 class SetParameters(_Part):
     op: Literal["setParameters"]
-    parameters: Annotated[list[Value], Field(max_length=MANY)]
+    parameters: Annotated[list[Value], Field(max_length=ENTRIES_BOUND)]
     id: Name | None = None
 
 
@@ -112,25 +112,27 @@ class Call(NamedTuple):
     data: bytes
 
 
-Said = (
+ClientRequest = (
     Subscribe | Unsubscribe | Advertise | Unadvertise | GetParameters | SetParameters | FollowParameters | FollowGraph
 )
-_SAID: TypeAdapter[Said] = TypeAdapter(Annotated[Said, Field(discriminator="op")])
+_CLIENT_REQUEST: TypeAdapter[ClientRequest] = TypeAdapter(Annotated[ClientRequest, Field(discriminator="op")])
+
+ClientMessage = ClientRequest | Message | Call
 
 
-def read_text(text: str) -> Said:
+def read_text(text: str) -> ClientRequest:
     """Parse a client's JSON message.
 
     Raises:
         DecodeError: The message is not part of the protocol; the text is for the client.
     """
     try:
-        return _SAID.validate_json(text)
+        return _CLIENT_REQUEST.validate_json(text)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = ".".join(map(str, first["loc"]))
         raise DecodeError(
-            f"this message is not of the protocol: {where + ': ' if where else ''}{first['msg']}"
+            f"this message does not follow the protocol: {where + ': ' if where else ''}{first['msg']}"
         ) from None
 
 
@@ -149,10 +151,10 @@ def read_bytes(data: bytes) -> Message | Call:
                 return Call(service, call, data[13 : 13 + length].decode(), data[13 + length :])
     except (struct.error, UnicodeDecodeError):
         pass
-    raise DecodeError(f"these {len(data)} bytes are not of the protocol")
+    raise DecodeError(f"these {len(data)} bytes do not follow the protocol")
 
 
-def told(op: str, **fields: Any) -> str:
+def control_message(op: str, **fields: object) -> str:
     """Encode a message of the server as JSON, with fields in camel case, leaving out those that are None."""
     return json.dumps(
         {"op": op, **{to_camel(name): value for name, value in fields.items() if value is not None}}, allow_nan=False
@@ -169,7 +171,7 @@ def time_frame(time_ns: int) -> bytes:
     return struct.pack("<BQ", 2, time_ns)
 
 
-def answer_frame(call: Call, data: bytes) -> bytes:
+def response_frame(call: Call, data: bytes) -> bytes:
     """Encode the response to a call, in the encoding of the request."""
     encoding = call.encoding.encode()
     return struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding)) + encoding + data

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 from graphflow.errors import UsageFault
 from graphflow.msgs import registry
@@ -14,7 +13,7 @@ from graphflow.runtime.endpoints import raw
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.node import Node
 from graphflow.viewer.client import Client
-from graphflow.viewer.protocol import Announced, Message
+from graphflow.viewer.protocol import ClientChannel, Message
 
 BOUND = 200
 """Maximum publishers of all clients together."""
@@ -32,15 +31,15 @@ class Publications:
     def __len__(self) -> int:
         return len(self._publishers)
 
-    def announce(self, client: Client, announced: Announced) -> None:
+    def announce(self, client: Client, announced: ClientChannel) -> None:
         """Create a publisher for a client."""
         if announced.encoding not in ENCODINGS:
-            raise UsageFault(f"{announced.topic}: messages come as cdr or json here, not as {announced.encoding!r}")
+            raise UsageFault(f"{announced.topic}: messages must be encoded as cdr or json, not {announced.encoding!r}")
         if "/msg/" not in registry.full_name(announced.schema_name):
-            raise UsageFault(f"{announced.topic}: {announced.schema_name} is no type of messages")
+            raise UsageFault(f"{announced.topic}: {announced.schema_name} is not a message type")
         self.withdraw(client, announced.id)
         if len(self._publishers) >= BOUND:
-            raise UsageFault(f"viewers have {BOUND} publishers already")
+            raise UsageFault(f"viewers already have {BOUND} publishers")
         topic, type_name = expand(announced.topic, "/", self._node.name), registry.full_name(announced.schema_name)
         publisher = raw.advertise(self._node, type_name, topic, DEFAULT)
         self._publishers[client, announced.id] = publisher, announced.encoding
@@ -52,9 +51,9 @@ class Publications:
         publisher, encoding = self._publishers[client, message.channel_id]
         data = message.data
         if encoding == "json":
-            kind: Any = registry.interface_class(publisher.type_name)
+            type_ = registry.interface_class(publisher.type_name)
             try:
-                data = from_plain(kind, json.loads(data)).to_bytes()
+                data = from_plain(type_, json.loads(data)).to_bytes()
             except (ValueError, RecursionError) as error:
                 raise UsageFault(f"{publisher.name}: {error}") from None
         else:
@@ -68,6 +67,6 @@ class Publications:
 
     def leave(self, client: Client) -> None:
         """Close all publishers of a client."""
-        for who, number in list(self._publishers):
-            if who is client:
+        for owner, number in list(self._publishers):
+            if owner is client:
                 self.withdraw(client, number)

@@ -66,6 +66,7 @@ class Supervised(Supervision):
             name: {
                 "node": name,
                 "state": "ready",
+                "lifecycle": "",
                 "pid": None,
                 "since": time.time() - 65,
                 "process": "",

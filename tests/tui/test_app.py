@@ -30,16 +30,16 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 async def test_what_the_supervisor_says(event: dict[str, Any], text: str) -> None:
     """In the bottom line, and among the messages."""
     async with stage() as s:
-        s.console.heard(event)
+        s.console.handle_supervisor_event(event)
         assert text in s.text
-        assert text in s.console.said[-1]
+        assert text in s.console.messages[-1]
 
 
 async def test_who_has_stopped_the_graph() -> None:
     """Is still told at its end."""
     async with stage() as s:
-        s.console.heard({"event": "stopping", "reason": "down, by pts/7"})
-        s.console.heard({"event": "end", "exit_code": 0})
+        s.console.handle_supervisor_event({"event": "stopping", "reason": "down, by pts/7"})
+        s.console.handle_supervisor_event({"event": "end", "exit_code": 0})
         assert "the graph has ended (down, by pts/7), exit code 0; q leaves" in s.text
 
 
@@ -63,7 +63,9 @@ async def test_a_terminal_that_has_lost_the_focus() -> None:
 async def test_a_crash_is_flagged_until_one_looks() -> None:
     """The window list has a mark, the bottom line the way to go on."""
     async with stage(Content("log"), Content("nodes")) as s:
-        s.console.heard({"event": "exited", "nodes": ["/arm"], "how": "signal SIGKILL", "unexpected": True})
+        s.console.handle_supervisor_event(
+            {"event": "exited", "nodes": ["/arm"], "how": "signal SIGKILL", "unexpected": True}
+        )
         assert "^b e shows why: /arm died, signal SIGKILL" in s.text
         assert "0:log*!" in s.text
         await s.prefix("1")
@@ -83,7 +85,7 @@ async def test_windows_are_kept_with_the_run() -> None:
     """After a change, and when the console is left, with what the views show by then."""
     async with stage(Content("log")) as s:
         await s.press("3")
-        s.console.keep_layout_now()
+        s.console.save_layout()
         supervision: Any = s.console.hub.supervision
         kept = [r["layout"] for r in supervision.asked if r["do"] == "keep_layout"]
         assert kept[-1]["windows"][0]["root"]["options"] == {"level": "warn"}

@@ -18,8 +18,8 @@ async def test_messages_are_kept() -> None:
         for i in range(600):
             s.console.say(f"message {i}")
         s.console.did("graphflow ps")
-        assert len(s.console.said) == 500
-        assert s.console.said[-1].endswith("$ graphflow ps")
+        assert len(s.console.messages) == 500
+        assert s.console.messages[-1].endswith("$ graphflow ps")
         assert s.console.last_shell == "graphflow ps"
 
 

@@ -59,7 +59,7 @@ def run_in(folder: Path, socket: str = "s") -> GraphRun:
 
 
 def opened(hello: dict[str, Any], folder: Path, monkeypatch: pytest.MonkeyPatch, **options: Any) -> main.Left:
-    monkeypatch.setattr(main, "_first_word", lambda run: (hello, [{"node": "/a", "class": "x:Y"}]))
+    monkeypatch.setattr(main, "_initial_state", lambda run: (hello, [{"node": "/a", "class": "x:Y"}]))
     return main.open_console(run_in(folder), 7, command=("x",), verbs=dict, **options)
 
 

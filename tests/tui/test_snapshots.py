@@ -49,7 +49,7 @@ RING = WaitGraph(
     {"q": QueueView("q", "service get", "/left", ("g",), ("2",), 1)},
 )
 
-Deed = Callable[[Stage, Graph, Talker], Awaitable[None]]
+Setup = Callable[[Stage, Graph, Talker], Awaitable[None]]
 
 
 async def talk(s: Stage, graph: Graph, node: Talker) -> None:
@@ -91,7 +91,7 @@ async def nothing(s: Stage, graph: Graph, node: Talker) -> None:
 
 ABOUT = {"echo": "/chatter", "hz": "/chatter", "plot": "/speed.linear.x", "params": "/talker", "crash": "/talker"}
 UNTIL = {"params": "serial", "topics": "/chatter", "graph": "/chatter", "calls": "/add", "groups": "back to the first"}
-DEEDS: dict[str, Deed] = {
+SETUPS: dict[str, Setup] = {
     "echo": talk,
     "hz": talk,
     "plot": talk,
@@ -114,7 +114,7 @@ async def test_a_view(view: str, graph: Graph, tmp_path: Path, monkeypatch: pyte
     async with stage(Content(view, about), graph=graph, records=records, size=SIZE) as s:
         await s.look()
         await graph.settle()
-        await DEEDS.get(view, nothing)(s, graph, node)
+        await SETUPS.get(view, nothing)(s, graph, node)
         await s.look()
         if view in UNTIL:
             await s.until(UNTIL[view])

@@ -91,7 +91,7 @@ async def test_the_view_of_the_page(graph: Graph, monkeypatch: pytest.MonkeyPatc
     async with stage(Content("battery", "/main"), graph=graph) as s:
         await s.until("nobody publishes /main yet")
         publisher = graph.publisher(BatteryState, "/main")
-        await s.until(lambda: s.view.tap.is_open)  # type: ignore[attr-defined]
+        await s.until(lambda: s.view.monitor.is_open)  # type: ignore[attr-defined]
         await graph.settle()
         publisher.publish(BatteryState(percentage=0.42))
         await graph.settle()

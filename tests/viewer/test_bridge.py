@@ -16,7 +16,7 @@ from graphflow.testing import Graph
 from graphflow.viewer import bridge as bridge_module
 from graphflow.viewer import client
 from graphflow.viewer.bridge import Bridge
-from graphflow.viewer.protocol import told
+from graphflow.viewer.protocol import control_message
 from tests.cases import slow
 from tests.viewer.cast import Robot, served, viewer
 
@@ -58,7 +58,7 @@ async def test_only_looking(graph: Graph) -> None:
         await seen.send("advertise", channels=[channel])
         await seen.publish(1, Twist().to_bytes())
         await seen.send("setParameters", parameters=[{"name": "/robot.gain", "value": 2}], id="set")
-        await seen.until(lambda: any("this server is for looking only" in text for text in seen.statuses))
+        await seen.until(lambda: any("this server is read-only" in text for text in seen.statuses))
         await seen.subscribe(1, "/speed")
         await seen.until(lambda: robot.speed.get_subscription_count() == 1)
         assert (robot.gain, robot.heard, seen.services) == (1.0, [], {})
@@ -182,7 +182,7 @@ HELLO = "\r\n".join(
 @slow
 async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Are sent away when too much waits for them, and hold up no end."""
-    monkeypatch.setattr(client, "WORDS_BOUND", 100_000)
+    monkeypatch.setattr(client, "CONTROL_BOUND", 100_000)
     monkeypatch.setattr(bridge_module, "GRACE", 0.1)
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as good:
@@ -191,7 +191,7 @@ async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.Monke
         assert b" 101 " in await reader.readuntil(b"\r\n\r\n")
         await good.until(lambda: len(lab.bridge._clients) == 2)
         for _ in range(20_000):
-            lab.bridge._tell(told("status", level=0, message="x" * 1000))
+            lab.bridge._broadcast(control_message("status", level=0, message="x" * 1000))
             if len(lab.bridge._clients) == 1:
                 break
             await asyncio.sleep(0)

@@ -41,15 +41,15 @@ def test_messages_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """The oldest of a channel are left out, which is told once; no channel costs another."""
     monkeypatch.setattr(client, "CHANNEL_BOUND", 1000)
     slow, connection = made()
-    slow.show(2, b"small")
+    slow.send_message(2, b"small")
     for number in range(100):
-        slow.show(1, bytes([number]) * 100)
+        slow.send_message(1, bytes([number]) * 100)
     assert (slow.dropped, len(slow._waiting[1])) == (90, 10)
     assert slow._waiting[1][0][0] == 90
-    slow.show(1, bytes(5000))
+    slow.send_message(1, bytes(5000))
     assert list(slow._waiting[1]) == [bytes(5000)]
     assert list(slow._waiting[2]) == [b"small"]
-    [word] = slow._words
+    [word] = slow._control
     assert "this viewer reads too slowly" in str(word)
     assert not connection.is_aborted
     slow.forget(1)
@@ -70,13 +70,13 @@ async def test_a_viewer_that_reads_slowly() -> None:
     large = [bytes([number]) * client.WINDOW for number in range(6)]
     writing = asyncio.ensure_future(slow.write())
     for frame in large[:3]:
-        slow.show(1, frame)
+        slow.send_message(1, frame)
         await settle()
     assert connection.sent == large[:2]
-    slow.show(1, large[3])
+    slow.send_message(1, large[3])
     for number in range(3):
-        slow.show(2, bytes([number]))
-    slow.say("a word")
+        slow.send_message(2, bytes([number]))
+    slow.send_control("a word")
     await settle()
     assert "reads too slowly" in str(connection.sent[2])
     assert connection.sent[3:] == ["a word"]
@@ -84,7 +84,7 @@ async def test_a_viewer_that_reads_slowly() -> None:
     await settle()
     assert connection.sent[4:] == [b"\0", b"\1", b"\2", large[3]]
     connection.pongs[1].set_exception(ConnectionError("gone"))
-    slow.show(1, large[4])
+    slow.send_message(1, large[4])
     await settle()
     assert connection.sent[8:] == [large[4]]
     writing.cancel()
@@ -92,15 +92,15 @@ async def test_a_viewer_that_reads_slowly() -> None:
 
 def test_words_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is sent away, whatever waits; long texts are cut before."""
-    monkeypatch.setattr(client, "WORDS_BOUND", 10_000)
+    monkeypatch.setattr(client, "CONTROL_BOUND", 10_000)
     slow, connection = made()
     slow.warn("x" * 1_000_000)
     assert not connection.is_aborted
-    slow.say("y" * 9_000)
+    slow.send_control("y" * 9_000)
     assert not connection.is_aborted
-    slow.say("y" * 1_000)
+    slow.send_control("y" * 1_000)
     assert connection.is_aborted
-    assert not slow._words
+    assert not slow._control
 
 
 async def test_work_that_fails(caplog: pytest.LogCaptureFixture) -> None:
@@ -110,10 +110,10 @@ async def test_work_that_fails(caplog: pytest.LogCaptureFixture) -> None:
     async def wrong() -> None:
         raise RuntimeError("no good")
 
-    found.begin(wrong)
+    found.spawn(wrong)
     await asyncio.gather(*found._work)
-    assert "no good" in str(found._words[0])
-    assert "a request of a viewer has failed" in caplog.text
+    assert "no good" in str(found._control[0])
+    assert "a viewer's request failed" in caplog.text
 
 
 async def test_large_messages_take_turns() -> None:
@@ -122,8 +122,8 @@ async def test_large_messages_take_turns() -> None:
     sent: list[int] = []
     for _ in range(6):
         for channel, size in ((1, 90_000), (2, 100_000)):
-            slow.show(channel, bytes([channel]) * size)
+            slow.send_message(channel, bytes([channel]) * size)
         sent.append(slow._next()[0])
     assert sent == [1, 2, 1, 2, 1, 2]
-    slow.show(3, b"\x03small")
+    slow.send_message(3, b"\x03small")
     assert slow._next()[0] == 3

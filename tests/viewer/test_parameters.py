@@ -46,7 +46,7 @@ async def test_following_all(graph: Graph) -> None:
         await seen.send("subscribeParameterUpdates", parameterNames=[f"/robot.a{n}" for n in range(5000)])
         await seen.send("subscribeParameterUpdates", parameterNames=["/robot.b"])
         await seen.until(lambda: seen.statuses)
-        assert "follows no more than" in seen.statuses[0]
+        assert "cannot follow more than" in seen.statuses[0]
         robot.title = "zero"
         await graph.settle()
         await seen.send("getParameters", parameterNames=["/robot.gain"], id="y")

@@ -24,7 +24,7 @@ def test_words_of_clients() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("{", "not of the protocol: Invalid JSON"),
+        ("{", "does not follow the protocol: Invalid JSON"),
         ('{"op": "fly"}', "does not match any of the expected tags"),
         ('{"op": "subscribe", "subscriptions": [{"id": 1}]}', "subscribe.subscriptions.0.channelId: Field required"),
         ('{"op": "unsubscribe", "subscriptionIds": [-1]}', "greater than or equal to 0"),
@@ -46,7 +46,7 @@ def test_bytes_of_clients() -> None:
     call = protocol.read_bytes(b"\x02\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00cdrdata")
     assert call == protocol.Call(1, 2, "cdr", b"data")
     assert isinstance(call, protocol.Call)
-    assert protocol.answer_frame(call, b"x") == b"\x03\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00cdrx"
+    assert protocol.response_frame(call, b"x") == b"\x03\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00cdrx"
 
 
 @pytest.mark.parametrize(
@@ -54,14 +54,17 @@ def test_bytes_of_clients() -> None:
 )
 def test_bytes_that_are_none(data: bytes) -> None:
     """Are refused."""
-    with pytest.raises(DecodeError, match="are not of the protocol"):
+    with pytest.raises(DecodeError, match="do not follow the protocol"):
         protocol.read_bytes(data)
 
 
 def test_what_clients_are_told() -> None:
     """Is written in the protocol's words; what is not said is left out."""
-    assert json.loads(protocol.told("unadvertise", channel_ids=[1])) == {"op": "unadvertise", "channelIds": [1]}
-    assert json.loads(protocol.told("parameterValues", parameters=[], id=None)) == {
+    assert json.loads(protocol.control_message("unadvertise", channel_ids=[1])) == {
+        "op": "unadvertise",
+        "channelIds": [1],
+    }
+    assert json.loads(protocol.control_message("parameterValues", parameters=[], id=None)) == {
         "op": "parameterValues",
         "parameters": [],
     }

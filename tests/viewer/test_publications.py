@@ -70,5 +70,5 @@ async def test_too_many_publishers(graph: Graph, monkeypatch: pytest.MonkeyPatch
         channel = {"topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twist"}
         await seen.send("advertise", channels=[{"id": number, **channel} for number in range(3)])
         await seen.until(lambda: seen.statuses)
-        assert seen.statuses == ["viewers have 2 publishers already"]
+        assert seen.statuses == ["viewers already have 2 publishers"]
         assert len(lab.bridge._publications) == 2

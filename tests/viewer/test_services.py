@@ -24,7 +24,7 @@ async def test_calls(graph: Graph) -> None:
         await seen.call(3, "/power", b"\x00")
         await seen.call(4, "/power", b"{}", b"json")
         await seen.until(lambda: {3, 4} <= {*seen.failures})
-        assert seen.failures[4] == "requests come as cdr here, not as 'json'"
+        assert seen.failures[4] == "requests must be encoded as cdr, not 'json'"
 
 
 class Forger(Node):

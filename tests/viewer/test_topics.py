@@ -95,7 +95,7 @@ async def test_bounds(graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pyt
         await seen.subscribe(1, "/map")
         await seen.subscribe(2, "/map")
         await seen.until(lambda: len(seen.statuses) == 2)
-        assert seen.statuses == ["the subscription 1 is there already", "a viewer looks at no more than 1 topics"]
+        assert seen.statuses == ["subscription 1 exists already", "a viewer cannot subscribe to more than 1 topics"]
         other = Node("other")
         await graph.start(other)
         other.create_publisher(Twist, "/more")

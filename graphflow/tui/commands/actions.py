@@ -37,7 +37,7 @@ CONSOLE: dict[str, tuple[Action, ...]] = {
     "Leave": (
         Action("detach", "detach; the nodes run on", ("d",), ("q", "ctrl+q"), hint=True, short="detach"),
         Action("ask_to_stop", "stop the graph...", ("S",), verb="graphflow down", short="stop"),
-        Action("interrupt", "end what runs in the pane; where nothing can run, leave or stop...", keys=("ctrl+c",)),
+        Action("interrupt", "interrupt the pane's command; without one, leave or stop...", keys=("ctrl+c",)),
         Action("pause_in_shell", "back to the shell until fg; the nodes run on", keys=("ctrl+z",)),
         Action("sessions", "switch to another graph", ("s",), verb="graphflow attach --graph NAME", short="graphs"),
     ),
@@ -67,7 +67,7 @@ CONSOLE: dict[str, tuple[Action, ...]] = {
         Action("arrange:main-vertical", "a large pane on the left", ("alt+4",)),
         Action("arrange:tiled", "tiles", ("alt+5",)),
         Action("scroll_mode", "scroll back", ("left_square_bracket",), short="scroll"),
-        Action("paste", "paste what was copied", ("right_square_bracket",)),
+        Action("paste", "paste the copied text", ("right_square_bracket",)),
         Action("change_view", "show something else in this pane", ("v",), ("f2",), short="view"),
     ),
     "Windows": (
@@ -84,22 +84,20 @@ CONSOLE: dict[str, tuple[Action, ...]] = {
     "Graph": (
         Action("find", "find a node, topic, service or parameter", ("f",), ("ctrl+f",), short="find"),
         Action("groups", "who waits for whom: groups and deadlocks", ("g",), verb="graphflow waits", short="groups"),
-        Action(
-            "restart_node", "restart the node that is chosen", ("r",), verb="graphflow restart {node}", short="restart"
-        ),
+        Action("restart_node", "restart the selected node", ("r",), verb="graphflow restart {node}", short="restart"),
         Action("newest_error", "the newest error, in its log", ("e",), short="error"),
         Action("search_logs", "search in all logs", ("slash",), verb="graphflow logs", short="search"),
         Action("mute_node", "mute the node in merged logs, or not", ("m",)),
-        Action("palette", "everything that can be done", (), ("ctrl+p",), hint=True),
+        Action("palette", "all commands", (), ("ctrl+p",), hint=True),
         Action("command", "command line: any verb", ("colon",), ("colon",), hint=True, short="command"),
     ),
     "Console": (
-        Action("put_away", "hide the line for newcomers", keys=("escape",)),
+        Action("dismiss_welcome", "hide the line for newcomers", keys=("escape",)),
         Action("help", "all keys", ("question_mark",), ("question_mark", "f1"), hint=True, short="all keys"),
         Action("clients", "who else is attached", ("D",), verb="graphflow ls"),
         Action("clock", "the time", ("t",)),
         Action("theme", "light or dark", ("T",), short="theme"),
-        Action("messages", "what was said so far", ("tilde",)),
+        Action("messages", "the messages so far", ("tilde",)),
         Action("copy_command", "copy the last shell command", ("y",)),
     ),
 }
@@ -170,7 +168,7 @@ def keys_of(action: Action, prefix: str) -> str:
     return ", ".join([*(f"{shown(prefix)} {shown(key)}" for key in chords), *map(shown, action.keys)])
 
 
-def carry_out(doer: object, name: str) -> None:
+def carry_out(target: object, name: str) -> None:
     """Call the method of a view or of the console that carries out an action."""
-    method, _, word = name.partition(":")
-    getattr(doer, f"do_{method}")(*([word] if word else []))
+    method, _, argument = name.partition(":")
+    getattr(target, f"do_{method}")(*([argument] if argument else []))

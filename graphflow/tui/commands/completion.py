@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
 
 from textual.widgets import Input
 
@@ -13,11 +12,11 @@ from graphflow.console.views import ViewForm
 from graphflow.errors import GraphflowError
 from graphflow.introspect import completions
 from graphflow.introspect.parameters import RemoteParameters
-from graphflow.tui.feeds.hub import Hub, Verbs
+from graphflow.tui.feeds.hub import Hub, Verb, Verbs
 
 TRANSITIONS = ("activate", "cleanup", "configure", "deactivate", "shutdown")
 """The lifecycle transitions that can be requested."""
-ANSWER_LIMIT = 1.0
+REPLY_TIMEOUT = 1.0
 """Seconds to wait for a node's list of parameters."""
 
 
@@ -56,50 +55,50 @@ class Completer:
             return [*self._verbs, *self._views]
         if len(words) == 1 and words[0] in self._views and words[0] not in self._verbs:
             return await self._named(self._views[words[0]].about.partition(".")[0], [])
-        at: Any = {"commands": self._verbs}
-        rest = list(words)
-        while rest and at.get("commands") and rest[0] in at["commands"]:
-            at = at["commands"][rest.pop(0)]
-        if at.get("commands"):
-            return [] if rest else list(at["commands"])
-        return await self._arguments(at, rest)
+        verbs, rest = self._verbs, list(words)
+        while rest and rest[0] in verbs:
+            verb = verbs[rest.pop(0)]
+            if not verb.get("commands"):
+                return await self._arguments(verb, rest)
+            verbs = verb["commands"]
+        return [] if rest else list(verbs)
 
-    async def _arguments(self, command: dict[str, Any], words: list[str]) -> list[str]:
-        options: dict[str, bool] = command["options"]
-        given, skip = [], False
+    async def _arguments(self, verb: Verb, words: list[str]) -> list[str]:
+        options = verb["options"]
+        positional, skip = [], False
         for word in words:
             if skip:
                 skip = False
             elif word.startswith("-"):
                 skip = options.get(word, False)
             else:
-                given.append(word)
+                positional.append(word)
         if skip:
             return []
-        arguments: list[str] = command["arguments"]
+        arguments = verb["arguments"]
         names = [argument.strip("[].").removesuffix("]...") for argument in arguments]
-        if not names or (len(given) >= len(names) and not arguments[-1].endswith("...")):
+        if not names or (len(positional) >= len(names) and not arguments[-1].endswith("...")):
             return list(options)
-        what = names[min(len(given), len(names) - 1)]
-        found = await self._named(what, given)
+        kind = names[min(len(positional), len(names) - 1)]
+        found = await self._named(kind, positional)
         return found or list(options)
 
-    async def _named(self, what: str, given: list[str]) -> list[str]:
+    async def _named(self, kind: str, positional: list[str]) -> list[str]:
         live = self._hub.live
         if live is None:
             return []
-        match what.upper():
+        match kind.upper():
             case "NODE" | "NODES":
                 return self._hub.nodes()
-            case "PARAMETER" | "PARAMETERS" if given:
-                return await self._parameters(given[0])
-            case word if word in completions.MESSAGES and len(given) >= 2:
-                return completions.message(given[1])
-            case "HANDLER" if given:
-                return self._handlers(given[0])
+            case "PARAMETER" | "PARAMETERS" if positional:
+                return await self._parameters(positional[0])
+            case word if word in completions.MESSAGES and len(positional) >= 2:
+                return completions.message(positional[1])
+            case "HANDLER" if positional:
+                return self._handlers(positional[0])
             case "TRANSITION":
                 return list(TRANSITIONS)
-        return completions.names_for(what, given, live.cache)
+        return completions.names_for(kind, positional, live.cache)
 
     def _handlers(self, node: str) -> list[str]:
         assert self._hub.live is not None
@@ -110,13 +109,13 @@ class Completer:
     async def _parameters(self, node: str) -> list[str]:
         assert self._hub.live is not None
         try:
-            return await self._hub.live.ask(lambda view: RemoteParameters(view, view.node(node), ANSWER_LIMIT).names())
+            return await self._hub.live.ask(lambda view: RemoteParameters(view, view.node(node), REPLY_TIMEOUT).names())
         except GraphflowError:
             return []
 
 
 async def completed(line: Input, completer: Completer) -> tuple[str, list[str]]:
-    """Complete the text of an input, unless the user has edited it meanwhile; return the result of `complete`."""
+    """Complete the text of an input, keeping text typed meanwhile; return the result of `complete`."""
     before = line.value
     text, choices = await completer.complete(before)
     if line.value.startswith(before):

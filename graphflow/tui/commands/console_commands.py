@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from graphflow.console.section import LAYOUTS
 from graphflow.console.views import VIEWS, known_views
@@ -50,7 +50,7 @@ class ConsoleCommands(PaneCommands):
         if self._app.job_control.has_shell:
             self._app.job_control.pause()
         else:
-            self._app.say("there is no shell behind this console")
+            self._app.say("this console was not started from a shell")
 
     def do_interrupt(self) -> None:
         """Handle Ctrl-C, which never stops the graph without a question, however often it is pressed."""
@@ -75,8 +75,10 @@ class ConsoleCommands(PaneCommands):
         choices = [Choice("d", "detach: the nodes run on"), Choice("s", "stop the graph")]
         app.push_screen(AskToStop(question, choices, also if others else ""), self._leave)
 
-    def _ask(self, question: str, choices: list[Choice], answered: Any, detail: str = "") -> None:
-        self._app.push_screen(Ask(question, choices, detail), answered)
+    def _ask(
+        self, question: str, choices: list[Choice], on_answer: Callable[[str | None], None], detail: str = ""
+    ) -> None:
+        self._app.push_screen(Ask(question, choices, detail), on_answer)
 
     def _leave(self, answer: str | None) -> None:
         if answer == "d":
@@ -88,11 +90,11 @@ class ConsoleCommands(PaneCommands):
         """Stop the graph, and leave once it has ended."""
         self._app.run_worker(self._app.leave("stop"))
 
-    def do_put_away(self) -> None:
+    def do_dismiss_welcome(self) -> None:
         """Hide the line for newcomers."""
         if self._app.welcome.display:
             self._app.welcome.put_away()
-            self._app.say(f"the line for newcomers is put away; {shown(self._app.prefix)} ? has all keys")
+            self._app.say(f"the line for newcomers is hidden; {shown(self._app.prefix)} ? has all keys")
 
     def do_sessions(self) -> None:
         from graphflow.supervisor.rundir import running
@@ -167,18 +169,18 @@ class ConsoleCommands(PaneCommands):
             )
             return
         process = supervision.nodes[node]["process"]
-        mates = [n for n, row in supervision.nodes.items() if process and row["process"] == process and n != node]
-        detail = f"It shares a process with {', '.join(mates)}, which restart too." if mates else ""
+        companions = [n for n, row in supervision.nodes.items() if process and row["process"] == process and n != node]
+        detail = f"It shares a process with {', '.join(companions)}, which restart too." if companions else ""
 
-        def answered(key: str | None) -> None:
+        def on_answer(key: str | None) -> None:
             if key == "r":
                 supervision.send(do="restart", node=node)
                 self._app.did(f"graphflow restart {node}")
 
         if supervision.nodes[node]["state"] in ("ended", "failed", "given_up"):
-            answered("r")
+            on_answer("r")
         else:
-            self._ask(f"Restart {node}?", [Choice("r", "restart")], answered, detail)
+            self._ask(f"Restart {node}?", [Choice("r", "restart")], on_answer, detail)
 
     def _has_no_supervisor(self) -> bool:
         """Return whether no supervisor could start or stop a node; if so, say how to start the graph again."""
@@ -187,7 +189,7 @@ class ConsoleCommands(PaneCommands):
             return False
         again = f"graphflow up {project.shown(Path(supervision.run.file))}"
         what = "the supervisor has gone" if supervision.exit_code is None else "the graph has ended"
-        self._app.say(f"{what}; q leaves, and the graph is started again with: {again}", bad=True)
+        self._app.say(f"{what}; q leaves, and to start the graph again: {again}", bad=True)
         return True
 
     def stop_node(self, node: str) -> None:
@@ -199,22 +201,23 @@ class ConsoleCommands(PaneCommands):
             self._app.say(f"{node} was not started by this graph's supervisor, so it cannot be stopped here", bad=True)
             return
 
-        def answered(key: str | None) -> None:
+        def on_answer(key: str | None) -> None:
             if key == "s":
                 supervision.send(do="stop", node=node)
                 self._app.did(f"graphflow stop {node}")
 
-        self._ask(f"Stop {node}? The others run on.", [Choice("s", "stop it")], answered)
+        self._ask(f"Stop {node}? The others run on.", [Choice("s", "stop it")], on_answer)
 
     def do_search_logs(self) -> None:
         self.open_window(Content("log"), "logs")
         self._app.call_after_refresh(self._search_here)
 
     def _search_here(self) -> None:
+        from graphflow.tui.views.log import Log
+
         view = self._app.focused_view
-        search = getattr(view, "do_filter", None)
-        if search is not None:
-            search()
+        if isinstance(view, Log):
+            view.do_filter()
 
     def do_mute_node(self) -> None:
         view = self._app.focused_view
@@ -224,14 +227,14 @@ class ConsoleCommands(PaneCommands):
             return
         muted = self._app.hub.muted
         muted.symmetric_difference_update({node})
-        self._app.say(f"{node} is {'muted' if node in muted else 'heard again'} in merged logs")
+        self._app.say(f"{node} is {'muted' if node in muted else 'no longer muted'} in merged logs")
 
     def do_palette(self) -> None:
         from graphflow.tui.widgets.pickable import contents
 
         app, view = self._app, self._app.focused_view
-        mine = view.ACTIONS if view is not None else ()
-        items = [Item(a.title, ", ".join(map(shown, a.keys)), (view, a.name)) for a in mine]
+        actions = view.ACTIONS if view is not None else ()
+        items = [Item(a.title, ", ".join(map(shown, a.keys)), (view, a.name)) for a in actions]
         items += [Item(a.title, keys_of(a, app.prefix), (self, a.name)) for a in console_actions()]
         items += [Item(item.text, f"show: {item.detail}", item.value) for item in contents(app.hub)]
 
@@ -241,7 +244,7 @@ class ConsoleCommands(PaneCommands):
             elif chosen is not None:
                 carry_out(*chosen)
 
-        app.push_screen(Pick("Everything that can be done here", items), picked)
+        app.push_screen(Pick("All commands", items), picked)
 
     def do_command(self) -> None:
         from graphflow.tui.commands.command_line import CommandLine
@@ -299,12 +302,12 @@ class ConsoleCommands(PaneCommands):
         self._app.say(f"theme {self._app.theme}")
 
     def do_messages(self) -> None:
-        def body() -> LineView:
-            lines = LineView()
-            lines.call_after_refresh(lines.replace, list(self._app.said))
+        def body() -> LineView[str]:
+            lines = LineView[str]()
+            lines.call_after_refresh(lines.replace, list(self._app.messages))
             return lines
 
-        self._app.push_screen(Note("What was said", body))
+        self._app.push_screen(Note("Messages", body))
 
     def do_copy_command(self) -> None:
         if not self._app.last_shell:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ class PaneCommands:
             app.window.focus(same[0].number)
             app.changed()
             if same[0].number in app.workspace.frames:
-                app.workspace.frames[same[0].number].view.asked_again(content)
+                app.workspace.frames[same[0].number].view.reopened(content)
             return
         room = app.workspace.room(app.window.focused)
         least = view_class(content.view).LEAST_WIDTH
@@ -119,7 +120,7 @@ class PaneCommands:
 
     def do_break_pane(self) -> None:
         app = self._app
-        app.workspace.keep_contents()
+        app.workspace.store_contents()
         window = app.window
         pane = window.pane(window.focused)
         if not window.close(pane.number):
@@ -153,14 +154,14 @@ class PaneCommands:
         lines.action_page(-1)
         self._app.say("scrolled back: ↑↓ pgup pgdn move, / searches, n N go on, y copies a line, end follows again")
 
-    def search_in(self, lines: LineView) -> None:
+    def search_in(self, lines: LineView[Any]) -> None:
         """Prompt for a text, and search for it in a view of lines."""
 
         def typed(text: str | None) -> None:
             if text and not (lines.search(text, -1) or lines.search(text, 1)):
-                self._app.say(f"no line has {text!r}")
+                self._app.say(f"no line contains {text!r}")
 
-        self._app.push_screen(AskLine("Search for; n and N go on from there", lines.sought), typed)
+        self._app.push_screen(AskLine("Search for; n and N go on from there", lines.search_text), typed)
 
     def do_paste(self) -> None:
         focused = self._app.focused
@@ -183,7 +184,7 @@ class PaneCommands:
     def do_new_window(self) -> None:
         self._pick_view("New window with", self.open_window)
 
-    def _pick_view(self, question: str, use: Any) -> None:
+    def _pick_view(self, question: str, use: Callable[[Content], None]) -> None:
         from graphflow.tui.widgets.pickable import contents
 
         def picked(content: Content | None) -> None:
@@ -249,6 +250,6 @@ class PaneCommands:
         from graphflow.graph.edit import with_console
         from graphflow.tui.widgets.file_changes import write_file
 
-        app.workspace.keep_contents()
+        app.workspace.store_contents()
         file = Path(app.hub.supervision.run.file)
         write_file(app, file, lambda text: with_console(text, to_section(app.windows)), "the windows of this console")

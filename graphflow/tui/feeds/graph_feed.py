@@ -12,7 +12,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import TypeVar, cast
 
 from graphflow.errors import GraphflowError
 from graphflow.introspect import concurrency
@@ -23,9 +23,12 @@ from graphflow.introspect.numbers import Numbers
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import Deadlock, explained
+from graphflow.msgs.base import Action, Feedback, Goal, Message, Result
 from graphflow.msgs.rcl_interfaces.msg import Log
 from graphflow.qos import BEST_AVAILABLE
+from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.context import Context
+from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
@@ -35,10 +38,11 @@ from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import NUMBERS, WAITS, ProcessToken, answer_key
 
 T = TypeVar("T")
+M = TypeVar("M", bound=Message)
 
-LOOK_EVERY = 1.0
+POLL_INTERVAL = 1.0
 """Seconds between two requests for reports of all processes."""
-ANSWER_LIMIT = 0.9
+REPLY_TIMEOUT = 0.9
 """Seconds that processes have to reply."""
 WANTED_FOR = 2.5
 """Seconds after which reports that no view uses are no longer requested."""
@@ -67,24 +71,25 @@ class Live:
         """The reason why the graph cannot be joined; empty if there is none."""
         self.numbers = Numbers()
         self.concurrency: ConcurrencyReport | None = None
-        self.asked_at = 0.0
+        self.requested_at = 0.0
         """The time of the request for `concurrency`, by the monotonic clock."""
         self.deadlocks: list[Deadlock] = []
         self.processes: dict[str, ProcessToken] = {}
         """The graphflow processes of the domain, by session."""
         self.changes = 0
         """Number of nodes and endpoints that have come or gone."""
-        self._looked_at = -1
+        self._searched_at = -1
         """The value of `changes` at the last search for mismatches."""
         self._ends: dict[str, list[Entity]] = {}
         self._misfits: dict[str, str] = {}
-        self._nothing = GraphCache()
+        self._empty_cache = GraphCache()
         self._node: Node | None = None
         self._rosout: TopicSubscription[Log] | None = None
-        self._written: deque[tuple[float, str, str]] = deque(maxlen=ROSOUT_KEPT)
-        self._made: dict[tuple[str, str], Any] = {}
+        self._rosout_records: deque[tuple[float, str, str]] = deque(maxlen=ROSOUT_KEPT)
+        self._publishers: dict[str, object] = {}
+        self._action_clients: dict[str, object] = {}
         self._wanted: dict[str, float] = {}
-        self._looking: asyncio.Task[None] | None = None
+        self._polling: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
         """Join the graph; on failure, `trouble` gives the reason."""
@@ -107,7 +112,7 @@ class Live:
         self._rosout = node.create_subscription(Log, "/rosout", None, replace(BEST_AVAILABLE, depth=ROSOUT_KEPT))
         context.on_change(lambda _: self._changed())
         context.session.watch(process.watch_key(self.domain), self._process)
-        self._looking = asyncio.create_task(self._look())
+        self._polling = asyncio.create_task(self._poll())
 
     def _changed(self) -> None:
         self.changes += 1
@@ -124,7 +129,7 @@ class Live:
     @property
     def cache(self) -> GraphCache:
         """The nodes and endpoints known so far."""
-        return self._nothing if self.context is None else self.context.cache
+        return self._empty_cache if self.context is None else self.context.cache
 
     @property
     def stuck_nodes(self) -> set[str]:
@@ -137,13 +142,13 @@ class Live:
     @property
     def misfits(self) -> dict[str, str]:
         """Mismatches of publishers and subscriptions by topic, updated when the graph has changed."""
-        if self._looked_at != self.changes:
-            self._looked_at = self.changes
+        if self._searched_at != self.changes:
+            self._searched_at = self.changes
             self._ends = {}
             for entity in self.others():
                 if entity.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
                     self._ends.setdefault(entity.name, []).append(entity)
-            found = {topic: misfit(there) for topic, there in self._ends.items() if len(there) < ENDS_BOUND}
+            found = {topic: misfit(ends) for topic, ends in self._ends.items() if len(ends) < ENDS_BOUND}
             self._misfits = {topic: why for topic, why in found.items() if why}
         return self._misfits
 
@@ -165,7 +170,7 @@ class Live:
         """Request that `numbers` or `concurrency` be kept fresh. Views repeat the request at every update."""
         self._wanted[what] = time.monotonic()
 
-    async def _look(self) -> None:
+    async def _poll(self) -> None:
         while True:
             now = time.monotonic()
             wanted = {what for what, at in self._wanted.items() if now - at < WANTED_FOR}
@@ -174,22 +179,22 @@ class Live:
                 self.numbers.take(replies, time.monotonic())
             if "concurrency" in wanted:
                 answers = await self._ask(WAITS)
-                self.concurrency, self.asked_at = concurrency.read(answers), now
+                self.concurrency, self.requested_at = concurrency.read(answers), now
                 found = self.concurrency
                 self.deadlocks = explained(found.graph, deadlocked(found.graph)) if found.reports else []
-            await asyncio.sleep(max(0.1, LOOK_EVERY - (time.monotonic() - now)) if wanted else 0.1)
+            await asyncio.sleep(max(0.1, POLL_INTERVAL - (time.monotonic() - now)) if wanted else 0.1)
 
     async def _ask(self, what: str) -> list[bytes]:
         assert self.context is not None
         done: asyncio.Future[list[bytes]] = self.context.loop.create_future()
 
-        def told(replies: list[bytes], all_there: bool) -> None:
-            if all_there and not done.done():
+        def on_replies(replies: list[bytes], is_complete: bool) -> None:
+            if is_complete and not done.done():
                 done.set_result(replies[:REPLIES_BOUND])
 
-        self.context.session.ask_reports(answer_key(self.domain, what), ANSWER_LIMIT, told)
+        self.context.session.ask_reports(answer_key(self.domain, what), REPLY_TIMEOUT, on_replies)
         try:
-            async with asyncio.timeout(ANSWER_LIMIT + 1.0):
+            async with asyncio.timeout(REPLY_TIMEOUT + 1.0):
                 return await done
         except TimeoutError:
             return []
@@ -215,30 +220,34 @@ class Live:
             return None
         while self._rosout.statistics()["waiting"]:
             log = await anext(self._rosout)
-            self._written.append(
+            self._rosout_records.append(
                 (log.stamp.sec + log.stamp.nanosec * 1e-9, plain_text(log.msg), f"{log.file}:{log.line}")
             )
-        near = (w for w in self._written if abs(w[0] - stamp) < SAME_MOMENT)
-        return next((place for _, said, place in near if said.startswith(text[:100])), None)
+        near = (w for w in self._rosout_records if abs(w[0] - stamp) < SAME_MOMENT)
+        return next((place for _, logged, place in near if logged.startswith(text[:100])), None)
 
-    def publisher(self, type_: type[Any], topic: str) -> Any:
+    def publisher(self, type_: type[M], topic: str) -> TopicPublisher[M]:
         """Return the console's own publisher on a topic, created once. The graph must be open."""
         assert self._node is not None
-        if ("topic", topic) not in self._made:
-            self._made["topic", topic] = self._node.create_publisher(type_, topic)
-        return self._made["topic", topic]
+        found = self._publishers.get(topic)
+        if found is None:
+            found = self._publishers[topic] = self._node.create_publisher(type_, topic)
+        return cast("TopicPublisher[M]", found)
 
-    def action_client(self, type_: type[Any], action: str) -> Any:
+    def action_client(
+        self, type_: type[Action[Goal, Result, Feedback]], action: str
+    ) -> GoalClient[Goal, Result, Feedback]:
         """Return the console's own client of an action; see `publisher`."""
         assert self._node is not None
-        if ("action", action) not in self._made:
-            self._made["action", action] = self._node.create_action_client(type_, action)
-        return self._made["action", action]
+        found = self._action_clients.get(action)
+        if found is None:
+            found = self._action_clients[action] = self._node.create_action_client(type_, action)
+        return cast("GoalClient[Goal, Result, Feedback]", found)
 
     async def close(self) -> None:
         """Leave the graph."""
-        if self._looking is not None:
-            self._looking.cancel()
+        if self._polling is not None:
+            self._polling.cancel()
         if self._node is not None:
             await core_of(self._node).stop()
         if self.context is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
 from graphflow.graph.plan import Plan
 from graphflow.tui.commands.history import History
@@ -16,8 +16,19 @@ if TYPE_CHECKING:
 
 OWN_RECORDS = 20_000
 """Records kept of one node or namespace."""
-Verbs = dict[str, Any]
-"""The command line as data: see `cli.tree`."""
+
+
+class Verb(TypedDict, total=False):
+    """A verb of the command line: see `cli.tree`."""
+
+    help: str
+    arguments: list[str]
+    options: dict[str, bool]
+    """Whether each option takes a value."""
+    commands: dict[str, Verb]
+
+
+Verbs = dict[str, Verb]
 
 
 class Hub:
@@ -95,9 +106,9 @@ class Hub:
 
     def nodes(self) -> list[str]:
         """Return all nodes: the supervisor's first, then others of the domain."""
-        mine = list(self.supervision.nodes) if self.supervision is not None else []
-        seen = self.live.cache.nodes(hidden=False) if self.live is not None else []
-        return [*mine, *(name for name in seen if name not in mine)]
+        own = list(self.supervision.nodes) if self.supervision is not None else []
+        visible = self.live.cache.nodes(hidden=False) if self.live is not None else []
+        return [*own, *(name for name in visible if name not in own)]
 
     def announce(self, text: str) -> None:
         """Report an action of this console to the other consoles."""

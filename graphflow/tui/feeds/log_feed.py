@@ -95,7 +95,7 @@ class LogFile:
         begin = self._offset - len(self._rest)
         self._offset += len(data)
         *lines, self._rest = (self._rest + data).split(b"\n")
-        if len(self._rest) > 2 * AT_ONCE:  # an incomplete line
+        if len(self._rest) > 2 * AT_ONCE:  # a line without an end: do not buffer it any longer
             lines, self._rest = [*lines, self._rest], b""
         if begin == self.skipped and begin and lines:  # after a skip, the first line is incomplete
             begin += len(lines.pop(0)) + 1
@@ -171,11 +171,11 @@ class Logs:
         for record in fresh:
             self.counts[record.node] += 1
             if record.level >= WARNING:
-                self._note(record)
+                self._remember(record)
         self.records.extend(fresh)
         self.total += len(fresh)
 
-    def _note(self, record: Record) -> None:
+    def _remember(self, record: Record) -> None:
         """Remember a warning or an error."""
         self.serious.append(record)
         if record.is_more:

@@ -8,7 +8,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 from graphflow import __version__
 from graphflow.graph.plan import Plan
@@ -16,7 +16,7 @@ from graphflow.supervisor.control.server import ControlStream
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.system import terminal_name
 
-ASK_EVERY = 1.0
+POLL_INTERVAL = 1.0
 """Seconds between two requests for the list of nodes."""
 LINE_LIMIT = 1 << 22
 """Maximum bytes of one line from the supervisor."""
@@ -28,24 +28,51 @@ LEAVE_WITHIN = 1.0
 
 logger = logging.getLogger("graphflow.console")
 
+Event = dict[str, Any]
+"""A line from the supervisor: its kind as `event`, and the fields of that kind; see `supervisor.control.server`."""
+
+NodeRow = TypedDict(
+    "NodeRow",
+    {
+        "node": str,
+        "state": str,
+        "lifecycle": str,
+        "pid": int | None,
+        "since": float,
+        "process": str,
+        "class": str,
+        "log": str,
+        "restarts": int,
+        "detail": str,
+    },
+)
+"""A node's row of `ps`, with the fields that the console uses."""
+
+
+class ConsoleRow(TypedDict):
+    """A console attached to the graph: its terminal, and the time of its arrival in seconds since 1970."""
+
+    name: str
+    since: float
+
 
 class Supervision:
     """One run as reported by its supervisor.
 
     Args:
         run: The run.
-        heard: Called with each event.
+        on_event: Called with each event.
     """
 
-    def __init__(self, run: GraphRun, heard: Callable[[dict[str, Any]], None]) -> None:
+    def __init__(self, run: GraphRun, on_event: Callable[[Event], None]) -> None:
         self.run = run
         self.name = terminal_name()
         """The name of this console in other consoles."""
-        self.nodes: dict[str, dict[str, Any]] = {}
+        self.nodes: dict[str, NodeRow] = {}
         """The rows of `ps` by node."""
-        self.consoles: list[dict[str, Any]] = []
-        self.events: deque[dict[str, Any]] = deque(maxlen=EVENTS)
-        self.hello: dict[str, Any] = {}
+        self.consoles: list[ConsoleRow] = []
+        self.events: deque[Event] = deque(maxlen=EVENTS)
+        self.hello: Event = {}
         self.plan: Plan | None = None
         """The resolved graph file, once the supervisor has sent it."""
         self.folder = Path()
@@ -57,28 +84,28 @@ class Supervision:
         """Whether the connection is lost for good."""
         self.exit_code: int | None = None
         """The graph's exit code, once it has ended."""
-        self._heard = heard
+        self._on_event = on_event
         self._stream: ControlStream | None = None
 
     async def follow(self) -> None:
         """Stay connected until the graph or its supervisor has ended."""
         why = "the supervisor has gone"
-        asking: asyncio.Task[None] | None = None
+        polling: asyncio.Task[None] | None = None
         try:
             stream = self._stream = await ControlStream.open(self.run.socket, LINE_LIMIT)
             self.is_connected = True
             self.send(do="follow", console=self.name)
             self.send(do="ps")
             self.send(do="plan")
-            asking = asyncio.create_task(self._ask())
+            polling = asyncio.create_task(self._poll())
             async for event in stream.receive():
                 self._take(event)
         except (OSError, ValueError) as error:
             why = f"the connection to the supervisor is lost: {error}"
         finally:
             self.is_connected = False
-            if asking is not None:
-                asking.cancel()
+            if polling is not None:
+                polling.cancel()
             if self._stream is not None:
                 self._stream.close()
             self._over.set()
@@ -86,9 +113,9 @@ class Supervision:
             return
         self.is_lost = True
         self.nodes = {name: self._without_supervisor(row, why) for name, row in self.nodes.items()}
-        self._heard({"event": "lost", "message": why})
+        self._on_event({"event": "lost", "message": why})
 
-    def _without_supervisor(self, row: dict[str, Any], why: str) -> dict[str, Any]:
+    def _without_supervisor(self, row: NodeRow, why: str) -> NodeRow:
         """Return the final row of a node: ended if the graph has ended, otherwise unknown."""
         if row["state"] in _OVER:
             return row
@@ -105,14 +132,14 @@ class Supervision:
             async with asyncio.timeout(LEAVE_WITHIN):
                 await self._over.wait()
         except TimeoutError:
-            logger.warning("the supervisor is not listening: what it was asked last may be lost")
+            logger.warning("the supervisor does not read: the last requests may be lost")
 
-    async def _ask(self) -> None:
+    async def _poll(self) -> None:
         while True:
-            await asyncio.sleep(ASK_EVERY)
+            await asyncio.sleep(POLL_INTERVAL)
             self.send(do="ps")
 
-    def send(self, **request: Any) -> bool:
+    def send(self, **request: object) -> bool:
         """Send a request; return whether there was a connection."""
         return self._stream is not None and self._stream.send(**request, by=self.name)
 
@@ -126,12 +153,12 @@ class Supervision:
         other = self.hello.get("version", __version__)
         return "" if other == __version__ else f"the graph runs with graphflow {other}, this console is {__version__}"
 
-    def _take(self, event: dict[str, Any]) -> None:
+    def _take(self, event: Event) -> None:
         what = event.get("event")
         if what == "ps":
             self.nodes = {row["node"]: row for row in event["nodes"]}
             self.consoles = event.get("consoles", [])
-            self._heard(event)
+            self._on_event(event)
             return
         if what == "plan":
             self.plan, self.folder = Plan.from_json(event["plan"]), Path(event["folder"])
@@ -145,4 +172,4 @@ class Supervision:
         if what in ("ready", "exited", "starting", "left"):
             self.send(do="ps")
         self.events.append(event)
-        self._heard(event)
+        self._on_event(event)

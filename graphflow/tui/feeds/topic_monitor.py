@@ -13,7 +13,10 @@ from graphflow.names import nearest
 from graphflow.qos import BEST_AVAILABLE
 
 if TYPE_CHECKING:
+    from graphflow.msgs.base import Message
+    from graphflow.runtime.endpoints.subscriptions import TopicSubscription
     from graphflow.tui.feeds.graph_feed import Live
+    from graphflow.wire.attachment import MessageInfo
 
 
 class TopicMonitor:
@@ -29,13 +32,14 @@ class TopicMonitor:
         self.type_name = ""
         self.count = 0
         self.message: Any = None
-        self.info: Any = None
+        """Of the topic's type, which is known only at run time."""
+        self.info: MessageInfo | None = None
         self.arrivals: deque[float] = deque(maxlen=self.STAMPS)
         """Arrival times in seconds, by the monotonic clock."""
-        self.heard: Callable[[Any, float], None] | None = None
+        self.on_message: Callable[[Any, float], None] | None = None
         """Called with each message and its arrival time, on the event loop."""
         self._live = live
-        self._subscription: Any = None
+        self._subscription: TopicSubscription[Message] | None = None
 
     @property
     def is_open(self) -> bool:
@@ -44,12 +48,12 @@ class TopicMonitor:
     @property
     def dropped(self) -> int:
         """Number of messages dropped because they came too fast."""
-        return 0 if self._subscription is None else int(self._subscription.dropped)
+        return 0 if self._subscription is None else self._subscription.dropped
 
     @property
     def lost(self) -> int:
         """Number of messages that never arrived, by gaps in their publishers' sequence numbers."""
-        return 0 if self._subscription is None else int(self._subscription.lost)
+        return 0 if self._subscription is None else self._subscription.lost
 
     def look(self) -> None:
         """Subscribe once the topic exists."""
@@ -65,20 +69,20 @@ class TopicMonitor:
         from graphflow.msgs import registry
 
         try:
-            type_: Any = registry.interface_class(self.type_name)
+            type_: type[Message] = registry.interface_class(self.type_name)
             self._subscription = self._live.node.create_subscription(
                 type_, self.topic, self._arrived, replace(BEST_AVAILABLE, depth=200), takes_info=True
             )
         except GraphflowError as error:
             self.trouble = str(error)
 
-    def _arrived(self, message: Any, info: Any) -> None:
+    def _arrived(self, message: Message, info: MessageInfo) -> None:
         now = time.monotonic()
         self.count += 1
         self.message, self.info = message, info
         self.arrivals.append(now)
-        if self.heard is not None:
-            self.heard(message, now)
+        if self.on_message is not None:
+            self.on_message(message, now)
 
     def close(self) -> None:
         """Stop listening."""

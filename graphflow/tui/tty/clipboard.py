@@ -23,7 +23,7 @@ def program() -> tuple[str, ...]:
     return next((words for fits, words in candidates if fits and shutil.which(words[0])), ())
 
 
-def copy_by(words: tuple[str, ...], text: str) -> str:
+def copy_with(words: tuple[str, ...], text: str) -> str:
     """Copy a text by a program; return the error, empty on success. Blocks for `LIMIT` at most."""
     try:
         # Programs of X11 and Wayland stay alive to serve the selection, so their output must not be awaited.

@@ -7,7 +7,6 @@ import os
 import signal
 import sys
 from collections.abc import Callable
-from typing import Any
 
 from textual.app import App
 
@@ -20,7 +19,7 @@ class JobControl:
         taken: Called when the console has the terminal again.
     """
 
-    def __init__(self, app: App[Any], taken: Callable[[], object]) -> None:
+    def __init__(self, app: App[str], taken: Callable[[], object]) -> None:
         self._app, self._taken = app, taken
 
     @property
@@ -28,7 +27,7 @@ class JobControl:
         """Whether a shell may be able to resume the console."""
         return not (self._app.is_headless or self._app.is_web or sys.platform == "win32")
 
-    def hear_signals(self) -> None:
+    def handle_signals(self) -> None:
         """Handle SIGCONT and SIGTSTP in place of Textual.
 
         After a SIGSTOP, Textual would start a second driver beside the first, whose threads then keep the process from
@@ -53,5 +52,5 @@ class JobControl:
         loop.remove_signal_handler(signal.SIGCONT)
         with self._app.suspend():
             os.kill(os.getpid(), signal.SIGTSTP)
-        self.hear_signals()
+        self.handle_signals()
         self._app.refresh(layout=True)

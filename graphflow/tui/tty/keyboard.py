@@ -26,8 +26,8 @@ ROUNDS = 2
 """Rounds of the marker: the first arrives behind the key itself, the second behind the effects of the key."""
 DONE_AFTER = 0.25
 """Seconds after which a key counts as done: its widget may have been removed, and the marker with it."""
-HELD_BOUND = 10_000
-"""Maximum number of queued keys; further ones are dropped."""
+QUEUE_BOUND = 10_000
+"""Maximum number of queued keys; beyond it, the oldest are dropped."""
 
 Typed = events.Key | events.Paste
 
@@ -37,12 +37,12 @@ class Keyboard:
 
     Args:
         console: The console that receives the keys.
-        hand_on: Passes a key to the focused widget.
+        pass_on: Passes a key to the focused widget.
         do: Carries out the action of a key after the prefix.
     """
 
-    class Followed(Message):
-        """The marker behind a key has arrived."""
+    class Marker(Message):
+        """A marker posted behind a key, to arrive once the key has taken effect."""
 
         def __init__(self, number: int, rounds: int) -> None:
             super().__init__()
@@ -51,15 +51,15 @@ class Keyboard:
     def __init__(
         self,
         console: ConsoleApp,
-        hand_on: Callable[[events.Event], Awaitable[None]],
+        pass_on: Callable[[events.Event], Awaitable[None]],
         do: Callable[[str], None],
     ) -> None:
         self.which_key = WhichKey()
-        self._console, self._hand_on, self._do = console, hand_on, do
+        self._console, self._pass_on, self._do = console, pass_on, do
         self._chords = by_chord()
         self._chord_open = False
         self._which_timer: Timer | None = None
-        self._held: deque[Typed] = deque(maxlen=HELD_BOUND)
+        self._queue: deque[Typed] = deque(maxlen=QUEUE_BOUND)
         self._number = 0
         self._under_way_since: float | None = None
         self._screen: Screen[object] | None = None
@@ -67,34 +67,34 @@ class Keyboard:
     @property
     def is_quiet(self) -> bool:
         """Whether all keys have taken effect."""
-        return not self._held and self._under_way_since is None
+        return not self._queue and self._under_way_since is None
 
     async def type(self, event: Typed) -> None:
         """Enqueue a key."""
-        self._held.append(event)
+        self._queue.append(event)
         await self.go_on()
 
     async def go_on(self) -> None:
         """Pass the next key on, unless one is under way or its pane is still to be focused."""
         console = self._console
-        while self._held and self._under_way_since is None:
+        while self._queue and self._under_way_since is None:
             is_for_panes = len(console.screen_stack) == 1
-            if is_for_panes and (console.workspace.focus_is_due or self._brings_focus_back()):
+            if is_for_panes and (console.workspace.focus_is_due or self._restores_focus()):
                 return
-            event = self._held.popleft()
+            event = self._queue.popleft()
             self._number += 1
             self._under_way_since = time.monotonic()
             self._screen = console.screen
-            if not (isinstance(event, events.Key) and self._takes(event)):
-                await self._hand_on(event)
-            self._follow(ROUNDS)
+            if not (isinstance(event, events.Key) and self._takes_as_chord(event)):
+                await self._pass_on(event)
+            self._post_marker(ROUNDS)
 
-    async def followed(self, event: Followed) -> None:
+    async def marker_arrived(self, event: Marker) -> None:
         """Handle the arrival of a marker."""
         if event.number != self._number or self._under_way_since is None:
             return
         if event.rounds > 1:
-            self._follow(event.rounds - 1)
+            self._post_marker(event.rounds - 1)
             return
         self._under_way_since = None
         await self.go_on()
@@ -106,18 +106,18 @@ class Keyboard:
             self._under_way_since = None
         await self.go_on()
 
-    def _brings_focus_back(self) -> bool:
+    def _restores_focus(self) -> bool:
         """Restore the pane's focus after the focused widget was hidden; return whether that is possible."""
         return self._console.focused is None and self._console.workspace.regain_focus()
 
-    def _follow(self, rounds: int) -> None:
+    def _post_marker(self, rounds: int) -> None:
         console = self._console
-        (console.focused or console.screen).post_message(self.Followed(self._number, rounds))
+        (console.focused or console.screen).post_message(self.Marker(self._number, rounds))
 
     # the prefix
 
-    def _takes(self, event: events.Key) -> bool:
-        """Return whether a key is the prefix, or follows it."""
+    def _takes_as_chord(self, event: events.Key) -> bool:
+        """Handle a key that is the prefix or follows it; return whether it is one."""
         console = self._console
         console.hints.look(time.monotonic(), pressed=True)
         if self._chord_open:
@@ -129,7 +129,7 @@ class Keyboard:
             if action is not None:
                 self._do(action.name)
             elif event.key != "escape":
-                console.say(f"{prefix} {key} means nothing; {prefix} ? lists all keys")
+                console.say(f"{prefix} {key} is not bound; {prefix} ? lists all keys")
             return True
         if event.key == console.prefix and len(console.screen_stack) == 1:
             self._chord_open = True

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
 
 LATE = 0.05
 """Seconds that a frame may wait for Textual's writing thread before the terminal counts as slow."""
@@ -22,14 +21,14 @@ class Pacing:
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self.owes = False
+        self.is_behind = False
         """Whether frames were skipped since the last full redraw."""
         self.left_out = 0
         self._clock = clock
         self._waits_since: float | None = None
         """The time since which frames have been waiting; None if none was at the last check."""
 
-    def admits(self, driver: Any) -> bool:
+    def admits(self, driver: object) -> bool:
         """Return whether another frame may be written now; count it as skipped if not.
 
         Args:
@@ -39,22 +38,23 @@ class Pacing:
             self._waits_since = None
         elif self._waits_since is None:
             self._waits_since = self._clock()
-        if not self.owes and (self._waits_since is None or self._clock() - self._waits_since < LATE):
+        if not self.is_behind and (self._waits_since is None or self._clock() - self._waits_since < LATE):
             return True
-        self.owes = True
+        self.is_behind = True
         self.left_out += 1
         return False
 
-    def catches_up(self, driver: Any) -> bool:
+    def catches_up(self, driver: object) -> bool:
         """Return whether a full redraw is due: frames were skipped, and the terminal has caught up."""
-        if not self.owes or waiting(driver):
+        if not self.is_behind or waiting(driver):
             return False
-        self.owes = False
+        self.is_behind = False
         return True
 
 
-def waiting(driver: Any) -> int:
+def waiting(driver: object) -> int:
     """Return the number of pending writes; 0 for drivers without a writing thread."""
+    # Textual has no public name for the queue, and only drivers of real terminals have one.
     thread = getattr(driver, "_writer_thread", None)
     queue = getattr(thread, "_queue", None)
     return 0 if queue is None else int(queue.qsize())

@@ -67,7 +67,7 @@ class Calls(TableView):
         self._type = ""
         self._form: Form | None = None
         self._shell = Static("", classes="shell", markup=False)
-        self._answers = LineView(2000, wraps=True, copies=True)
+        self._answers = LineView[Text](2000, wraps=True, copies=True)
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
@@ -105,7 +105,7 @@ class Calls(TableView):
         return [] if self.hub.live is None else [e.name for e in self.hub.live.cache.endpoints(Kind.SERVICE)]
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         if self._form is None:
             return self.table
         return next(iter(self._form.query(Input)), self._answers)
@@ -198,7 +198,12 @@ class Calls(TableView):
                 return
             lines = block(truncated(plain(answer))).split("\n")
             took = f"◀ after {(time.monotonic() - began) * 1000:.0f} ms"
-            self._answers.extend([Text(took, style=colours.good), *(f"  {plain_text(line)}" for line in lines[:500])])
+            self._answers.extend(
+                [
+                    Text(took, style=colours.good),
+                    *(Text(f"  {plain_text(line)}", style=colours.text) for line in lines[:500]),
+                ]
+            )
 
         self.work(call)
 

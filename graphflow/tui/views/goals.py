@@ -6,7 +6,7 @@ import shlex
 import time
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.text import Text
 from textual.app import ComposeResult
@@ -16,6 +16,8 @@ from textual.widgets import DataTable, Input, Static
 from graphflow.errors import EncodeError, GraphflowError
 from graphflow.introspect.messages.echo import flow, plain, truncated
 from graphflow.msgs import registry
+from graphflow.msgs.base import Action as ActionType
+from graphflow.msgs.base import Message
 from graphflow.times import ago
 from graphflow.tui.commands.actions import Action
 from graphflow.tui.feeds.hub import Hub
@@ -26,8 +28,11 @@ from graphflow.tui.widgets.dialogs import Item, Pick
 from graphflow.tui.widgets.form import Form, form_for
 from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
 
+if TYPE_CHECKING:
+    from graphflow.msgs.action_msgs.msg import GoalStatusArray
+
 STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "canceled", "aborted")
-_INKS = ("dim", "warn", "accent", "warn", "good", "dim", "bad")
+_STATE_COLOURS = ("dim", "warn", "accent", "warn", "good", "dim", "bad")
 _GLYPHS = ("?", "◌", "◐", "◑", "●", "○", "✖")
 GOALS = 500
 """Goals remembered; ended ones are dropped first, the oldest of them first."""
@@ -76,7 +81,7 @@ class Goals(TableView):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._taps: dict[str, list[TopicMonitor]] = {}
+        self._monitors: dict[str, list[TopicMonitor]] = {}
         self._types: dict[str, str] = {}
         self._goals: dict[str, Goal] = {}
         self._form: Form | None = None
@@ -92,7 +97,7 @@ class Goals(TableView):
         return f"new goal for {self._sent_to}" if self._form is not None else f"goals {self.about}".rstrip()
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self.table if self._form is None else next(iter(self._form.query(Input)), self.table)
 
     @property
@@ -110,25 +115,23 @@ class Goals(TableView):
         wanted = [n for n in actions if not self.about or n == self.about][:ACTIONS_BOUND]
         self._types = {name: actions[name][0] for name in wanted if actions[name]}
         for name in wanted:
-            if name not in self._taps:
-                status, feedback = (
-                    TopicMonitor(live, f"{name}/_action/status"),
-                    TopicMonitor(live, f"{name}/_action/feedback"),
-                )
-                status.heard, feedback.heard = partial(self._status, name), partial(self._feedback, name)
-                self._taps[name] = [status, feedback]
-        for name in [n for n in self._taps if n not in wanted]:
-            for tap in self._taps.pop(name):
-                tap.close()
-        for taps in self._taps.values():
-            for tap in taps:
-                tap.look()
+            if name not in self._monitors:
+                status = TopicMonitor(live, f"{name}/_action/status")
+                feedback = TopicMonitor(live, f"{name}/_action/feedback")
+                status.on_message, feedback.on_message = partial(self._status, name), partial(self._feedback, name)
+                self._monitors[name] = [status, feedback]
+        for name in [n for n in self._monitors if n not in wanted]:
+            for monitor in self._monitors.pop(name):
+                monitor.close()
+        for monitors in self._monitors.values():
+            for monitor in monitors:
+                monitor.look()
         super().look(now)
         if self._form is None:
             chosen = self._goals.get(self.key)
             self._shell.update(f"feedback: {chosen.feedback}" if chosen is not None and chosen.feedback else "")
 
-    def _status(self, action: str, message: Any, _: float) -> None:
+    def _status(self, action: str, message: GoalStatusArray, _: float) -> None:
         now = time.monotonic()
         for status in message.status_list[-GOALS:]:
             raw = bytes(status.goal_info.goal_id.uuid)
@@ -156,7 +159,7 @@ class Goals(TableView):
             found[key] = (
                 Text(key[:8], style=colours.dim),
                 Text(goal.action),
-                Text(f"{_GLYPHS[goal.state]} {STATES[goal.state]}", style=getattr(colours, _INKS[goal.state])),
+                Text(f"{_GLYPHS[goal.state]} {STATES[goal.state]}", style=getattr(colours, _STATE_COLOURS[goal.state])),
                 Text(ago(span), justify="right"),
                 Text(goal.feedback, style=colours.dim),
             )
@@ -276,7 +279,7 @@ class Goals(TableView):
             self.do_new()
             return
         name = self._sent_to
-        type_: Any = registry.interface_class(self._types[name])
+        type_: type[ActionType[Message, Message, Message]] = registry.interface_class(self._types[name])
         if fault := form.first_fault():
             self.say(fault, bad=True)
             return
@@ -295,10 +298,10 @@ class Goals(TableView):
         self.do_back()
 
     def closed(self) -> None:
-        for taps in self._taps.values():
-            for tap in taps:
-                tap.close()
-        self._taps.clear()
+        for monitors in self._monitors.values():
+            for monitor in monitors:
+                monitor.close()
+        self._monitors.clear()
 
 
 VIEW = Goals

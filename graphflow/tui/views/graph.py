@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from rich.style import Style
 from rich.text import Text
@@ -27,7 +26,7 @@ SIDEWAYS = 20
 """Columns scrolled by one press of an arrow key."""
 
 
-class Boxes(LineView):
+class Boxes(LineView[Text]):
     """The drawing, which scrolls both ways."""
 
     wide = 0
@@ -77,13 +76,13 @@ class Graph(View):
         self._chosen = ""
         self._picture = Picture((), (), ())
         self._drawing = Drawing([])
-        self._drawn: Any = None
+        self._drawn: object = None
 
     def compose(self) -> ComposeResult:
         yield self._boxes
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._boxes
 
     @property
@@ -102,35 +101,37 @@ class Graph(View):
         if live is None or live.context is None:
             return
         live.want("numbers")
-        made = picture(live.cache, self.about, self._collapsed, everything=self._everything)
-        if len(made.nodes) + len(made.topics) > BOXES and not self._collapsed:
-            spaces = frozenset(n.rpartition("/")[0] for n in made.nodes if n.count("/") > 1)
+        current = picture(live.cache, self.about, self._collapsed, everything=self._everything)
+        if len(current.nodes) + len(current.topics) > BOXES and not self._collapsed:
+            spaces = frozenset(n.rpartition("/")[0] for n in current.nodes if n.count("/") > 1)
             if spaces:
                 self._collapsed = spaces
-                made = picture(live.cache, self.about, self._collapsed, everything=self._everything)
-        bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
-        labels = {t: f"{'✖ ' if t in bad else ''}{_label(t, live.numbers.published(t))}" for t in made.topics}
-        wanted = (made, tuple(labels.values()), self._chosen, self.colours)
+                current = picture(live.cache, self.about, self._collapsed, everything=self._everything)
+        bad = {arrow.source for arrow in current.arrows if arrow.is_bad}
+        labels = {t: f"{'✖ ' if t in bad else ''}{_label(t, live.numbers.published(t))}" for t in current.topics}
+        wanted = (current, tuple(labels.values()), self._chosen, self.colours)
         if wanted == self._drawn:
             return
-        self._drawn, self._picture = wanted, made
-        self._draw(made, labels)
+        self._drawn, self._picture = wanted, current
+        self._draw(current, labels)
 
-    def _draw(self, made: Picture, labels: dict[str, str]) -> None:
+    def _draw(self, current: Picture, labels: dict[str, str]) -> None:
         boxes, colours = self._boxes, self.colours
         top, left = boxes.scroll_offset.y, boxes.scroll_offset.x
-        if not made.nodes:
+        if not current.nodes:
             boxes.replace([Text("no nodes yet", style=colours.dim)])
             return
-        if len(made.nodes) + len(made.topics) > BOXES:
-            many = f"{len(made.nodes)} nodes are too many to draw"
+        if len(current.nodes) + len(current.topics) > BOXES:
+            many = f"{len(current.nodes)} nodes are too many to draw"
             text = f"{many}; give a namespace: {shown(self.console.prefix)} : graph /NAME"
             boxes.replace([Text(text, style=colours.warn)])
             return
-        parts = {n: Box((n,)) for n in made.nodes} | {t: Box(tuple(labels[t].split("\n")), False) for t in made.topics}
-        self._drawing = draw(parts, ((arrow.source, arrow.target) for arrow in made.arrows))
+        parts = {n: Box((n,)) for n in current.nodes} | {
+            t: Box(tuple(labels[t].split("\n")), False) for t in current.topics
+        }
+        self._drawing = draw(parts, ((arrow.source, arrow.target) for arrow in current.arrows))
         boxes.wide = max((sum(len(cell.text) for cell in row) for row in self._drawing.rows), default=0)
-        boxes.replace(_rows(self._drawing, made, self._chosen, colours))
+        boxes.replace(_rows(self._drawing, current, self._chosen, colours))
         boxes.scroll_to(x=left, y=top, animate=False, immediate=True)
 
     def _names(self) -> list[str]:
@@ -196,10 +197,10 @@ def _label(topic: str, rate: float | None) -> str:
     return topic if not rate else f"{topic}\n{rate:.1f} Hz"
 
 
-def _rows(drawing: Drawing, made: Picture, chosen: str, colours: Colours) -> Iterator[Text]:
+def _rows(drawing: Drawing, current: Picture, chosen: str, colours: Colours) -> Iterator[Text]:
     """Return the drawing as one text per row."""
-    topics = set(made.topics)
-    bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
+    topics = set(current.topics)
+    bad = {arrow.source for arrow in current.arrows if arrow.is_bad}
 
     def style(cell: Cell) -> Style:
         if cell.box:

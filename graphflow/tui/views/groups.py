@@ -27,9 +27,9 @@ from graphflow.tui.view import View
 from graphflow.tui.widgets.dialogs import Item, Pick
 from graphflow.tui.widgets.line_view import LineView
 
-ANSWER_LIMIT = 2.0
+REPLY_TIMEOUT = 2.0
 """Seconds that a node has to change its groups."""
-JUDGED_AFTER, RESTARTED_WITHIN = 2.5, 12.0
+INEFFECTIVE_AFTER, RESTARTED_WITHIN = 2.5, 12.0
 """Seconds after which a change counts as ineffective; longer if it restarts the node."""
 SLOTS = 12
 """Maximum slots of a group drawn individually."""
@@ -40,15 +40,15 @@ class Row(NamedTuple):
 
     text: Text
     place: str = ""
-    told: Record | None = None
+    record: Record | None = None
     """The log record of the line, if only /rosout knows its source location."""
 
 
-class RowLines(LineView):
+class RowLines(LineView[Row]):
     """Lines that may refer to source locations."""
 
     def draw(self, row: Row) -> Iterable[tuple[str, Style]]:
-        return super().draw(row.text)
+        return self.draw_text(row.text)
 
 
 Ring = frozenset[tuple[str, str]]
@@ -91,7 +91,7 @@ class Groups(View):
         self._graph = WaitGraph()
         self._fixes: list[list[Fix]] = []
         """The changes that would end each deadlock."""
-        self._made: list[Fix] = []
+        self._changes: list[Fix] = []
         """Changes made here that are not in the graph file yet."""
         self._applied: Applied | None = None
         """The last change, until its effect is known."""
@@ -105,7 +105,7 @@ class Groups(View):
         yield self._lines
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._lines
 
     @property
@@ -137,9 +137,9 @@ class Groups(View):
         self._fixes = [fixes(deadlock, report.graph) for deadlock in self._deadlocks]
         self._is_freed &= not self._deadlocks
         if self._applied is not None:
-            self._judge(self._applied, live.asked_at, now)
+            self._evaluate(self._applied, live.requested_at, now)
         kept = self._lines.cursor
-        rows = [*self._outcome_rows(), *self._deadlock_rows(), *self._race_rows(), *self._made_rows()]
+        rows = [*self._outcome_rows(), *self._deadlock_rows(), *self._race_rows(), *self._change_rows()]
         rows += self._group_rows(report)
         top = self._lines.scroll_offset.y
         self._lines.replace(rows)
@@ -150,13 +150,13 @@ class Groups(View):
         """The headlines of the deadlocks, by their members and the queues that those wait for."""
         return {_key(deadlock): headline(deadlock, self._graph) for deadlock in self._deadlocks}
 
-    def _judge(self, applied: Applied, asked_at: float, now: float) -> None:
+    def _evaluate(self, applied: Applied, requested_at: float, now: float) -> None:
         """Determine the effect of a change, once there is a report newer than it."""
-        if asked_at <= applied.at:
+        if requested_at <= applied.at:
             return
         rings = self._rings()
         ended = [text for ring, text in applied.rings.items() if ring not in rings]
-        limit = RESTARTED_WITHIN if isinstance(applied.fix, Thread) else JUDGED_AFTER
+        limit = RESTARTED_WITHIN if isinstance(applied.fix, Thread) else INEFFECTIVE_AFTER
         if not ended and now - applied.at < limit:
             return
         self._applied = None
@@ -211,7 +211,7 @@ class Groups(View):
                 )
             )
             return
-        yield Row(Text("   no key ends it while it runs; what does, in the code:", style=colours.warn))
+        yield Row(Text("   no key ends it at run time; the code must change:", style=colours.warn))
         for remedy in remedies(deadlock, graph) or ["see the report: r"]:
             for line in remedy.split("\n"):
                 yield Row(Text(f"   {plain_text(line)}", style=colours.text))
@@ -224,8 +224,8 @@ class Groups(View):
             place = _place(activity)
             bar = ("   ┌▶ ", colours.bad) if i == 0 else ("   │  ", colours.bad)
             yield Row(Text.assemble(bar, (title(activity), colours.node(activity.node))), place)
-            held = group_of(activity, graph)
-            holds = f"holds group '{held}', " if held else ""
+            group_name = group_of(activity, graph)
+            holds = f"holds group '{group_name}', " if group_name else ""
             where = f"   {_short(place)} in {activity.function}" if place else ""
             since = f"for {activity.age:.1f} s"
             text = f"{holds}waits {since} for {wanted(edge, graph)}"
@@ -242,7 +242,7 @@ class Groups(View):
     def _outcome_rows(self) -> Iterator[Row]:
         """Return the effect of the last change, above the remaining deadlocks, which look like those before it."""
         colours, is_over = self.colours, not self._deadlocks
-        if self._made and self._outcome:
+        if self._changes and self._outcome:
             yield Row(
                 Text(
                     f" {'✔' if is_over else '●'} {self._outcome}",
@@ -256,14 +256,14 @@ class Groups(View):
         for report in self.hub.logs.races:
             for i, line in enumerate(report):
                 text = f" ⇄ {line.text}" if i == 0 else f"   {line.text.strip()}"
-                yield Row(Text(text, style=colours.warn if i == 0 else colours.text), told=report[0])
+                yield Row(Text(text, style=colours.warn if i == 0 else colours.text), record=report[0])
             yield Row(Text(""))
 
-    def _made_rows(self) -> Iterator[Row]:
+    def _change_rows(self) -> Iterator[Row]:
         colours = self.colours
-        if not self._made:
+        if not self._changes:
             return
-        for fix in self._made:
+        for fix in self._changes:
             yield Row(Text(f"   done here: {fix.title}; until the graph stops", style=colours.text))
         keep = (
             ("   w  ", colours.accent),
@@ -275,65 +275,59 @@ class Groups(View):
 
     def _group_rows(self, report: concurrency.ConcurrencyReport) -> Iterator[Row]:
         colours, graph = self.colours, self._graph
-        dead = {name for d in self._deadlocks for name in (*d.ring, *d.victims)}
-        by_node: dict[str, list[GroupView]] = {}
-        for group in graph.groups.values():
-            if group.name and (not self.about or group.node == self.about):
-                by_node.setdefault(group.node, []).append(group)
         for stall in report.stalls:
-            for line in stall.split("\n"):
-                yield Row(Text(f" {plain_text(line)}", style=colours.warn))
-        idle = 0
-        for node in sorted(by_node):
-            for group in sorted(by_node[node], key=lambda g: g.name):
-                holders = [a for a in graph.activities.values() if group.id in a.holds]
-                queues = [q for q in graph.queues.values() if group.id in q.needs and q.waiting]
-                if not holders and not queues and not self._everything:
-                    idle += 1
-                    continue
-                limit = "no limit" if group.limit is None else f"limit {group.limit}"
-                head = Text.assemble(
-                    (f" {node}", colours.node(node)),
-                    (f"  {group.name} ", colours.strong),
-                    (f"{limit} ", colours.dim),
-                )
-                head.append(_slots(len(holders), group.limit), style=colours.bad if queues else colours.good)
-                yield Row(head)
-                for activity in holders:
-                    yield self._activity_row(activity, "holds it", activity.id in dead)
-                for queue in queues:
-                    lost = f", {queue.dropped} dropped" if queue.dropped else ""
-                    yield Row(Text(f"     {queue.label}: {queue.waiting} queued{lost}", style=colours.warn))
-        others = [
+            yield from (Row(Text(f" {plain_text(line)}", style=colours.warn)) for line in stall.split("\n"))
+        groups = [g for g in graph.groups.values() if g.name and self._is_about(g.node)]
+        drawn = [list(self._rows_of(group)) for group in sorted(groups, key=lambda g: (g.node, g.name))]
+        for rows in drawn:
+            yield from rows
+        ungrouped = [
             a
             for a in graph.activities.values()
-            if a.wait is not FREE
-            and not group_of(a, graph)
-            and not a.is_inner
-            and (not self.about or a.node == self.about)
+            if a.wait is not FREE and not group_of(a, graph) and not a.is_inner and self._is_about(a.node)
         ]
-        if others:
+        if ungrouped:
             yield Row(Text(" in no group", style=colours.dim))
-        for activity in sorted(others, key=lambda a: -a.age):
-            yield self._activity_row(activity, "", activity.id in dead)
-        if not (self._deadlocks or self.hub.logs.races or self._made):
-            yield Row(Text(" no deadlock; for updates that are lost: graphflow up --races", style=colours.dim))
-        if not by_node and not others:
-            yield Row(Text(" no groups: each handler queues behind itself only", style=colours.dim))
-        elif idle:
-            yield Row(
-                Text(
-                    f" {idle} group{'s' if idle > 1 else ''} idle; a shows {'them' if idle > 1 else 'it'}",
-                    style=colours.dim,
-                )
-            )
+        yield from (self._activity_row(activity) for activity in sorted(ungrouped, key=lambda a: -a.age))
+        yield from (Row(Text(f" {text}", style=colours.dim)) for text in self._summary(drawn, bool(ungrouped)))
 
-    def _activity_row(self, activity: ActivityView, deed: str, is_dead: bool) -> Row:
+    def _is_about(self, node: str) -> bool:
+        return not self.about or node == self.about
+
+    def _rows_of(self, group: GroupView) -> Iterator[Row]:
+        """Draw a group with its holders and queues; nothing if it is idle and idle groups are hidden."""
+        colours, graph = self.colours, self._graph
+        holders = [a for a in graph.activities.values() if group.id in a.holds]
+        queues = [q for q in graph.queues.values() if group.id in q.needs and q.waiting]
+        if not (holders or queues or self._everything):
+            return
+        head = Text.assemble(
+            (f" {group.node}", colours.node(group.node)),
+            (f"  {group.name} ", colours.strong),
+            ("no limit " if group.limit is None else f"limit {group.limit} ", colours.dim),
+        )
+        head.append(_slots(len(holders), group.limit), style=colours.bad if queues else colours.good)
+        yield Row(head)
+        yield from (self._activity_row(activity, " holds it") for activity in holders)
+        for queue in queues:
+            lost = f", {queue.dropped} dropped" if queue.dropped else ""
+            yield Row(Text(f"     {queue.label}: {queue.waiting} queued{lost}", style=colours.warn))
+
+    def _summary(self, groups: list[list[Row]], has_ungrouped: bool) -> Iterator[str]:
+        if not (self._deadlocks or self.hub.logs.races or self._changes):
+            yield "no deadlock; for lost updates: graphflow up --races"
+        idle = sum(not rows for rows in groups)
+        if not groups and not has_ungrouped:
+            yield "no groups: each handler queues behind itself only"
+        elif idle:
+            yield f"{idle} group{'s' if idle > 1 else ''} idle; a shows {'them' if idle > 1 else 'it'}"
+
+    def _activity_row(self, activity: ActivityView, note: str = "") -> Row:
         colours = self.colours
+        is_dead = any(activity.id in (*d.ring, *d.victims) for d in self._deadlocks)
         place = _place(activity)
         text = Text.assemble((f"     {activity.label}", colours.bad if is_dead else colours.text))
-        if deed:
-            text.append(f" {deed}", style=colours.dim)
+        text.append(note, style=colours.dim)
         waits = concurrency.words(activity.wait, self._graph)
         if waits:
             text.append(
@@ -349,7 +343,7 @@ class Groups(View):
     # actions
 
     def offers(self, action: Action) -> bool:
-        has = {"fix": any(self._fixes), "choose_fix": sum(map(len, self._fixes)) > 1, "write": bool(self._made)}
+        has = {"fix": any(self._fixes), "choose_fix": sum(map(len, self._fixes)) > 1, "write": bool(self._changes)}
         return action.hint and has.get(action.name, True)
 
     def _refusal(self) -> str:
@@ -390,10 +384,10 @@ class Groups(View):
             wanted = fix.requests
 
             def ask(graph: Graph) -> None:
-                concurrency.change_groups(graph, graph.node(fix.node), wanted, ANSWER_LIMIT)
+                concurrency.change_groups(graph, graph.node(fix.node), wanted, REPLY_TIMEOUT)
 
             await live.ask(ask)
-        self._made.append(fix)
+        self._changes.append(fix)
         self._outcome = "The node is being started again ..." if isinstance(fix, Thread) else ""
         self._applied = Applied(fix, rings, time.monotonic())
         self.did(fix.command)
@@ -401,7 +395,7 @@ class Groups(View):
             self.hub.announce(fix.command.removeprefix("graphflow "))
 
     def do_write(self) -> None:
-        if not self._made:
+        if not self._changes:
             self.say(
                 "nothing was changed here yet: f or F first" if any(self._fixes) else "nothing was changed here yet"
             )
@@ -409,27 +403,27 @@ class Groups(View):
         from graphflow.graph.edit import with_group
         from graphflow.tui.widgets.file_changes import write_nodes
 
-        made, graph = list(self._made), self._graph
+        changes, graph = list(self._changes), self._graph
 
         def change(text: str, keys: dict[str, tuple[str, ...]]) -> str:
-            for fix in made:
-                said = graph.regrouping(fix.node).groups
-                text = with_group(text, keys[fix.node], fix.group, fix.handlers, said, fix.settings)
+            for fix in changes:
+                groups = graph.regrouping(fix.node).groups
+                text = with_group(text, keys[fix.node], fix.group, fix.handlers, groups, fix.settings)
             return text
 
-        write_nodes(self.console, {fix.node for fix in made}, change, "the groups changed here", self._made.clear)
+        write_nodes(self.console, {fix.node for fix in changes}, change, "the groups changed here", self._changes.clear)
 
     def do_source(self) -> None:
         rows = [*self._lines.whole_rows]
         row: Row | None = self._lines.chosen
-        if row is None or not (row.place or row.told):
-            row = next((r for r in rows if r.place or r.told), None)
+        if row is None or not (row.place or row.record):
+            row = next((r for r in rows if r.place or r.record), None)
         if row is None:
             self.say("nothing here waits in a line of source")
-        elif row.told is None:
+        elif row.record is None:
             self.open("source", row.place)
         else:
-            report = row.told
+            report = row.record
             self.work(lambda: self._open_report(report), group="source")
 
     async def _open_report(self, report: Record) -> None:
@@ -449,8 +443,7 @@ class Groups(View):
 
     def do_copy(self) -> None:
         best = next((found[0].command for found in self._fixes if found), "")
-        made = best or self.console.last_shell
-        self.console.copy(made)
+        self.console.copy(best or self.console.last_shell)
 
 
 def _place(activity: ActivityView) -> str:

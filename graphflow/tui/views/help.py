@@ -23,7 +23,7 @@ KEYS_WIDTH = 22
 _SCROLL = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 
-class KeyLines(LineView):
+class KeyLines(LineView[Text]):
     """Keys in a column, and their descriptions, wrapped if needed."""
 
     def hanging(self, row: Text) -> int | None:
@@ -55,7 +55,7 @@ class Help(View):
 
     def _show(self, wanted: str) -> None:
         rows = list(self._rows(wanted.lower().strip()))
-        self._lines.replace(rows or [Text(f"nothing here has {wanted!r}", style=self.colours.warn)])
+        self._lines.replace(rows or [Text(f"no match for {wanted!r}", style=self.colours.warn)])
         self._lines.scroll_home(animate=False, immediate=True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
@@ -106,7 +106,7 @@ class Help(View):
         return text
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._find
 
 

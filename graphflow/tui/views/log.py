@@ -24,7 +24,7 @@ MORE_ROOM, MORE_INDENT = 60, 2
 """Minimum columns beside the names for a report's further lines; with fewer, they begin at column MORE_INDENT."""
 
 
-class LogLines(LineView):
+class LogLines(LineView[Record]):
     """Records, one line each."""
 
     HAS_SEARCH = False
@@ -73,7 +73,7 @@ class Log(View):
     """What nodes have written."""
 
     NAME = "log"
-    DOC = "what nodes have written: all, one node, or a namespace"
+    DOC = "the logs of all nodes, of one, or of a namespace"
     LEAST_WIDTH = 40
     EVERY = 0.1
     ACTIONS = (
@@ -175,7 +175,7 @@ class Log(View):
         if self._goes_to:
             self._go_to_record()
 
-    def asked_again(self, content: Content) -> None:
+    def reopened(self, content: Content) -> None:
         self._goes_to = str(content.options.get("at", ""))
         self._go_to_record()
 
@@ -246,7 +246,7 @@ class Log(View):
         self._lines.focus()
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._lines
 
     def chosen(self) -> dict[str, str]:
@@ -287,7 +287,7 @@ class Log(View):
         if found is None and self.hub.live is not None:
             found = await self.hub.live.source_of(record.stamp, record.text)
         if found is None:
-            self.say("nobody has told where this line was written: it is older than this console, or a print")
+            self.say("the source of this line is unknown: it is older than this console, or printed")
         else:
             self.open("source", found)
 
@@ -315,7 +315,7 @@ class Log(View):
         self._lines.wrap(not self._lines.wraps)
 
     def do_mute(self) -> None:
-        self.console.deeds.do_mute_node()
+        self.console.commands.do_mute_node()
 
     def do_only(self) -> None:
         record = self._chosen()

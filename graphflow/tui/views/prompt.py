@@ -41,12 +41,12 @@ class Prompt(View):
     EVERY = 0.1
     ACTIONS = (
         Action("complete", "complete", keys=("tab",), hint=True),
-        Action("interrupt_it", "end what runs", keys=("ctrl+c",), hint=True),
+        Action("interrupt_it", "interrupt the command", keys=("ctrl+c",), hint=True),
     )
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._lines = LineView(10_000, wraps=True, copies=True)
+        self._lines = LineView[str | Text](10_000, wraps=True, copies=True)
         self._input = Input(placeholder="a command, such as: topic list", classes="line")
         self._completer = Completer(hub)
         self._runs_at_once = bool(self.options.pop("run", False))
@@ -83,7 +83,7 @@ class Prompt(View):
         return dropped + ("running, ^c ends it" if self._process is not None else "")
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._input
 
     def look(self, now: float) -> None:
@@ -105,14 +105,14 @@ class Prompt(View):
         self.hub.history.add(text)
         self._at = len(self.hub.history.lines)
         if text in ("clear", "exit", "quit"):
-            self._lines.replace([]) if text == "clear" else self.console.deeds.do_close_pane()
+            self._lines.replace([]) if text == "clear" else self.console.commands.do_close_pane()
             return
         self._run(text)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         if event.value == ":":  # as in any prompt: no verb begins with it
             self._input.value = ""
-            self.console.deeds.do_command()
+            self.console.commands.do_command()
 
     def on_key(self, event: events.Key) -> None:
         if event.key in ("up", "down") and self._input.has_focus:

@@ -23,7 +23,7 @@ from graphflow.tui.widgets.line_view import LineView
 
 LONGEST = 1 << 20
 """Maximum bytes shown of a file."""
-LOOKED_AT = 5000
+FILES_BOUND = 5000
 """Maximum files searched for one known only by name."""
 
 
@@ -45,7 +45,7 @@ class Source(View):
         name, _, line = self.about.rpartition(":")
         self._line = int(line) if line.isdecimal() else 1
         self._file = find_file(name if line.isdecimal() else self.about, self._roots())
-        self._lines = LineView(50_000)
+        self._lines = LineView[Text](50_000)
         self._lines.follows = False
 
     def _roots(self) -> list[Path]:
@@ -56,7 +56,7 @@ class Source(View):
         yield self._lines
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._lines
 
     def on_mount(self) -> None:
@@ -103,7 +103,7 @@ class Source(View):
         edit(self, self._file, at)
 
     def do_close(self) -> None:
-        self.console.deeds.do_close_pane()
+        self.console.commands.do_close_pane()
 
     def do_copy(self) -> None:
         place = f"{self._file or self.about}:{(self._lines.cursor or 0) + 1}"
@@ -146,7 +146,7 @@ def find_file(name: str, roots: list[Path]) -> Path | None:
         for looked, found in enumerate(root.rglob("*.py")):
             if found.name == name and ".venv" not in found.parts:
                 return found
-            if looked > LOOKED_AT:
+            if looked > FILES_BOUND:
                 break
     return None
 

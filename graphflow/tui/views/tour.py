@@ -42,8 +42,8 @@ class Tour(Groups):
         super().look(now)
         colours = self.colours
         text = Text(f"{self.options.get('title', '')}\n\n", style=colours.strong)
-        said, keys = self._advice()
-        text.append(f"{said}\n", style=colours.text)
+        advice, keys = self._advice()
+        text.append(f"{advice}\n", style=colours.text)
         for key, what in [*keys, ("q", "leave the tour; its graph goes down")]:
             text.append(f"  {key}", style=colours.accent)
             text.append(f"  {what}\n", style=colours.text)
@@ -58,19 +58,19 @@ class Tour(Groups):
         if fixed:
             return f"Repaired, and it runs; see the log. What its file now says:\n{fixed}", [go_on]
         if self._deadlocks and any(self._fixes):
-            return "It stands still. The ring below says who waits for whom, and in which line.", [
+            return "The nodes are stuck. The ring below shows who waits for whom, and in which line.", [
                 ("f", f"end it, while the graph runs: {next(found[0].title for found in self._fixes if found)}"),
                 ("enter", "look at the line of source"),
             ]
         if self._deadlocks:
             return (
-                "It stands still. The ring below says why, and what ends it in the code.",
+                "The nodes are stuck. The ring below shows why, and which change of the code ends it.",
                 [
                     ("enter", "look at the line of source"),
                     repaired,
                 ],
             )
-        if self._is_freed and self._made:
+        if self._is_freed and self._changes:
             return "It moves again; see the log. The change lasts until the graph stops.", [
                 ("w", "keep it: write it into the graph file"),
                 go_on,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol
 
 from textual.app import ComposeResult
 from textual.widgets import Static
@@ -41,6 +41,14 @@ TURNS = {"g": 0, "t": 45, "r": 90, "e": 135, "d": 180, "c": -135, "v": -90, "b":
 TURN_LABEL = f"{''.join(TURNS)} turn"
 
 
+class Pose(Protocol):
+    """A pose from turtlesim, whose package depends on the ROS distribution."""
+
+    x: float
+    y: float
+    theta: float
+
+
 class Turtles(View):
     """The turtles of a turtlesim, live."""
 
@@ -66,7 +74,7 @@ class Turtles(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._taps: dict[str, TopicMonitor] = {}
+        self._monitors: dict[str, TopicMonitor] = {}
         self._drawing = Drawing()
         self._canvas = TurtleCanvas(self._drawing)
         self._driven = self.about
@@ -82,7 +90,7 @@ class Turtles(View):
 
     @property
     def title(self) -> str:
-        return f"turtle {self._driven}" if len(self._taps) > 1 and self._driven else "turtle"
+        return f"turtle {self._driven}" if len(self._monitors) > 1 and self._driven else "turtle"
 
     @property
     def note(self) -> str:
@@ -93,16 +101,16 @@ class Turtles(View):
 
     def look(self, now: float) -> None:
         live = self.hub.live
-        self._canvas.display, self._empty.display = bool(self._taps), not self._taps
+        self._canvas.display, self._empty.display = bool(self._monitors), not self._monitors
         if live is None or live.context is None:
             return
         if live.changes != self._seen:
             self._seen = live.changes
             self._find()
         self._drawing.now = now
-        for tap in self._taps.values():
-            tap.look()
-        if self._taps and now > self._picture_at:
+        for monitor in self._monitors.values():
+            monitor.look()
+        if self._monitors and now > self._picture_at:
             self._picture_at = now + PICTURE_EVERY
             self.work(self._take_picture, group="picture")
         self._canvas.redraw()
@@ -118,26 +126,22 @@ class Turtles(View):
         }
         published = {e.name for e in self.hub.live.cache.endpoints(Kind.PUBLISHER)}
         wanted = dict(list({n: t for n, t in wanted.items() if t in published}.items())[:TURTLES])
-        for name in [n for n in self._taps if n not in wanted]:
-            self._taps.pop(name).close()
+        for name in [n for n in self._monitors if n not in wanted]:
+            self._monitors.pop(name).close()
             self._drawing.turtles.pop(name, None)
         for name, topic in wanted.items():
-            if name not in self._taps:
-                tap = self._taps[name] = TopicMonitor(self.hub.live, topic)
-                tap.heard = self._heard(name)
-                self.hub.live.publisher(
-                    Twist, f"/{name}/cmd_vel"
-                )  # early, so that the heading is known at the first key
-        if self._wanted in self._taps:
+            if name not in self._monitors:
+                monitor = self._monitors[name] = TopicMonitor(self.hub.live, topic)
+                monitor.on_message = partial(self._received, name)
+                # Early, so that the simulator has discovered the publisher by the first key.
+                self.hub.live.publisher(Twist, f"/{name}/cmd_vel")
+        if self._wanted in self._monitors:
             self._driven, self._wanted = self._wanted, ""
-        if self._driven not in self._taps and self._taps:
-            self._driven = self.about if self.about in self._taps else next(iter(self._taps))
+        if self._driven not in self._monitors and self._monitors:
+            self._driven = self.about if self.about in self._monitors else next(iter(self._monitors))
 
-    def _heard(self, name: str) -> Callable[[Any, float], None]:
-        def heard(pose: Any, _: float) -> None:
-            self._drawing.moved(name, pose.x, pose.y, pose.theta, JUMP)
-
-        return heard
+    def _received(self, name: str, pose: Pose, _: float) -> None:
+        self._drawing.moved(name, pose.x, pose.y, pose.theta, JUMP)
 
     async def _take_picture(self) -> None:
         """Fetch a picture: strokes from before the view was opened, and changes that poses do not show."""
@@ -162,9 +166,9 @@ class Turtles(View):
         self._drawing.take(picture, began)
 
     def closed(self) -> None:
-        for tap in self._taps.values():
-            tap.close()
-        self._taps.clear()
+        for monitor in self._monitors.values():
+            monitor.close()
+        self._monitors.clear()
 
     # driving
 
@@ -203,9 +207,9 @@ class Turtles(View):
         self._drive(0.0, -ANGULAR)
 
     def do_turn(self, degrees: str) -> None:
-        self.work(lambda: self._turned(math.radians(float(degrees))), group="turn")
+        self.work(lambda: self._turn_to(math.radians(float(degrees))), group="turn")
 
-    async def _turned(self, theta: float) -> None:
+    async def _turn_to(self, theta: float) -> None:
         from graphflow.msgs import registry
 
         live = self.hub.live
@@ -223,13 +227,13 @@ class Turtles(View):
             await goal.result()
 
     def do_stop_turning(self) -> None:
-        self.work(self._nothing, group="turn")
+        self.work(self._do_nothing, group="turn")
 
-    async def _nothing(self) -> None:
+    async def _do_nothing(self) -> None:
         """Do nothing; replaces a turn under way, which cancels it."""
 
     def do_next_turtle(self) -> None:
-        names = list(self._taps)
+        names = list(self._monitors)
         if names:
             at = names.index(self._driven) + 1 if self._driven in names else 0
             self._driven = names[at % len(names)]

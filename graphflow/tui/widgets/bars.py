@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from rich.segment import Segment
@@ -15,6 +15,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from graphflow.tui.commands.actions import console_actions, shown
+from graphflow.tui.feeds.supervision import NodeRow
 
 MESSAGE_SECONDS = 6.0
 """Seconds for which a message replaces the hints."""
@@ -51,7 +52,7 @@ MARKS = {
 }
 
 
-def word_of(row: Mapping[str, Any], stuck: Container[str]) -> str:
+def displayed_state(row: NodeRow, stuck: Container[str]) -> str:
     """Return the state of a node for display: that of its process, of its lifecycle, or `deadlock`.
 
     Args:
@@ -60,7 +61,7 @@ def word_of(row: Mapping[str, Any], stuck: Container[str]) -> str:
     """
     if row["node"] in stuck and row["state"] in ("ready", "unresponsive"):
         return "deadlock"
-    return str(row.get("lifecycle") or row["state"])
+    return row["lifecycle"] or row["state"]
 
 
 class Bar(Widget):
@@ -114,7 +115,7 @@ class Hints(Bar):
         return found
 
     def _shown(self, width: int) -> list[tuple[str, str, str]]:
-        """Return key and title of the focused view's actions, as far as they fit."""
+        """Return name, key and title of the focused view's actions, as far as they fit."""
         view = self.console_app.focused_view
         room = width - 1
         found = []
@@ -195,7 +196,7 @@ class Status(Bar):
             return [("✖ supervisor gone ", colours.bad)]
         live, logs = app.hub.live, app.hub.logs
         stuck = live.stuck_nodes if live is not None else ()
-        counts = Counter(word_of(row, stuck) for row in supervision.nodes.values())
+        counts = Counter(displayed_state(row, stuck) for row in supervision.nodes.values())
         for state, mark in MARKS.items():
             if counts[state]:
                 found.append((f"{mark.glyph}{counts[state]} ", getattr(colours, mark.colours)))
@@ -226,16 +227,16 @@ class Status(Bar):
         for number, (text, _) in self._windows(self.size.width):
             at += len(text)
             if event.x < at:
-                self.console_app.deeds.go_to_window(number)
+                self.console_app.commands.go_to_window(number)
                 return
         from_right = self.size.width - event.x
         leave = len(self._keys()[2][0] + self._keys()[3][0])
         if from_right <= leave:
-            self.console_app.deeds.do_detach()
+            self.console_app.commands.do_detach()
         elif from_right <= leave + len(self._keys()[0][0] + self._keys()[1][0]):
-            self.console_app.deeds.do_help()
+            self.console_app.commands.do_help()
         elif self.console_app.deadlocks or self.console_app.hub.logs.races:
-            self.console_app.deeds.do_groups()
+            self.console_app.commands.do_groups()
 
 
 def _width(pieces: Iterable[tuple[str, Style]]) -> int:

@@ -16,7 +16,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.colours import Colours, colours_of
 
 WORLD = 11.0889
 """Width and height of turtlesim's world in metres: 500 pixels less one, at 45 per metre."""
@@ -274,8 +274,7 @@ class TurtleCanvas(Widget):
 
     @property
     def _colours(self) -> Colours:
-        colours: Colours = self.app.colours  # type: ignore[attr-defined]
-        return colours
+        return colours_of(self)
 
     def _pen(self, colour: RGB) -> Style:
         """Return a visible colour for a pen: darker on a light background."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import cycle
-from typing import Any
 
 from rich.color import Color as RichColor
 from rich.color import ColorParseError
@@ -13,6 +12,7 @@ from rich.style import Style, StyleType
 from rich.text import Span, Text
 from textual.app import App
 from textual.theme import Theme
+from textual.widget import Widget
 
 DARK = Theme(
     name="graphflow-dark",
@@ -74,6 +74,27 @@ class Colours:
         return (self.dim, self.text, self.warn, self.bad, self.bad)[level]
 
 
+class ThemedApp(App[str]):
+    """An application as the widgets see it: with colours, and a clipboard that works in most terminals."""
+
+    colours: Colours
+
+    def copy(self, text: str, what: str = "") -> None:
+        """Copy a text to the clipboard, and report it.
+
+        Args:
+            what: A description of the text; empty to quote the text itself.
+        """
+        raise NotImplementedError
+
+
+def colours_of(widget: Widget) -> Colours:
+    """Return the styles that a widget draws with."""
+    app = widget.app
+    assert isinstance(app, ThemedApp)
+    return app.colours
+
+
 def recolouring(old: Colours, new: Colours) -> Callable[[Text], None]:
     """Return a function that converts text from the styles of one theme to those of another."""
     names = ("match", "cursor", "bad", "warn", "good", "accent", "strong", "dim", "text")
@@ -87,7 +108,7 @@ def recolouring(old: Colours, new: Colours) -> Callable[[Text], None]:
     return recolour
 
 
-def make_colours(app: App[Any]) -> Colours:
+def make_colours(app: ThemedApp) -> Colours:
     """Derive the styles from the current theme."""
     theme = app.current_theme
     variables = app.get_css_variables()

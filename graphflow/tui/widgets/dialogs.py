@@ -16,6 +16,8 @@ from textual.screen import ModalScreen
 from textual.widgets import Button, Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
+from graphflow.tui.widgets.colours import colours_of
+
 
 class Choice(NamedTuple):
     """One answer to a question."""
@@ -130,12 +132,12 @@ class Pick(ModalScreen[Any]):
             self._found = self._items[:SHOWN]
         options = self.query_one(OptionList)
         options.clear_options()
-        dim = self.app.colours.dim  # type: ignore[attr-defined]
+        dim = colours_of(self).dim
         room = min(100, int(self.app.size.width * 0.95)) - 10
         longest = max((len(item.detail) for item in self._found), default=0)
         widest = max((len(item.text) for item in self._found), default=0)
         width = min(widest, max(room // 2, room - longest - 2))
-        nothing = f"nothing here is called {wanted!r}" if wanted and self._items else self._empty
+        nothing = f"no match for {wanted!r}" if wanted and self._items else self._empty
         options.add_options(
             [Option(_line(item, width, room, dim)) for item in self._found] or [Option(nothing, disabled=True)]
         )

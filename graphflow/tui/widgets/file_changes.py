@@ -40,9 +40,9 @@ def write_nodes(
     except (OSError, GraphflowError) as error:
         console.say(str(error), bad=True)
         return
-    strangers = nodes - set(paths)
-    if strangers:
-        console.say(f"not in the graph file: {', '.join(sorted(strangers))}", bad=True)
+    unknown = nodes - set(paths)
+    if unknown:
+        console.say(f"not in the graph file: {', '.join(sorted(unknown))}", bad=True)
         return
     write_file(console, Path(hub.supervision.run.file), lambda text: change(text, paths), what, written)
 
@@ -63,12 +63,12 @@ def write_file(
         console.say(f"{file.name}: {error}", bad=True)
         return
     if after == before:
-        console.say(f"{file.name} says so already")
+        console.say(f"{file.name} needs no change")
         return
     lines = list(difflib.unified_diff(before.split("\n"), after.split("\n"), file.name, file.name, lineterm="", n=1))
     more = [f"... {len(lines) - DIFF_LINES} lines more"] if len(lines) > DIFF_LINES else []
 
-    def answered(key: str | None) -> None:
+    def on_answer(key: str | None) -> None:
         if key != "w":
             return
         try:
@@ -81,7 +81,8 @@ def write_file(
         console.hub.announce(f"wrote {what} to {file.name}")
 
     question = f"Write {what} to {file.name}?"
-    console.push_screen(Ask(question, [Choice("w", "write")], "\n".join([*lines[2 : DIFF_LINES + 2], *more])), answered)
+    detail = "\n".join([*lines[2 : DIFF_LINES + 2], *more])
+    console.push_screen(Ask(question, [Choice("w", "write")], detail), on_answer)
 
 
 def _must_load(file: Path, text: str) -> None:

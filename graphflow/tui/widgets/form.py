@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from textual.app import ComposeResult
@@ -11,7 +11,7 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.message import Message as Posted
 from textual.widgets import Input, Label
 
-from graphflow.errors import EncodeError
+from graphflow.errors import EncodeError, GraphflowError
 from graphflow.introspect.messages.echo import flow, plain
 from graphflow.markup.source import parse_value
 from graphflow.msgs import registry
@@ -133,10 +133,10 @@ class Form(VerticalScroll):
             at[last] = _value(line.value, types[path], path)
         return found
 
-    def fill(self, values: dict[str, Any]) -> None:
+    def fill(self, values: Mapping[str, object]) -> None:
         """Fill in values as returned by `values`, with defaults elsewhere."""
         for path, _, default in self._fields:
-            value: Any = values
+            value: object = values
             for part in path.split("."):
                 value = value.get(part) if isinstance(value, dict) else None
             line = next(line for line in self.query(Input) if line.name == path)
@@ -152,7 +152,7 @@ class Form(VerticalScroll):
             return ""
         self._at = max(0, min(len(self._past), self._at + step))
         self.fill(self._past[self._at] if self._at < len(self._past) else {})
-        return f"{self._at + 1} of {len(self._past)} made before" if self._at < len(self._past) else "the defaults"
+        return f"{self._at + 1} of {len(self._past)} sent before" if self._at < len(self._past) else "the defaults"
 
     def keep(self) -> None:
         """Add the current values to the past messages."""
@@ -175,11 +175,11 @@ def form_for(type_name: str, past: Sequence[dict[str, Any]] = ()) -> Form:
     Raises:
         GraphflowError: The type is not known here.
     """
-    found: Any = registry.interface_class(type_name)
+    found: type[Message] = registry.interface_class(type_name)
     return Form(found, past)
 
 
-def _leaves(message: Any, path: str, depth: int) -> Iterator[tuple[str, str, Any]]:
+def _leaves(message: Message, path: str, depth: int) -> Iterator[tuple[str, str, object]]:
     for field in message.SCHEMA.fields:
         value = getattr(message, field.name)
         where = f"{path}.{field.name}" if path else field.name
@@ -189,15 +189,15 @@ def _leaves(message: Any, path: str, depth: int) -> Iterator[tuple[str, str, Any
             yield where, str(field.type), plain(value)
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     return value if isinstance(value, str) else flow(value)
 
 
-def _value(text: str, type_name: str, path: str) -> Any:
+def _value(text: str, type_name: str, path: str) -> object:
     if type_name in ("string", "wstring"):
         return text
     try:
         value = parse_value(text)
-    except Exception as error:  # errors of the YAML reader
+    except GraphflowError as error:
         raise EncodeError(f"{path}: {error}") from None
     return float(value) if type_name.startswith("float") and type(value) is int else value

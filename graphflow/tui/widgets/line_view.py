@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
@@ -18,21 +18,24 @@ from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from graphflow.tui.widgets.colours import Colours
+from graphflow.tui.widgets.colours import Colours, ThemedApp, colours_of
+
+R = TypeVar("R")
+"""A row: text, or whatever `draw` of a subclass can draw."""
 
 KEPT = 20_000
-WRAPS_INTO = 50
+MAX_PARTS = 50
 """Maximum lines of one wrapped row."""
 _INDENT = re.compile(r"[ │]*")
 """The beginning that is repeated on each line of a wrapped row, so that the border of a box continues."""
-_DEEPEST = 24
+_MAX_INDENT = 24
 """Maximum columns of an indent."""
 
 
-class Part(NamedTuple):
+class Part(NamedTuple, Generic[R]):
     """A piece of a row that is too long for one line."""
 
-    row: Any
+    row: R
     start: int
     """The column of the row at which the piece begins."""
     end: int
@@ -49,15 +52,15 @@ def breaks(text: str, width: int, hanging: int | None = None) -> Iterator[tuple[
     """
     found = _INDENT.match(text)
     indent = hanging if hanging is not None else found.end() if found else 0
-    if indent > (min(_DEEPEST, width // 2) if hanging is None else width // 2):
+    if indent > (min(_MAX_INDENT, width // 2) if hanging is None else width // 2):
         indent = 0
     if cell_len(text) != len(text):  # columns are not characters: cut where the line is full
-        rest = range(width, min(cell_len(text), width * WRAPS_INTO), width - indent)
+        rest = range(width, min(cell_len(text), width * MAX_PARTS), width - indent)
         yield 0, width, 0
         yield from ((at, at + width - indent, indent) for at in rest)
         return
     start, room = 0, width
-    for _ in range(WRAPS_INTO):
+    for _ in range(MAX_PARTS):
         if len(text) - start <= room:
             yield start, len(text), indent if start else 0
             return
@@ -67,7 +70,7 @@ def breaks(text: str, width: int, hanging: int | None = None) -> Iterator[tuple[
         start, room = end + (text[end] == " "), width - indent
 
 
-class LineView(ScrollView, can_focus=True):
+class LineView(ScrollView, Generic[R], can_focus=True):
     """Lines that grow at the end, where the view follows them until the user scrolls up.
 
     Args:
@@ -92,43 +95,46 @@ class LineView(ScrollView, can_focus=True):
     HAS_SEARCH: ClassVar[bool] = True
     """Whether `/` searches the lines; views with a filter of their own need no search."""
 
-    class Wanted(Message):
+    class SearchRequested(Message):
         """The user requests a search."""
 
-        def __init__(self, lines: LineView) -> None:
+        def __init__(self, lines: LineView[Any]) -> None:
             super().__init__()
             self.lines = lines
 
     def __init__(self, bound: int = KEPT, *, wraps: bool = False, copies: bool = False) -> None:
         super().__init__()
         self.copies = copies
-        self.sought = ""
+        self.search_text = ""
         self.wraps = wraps
         self._wrapped_at = 0
-        self.rows: deque[Any] = deque(maxlen=bound)
+        self.rows: deque[R | Part[R]] = deque(maxlen=bound)
         self.follows = True
         self.cursor: int | None = None
         """The index of the selected row; None if there is none."""
 
     @property
     def colours(self) -> Colours:
-        colours: Colours = self.app.colours  # type: ignore[attr-defined]
-        return colours
+        return colours_of(self)
 
-    def draw(self, row: Any) -> Iterable[tuple[str, Style]]:
+    def draw(self, row: R) -> Iterable[tuple[str, Style]]:
         """Return a row as pieces of text; overridden by views whose rows are not plain text."""
-        if isinstance(row, Text):
-            whole = row.style if isinstance(row.style, Style) else self.colours.text
-            for segment in row.render(self.app.console):  # the style of the whole line is left to the caller
+        return self.draw_text(row if isinstance(row, Text) else str(row))
+
+    def draw_text(self, text: Text | str) -> Iterable[tuple[str, Style]]:
+        """Return a text as pieces of one style each."""
+        if isinstance(text, Text):
+            whole = text.style if isinstance(text.style, Style) else self.colours.text
+            for segment in text.render(self.app.console):  # the style of the whole line is left to the caller
                 yield segment.text, segment.style or whole
         else:
-            yield str(row), self.colours.text
+            yield text, self.colours.text
 
-    def hanging(self, row: Any) -> int | None:
+    def hanging(self, row: R) -> int | None:
         """Return the indent of a row's further lines; None for that of the row."""
         return None
 
-    def replace_last(self, row: Any) -> None:
+    def replace_last(self, row: R) -> None:
         """Replace the last row."""
         while self.rows:
             if self.row_that_begins(len(self.rows) - 1) is not None:
@@ -137,14 +143,14 @@ class LineView(ScrollView, can_focus=True):
             self.rows.pop()
         self.extend([row])
 
-    def extend(self, rows: Iterable[Any]) -> None:
+    def extend(self, rows: Iterable[R]) -> None:
         """Append rows."""
         before = len(self.rows)
         fresh = list(self._parts(rows))
         self.rows.extend(fresh)
         self._moved(lost=before + len(fresh) - len(self.rows))
 
-    def replace(self, rows: Iterable[Any]) -> None:
+    def replace(self, rows: Iterable[R]) -> None:
         """Replace all rows."""
         fresh = list(self._parts(rows))
         self.rows.clear()
@@ -153,28 +159,30 @@ class LineView(ScrollView, can_focus=True):
         self._moved(lost=0)
 
     @property
-    def chosen(self) -> Any:
+    def chosen(self) -> R | None:
         """The selected row; None if there is none."""
         if self.cursor is None or not 0 <= self.cursor < len(self.rows):
             return None
         return _whole(self.rows[self.cursor])
 
     @property
-    def last_row(self) -> Any:
+    def last_row(self) -> R | None:
         """The last row; None if there is none."""
         return _whole(self.rows[-1]) if self.rows else None
 
     @property
-    def whole_rows(self) -> Iterator[Any]:
+    def whole_rows(self) -> Iterator[R]:
         """The rows as they were added, without the splits of wrapping."""
         return (_whole(row) for row in self.rows if not isinstance(row, Part) or row.start == 0)
 
-    def row_that_begins(self, index: int) -> Any:
+    def row_that_begins(self, index: int) -> R | None:
         """Return the row whose first line this is; None for a further line of a row."""
-        row = self.rows[index]
-        return None if isinstance(row, Part) and row.start else _whole(row)
+        line = self.rows[index]
+        if isinstance(line, Part):
+            return None if line.start else line.row
+        return line
 
-    def _parts(self, rows: Iterable[Any]) -> Iterator[Any]:
+    def _parts(self, rows: Iterable[R]) -> Iterator[R | Part[R]]:
         """Convert rows to lines, splitting the long ones if they wrap."""
         width = self._wrapped_at = self.scrollable_content_region.width
         if not self.wraps or not width:
@@ -240,26 +248,26 @@ class LineView(ScrollView, can_focus=True):
         if action == "copy_line":
             return self.copies
         if action == "next_match":
-            return bool(self.sought)
+            return bool(self.search_text)
         return self.HAS_SEARCH or action != "search"
 
     def action_copy_line(self) -> None:
-        if self.chosen is not None:
-            text = "".join(piece for piece, _ in self.draw(self.chosen)).strip()
-            self.app.copy(text, "the line")  # type: ignore[attr-defined]
+        row, app = self.chosen, self.app
+        if row is not None and isinstance(app, ThemedApp):
+            app.copy("".join(piece for piece, _ in self.draw(row)).strip(), "the line")
 
     def action_search(self) -> None:
-        self.post_message(self.Wanted(self))
+        self.post_message(self.SearchRequested(self))
 
     def action_next_match(self, step: int) -> None:
-        self.search(self.sought, step)
+        self.search(self.search_text, step)
 
     def search(self, text: str, step: int) -> bool:
         """Go to the next line with a text, or the previous one; return whether there is one.
 
-        The search ignores case.
+        A text in lower case matches any case.
         """
-        self.sought = text
+        self.search_text = text
         count = len(self.rows)
         at = self.cursor if self.cursor is not None else (count if step < 0 else self.scroll_offset.y - 1)
         for i in range(at + step, count if step > 0 else -1, step) if text else ():
@@ -336,5 +344,5 @@ class LineView(ScrollView, can_focus=True):
         return container.width
 
 
-def _whole(row: Any) -> Any:
+def _whole(row: R | Part[R]) -> R:
     return row.row if isinstance(row, Part) else row

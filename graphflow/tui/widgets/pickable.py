@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 NODES = 100
 """Maximum nodes whose parameters are listed."""
-ANSWER_LIMIT = 1.0
+REPLY_TIMEOUT = 1.0
 
 
 def contents(hub: Hub) -> list[Item]:
@@ -51,7 +51,7 @@ def things(hub: Hub) -> list[Item]:
 def _names(graph: Graph, node: str) -> list[str]:
     from graphflow.introspect.parameters import RemoteParameters
 
-    return RemoteParameters(graph, node, ANSWER_LIMIT).names()
+    return RemoteParameters(graph, node, REPLY_TIMEOUT).names()
 
 
 async def parameters(hub: Hub) -> list[Item]:

@@ -77,7 +77,7 @@ class TableView(View):
     def why_empty(self) -> str:
         """Return the reason why there are no rows."""
         if self._find.value:
-            return f"no row has {self._find.value!r}; esc shows all"
+            return f"no row contains {self._find.value!r}; esc shows all"
         return self.EMPTY
 
     @property
@@ -178,7 +178,8 @@ class TableView(View):
         return tuple(column for column in self.COLUMNS if column in found), rest
 
     def _draw_again(self) -> None:
-        """Redraw all rows: the table caches rows drawn before it has measured them."""
+        """Redraw all rows: the table caches rows that it drew before measuring them."""
+        # An update of any cell clears the cache.
         for key, cells in list(self._shown.items())[:1]:
             self.table.update_cell(key, self.COLUMNS[0], cells[0])
 
@@ -213,7 +214,7 @@ class TableView(View):
             self.table.move_cursor(row=list(self._shown).index(key), animate=False)
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self.table
 
     def do_find_row(self) -> None:

@@ -45,7 +45,7 @@ async def test_keys_that_say(graph: Graph) -> None:
     """The clock, the theme, what to do about a node when none is chosen, what can be copied."""
     async with stage(Content("topics"), graph=graph) as s:
         await s.prefix("t")
-        assert s.console.said[-1].endswith(tuple(f":{n:02d}" for n in range(60)))
+        assert s.console.messages[-1].endswith(tuple(f":{n:02d}" for n in range(60)))
         await s.prefix("T")
         assert s.console.theme == "graphflow-light"
         await s.prefix("T")
@@ -58,7 +58,7 @@ async def test_keys_that_say(graph: Graph) -> None:
             ("right_square_bracket", "nothing has been copied"),
         ):
             await s.prefix(key)
-            assert words in s.console.said[-1], key
+            assert words in s.console.messages[-1], key
         await s.prefix("g")
         assert s.console.window.name == "groups"
         await s.prefix("slash")
@@ -92,7 +92,7 @@ async def test_the_menu_and_the_search_have_what_is_in_the_graph(graph: Graph) -
         await s.until(lambda: str(s.view.content) == "graph")
         await s.press("ctrl+f")
         await s.type("zzz")
-        await s.until("nothing here is called 'zzz'")
+        await s.until("no match for 'zzz'")
         await s.press("ctrl+u")
         await s.type("shout")
         await s.until("param shout")
@@ -114,7 +114,7 @@ async def test_the_prefix_itself() -> None:
         await s.prefix("escape")
         assert not s.console.keyboard.which_key.display
         await s.prefix("J")
-        await s.until("^b J means nothing")
+        await s.until("^b J is not bound")
         await s.press("ctrl+b")
         await s.until(lambda: s.console.keyboard.which_key.display)
         assert "d detach" in s.text
@@ -194,7 +194,7 @@ async def test_a_supervisor_that_has_gone_is_asked_nothing(verb: str) -> None:
     async with stage(Content("nodes")) as s:
         assert s.console.hub.supervision is not None
         s.console.hub.supervision.is_lost = True
-        deeds = s.console.deeds
-        (deeds.restart if verb == "restart" else deeds.stop_node)("/talker")
+        commands = s.console.commands
+        (commands.restart if verb == "restart" else commands.stop_node)("/talker")
         await s.until(lambda: "the supervisor has gone; q leaves" in s.text)
         assert verb not in [asked["do"] for asked in s.asked]

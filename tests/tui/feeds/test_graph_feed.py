@@ -24,7 +24,7 @@ async def test_it_is_hidden_and_reports_are_asked_for_only_while_wanted(
     graph: Graph, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """No node of its own in the lists; rates come from two looks."""
-    monkeypatch.setattr(module, "LOOK_EVERY", 0.05)
+    monkeypatch.setattr(module, "POLL_INTERVAL", 0.05)
     node = Talker()
     await graph.start(node)
     async with stage(Content("help"), graph=graph) as s:

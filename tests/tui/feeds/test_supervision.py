@@ -16,7 +16,7 @@ from graphflow.supervisor.control.clients import Clients
 from graphflow.supervisor.control.server import ControlServer
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.tui.feeds import supervision as module
-from graphflow.tui.feeds.supervision import Supervision
+from graphflow.tui.feeds.supervision import NodeRow, Supervision
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
@@ -94,9 +94,23 @@ async def test_nodes_of_a_supervisor_that_has_gone(tmp_path: Path, last: bytes, 
         server.bind(str(tmp_path / "s"))
         server.listen()
         one = Supervision(run_at(str(tmp_path / "s")), lambda _: None)
+        row = NodeRow(
+            {
+                "node": "/a",
+                "state": "ready",
+                "lifecycle": "",
+                "pid": 7,
+                "since": 0.0,
+                "process": "",
+                "class": "",
+                "log": "",
+                "restarts": 0,
+                "detail": "",
+            }
+        )
         one.nodes = {
-            "/a": {"node": "/a", "state": "ready", "pid": 7, "detail": "", "since": 0.0},
-            "/b": {"node": "/b", "state": "failed", "pid": 8, "detail": "signal SIGSEGV", "since": 0.0},
+            "/a": row,
+            "/b": {**row, "node": "/b", "state": "failed", "pid": 8, "detail": "signal SIGSEGV"},
         }
         task = asyncio.ensure_future(one.follow())
         await until(lambda: one.is_connected)
@@ -173,7 +187,7 @@ async def test_leaving_a_supervisor_that_does_not_listen(tmp_path: Path, monkeyp
 
 async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is told, and nothing can be sent any more."""
-    monkeypatch.setattr(module, "ASK_EVERY", 0.01)
+    monkeypatch.setattr(module, "POLL_INTERVAL", 0.01)
     graph = Graph()
     server = ControlServer(graph)
     heard: list[dict[str, Any]] = []

@@ -20,25 +20,25 @@ async def test_messages_and_their_arrival(graph: Graph) -> None:
     async with stage(Content("help"), graph=graph) as s:
         live = s.console.hub.live
         assert live is not None
-        tap = TopicMonitor(live, "/chatter")
-        tap.look()
-        assert not tap.is_open
-        assert tap.trouble == "nobody publishes /chatter yet"
+        monitor = TopicMonitor(live, "/chatter")
+        monitor.look()
+        assert not monitor.is_open
+        assert monitor.trouble == "nobody publishes /chatter yet"
         heard: list[str] = []
-        tap.heard = lambda message, _: heard.append(message.data)
+        monitor.on_message = lambda message, _: heard.append(message.data)
         await graph.start(node)
-        tap.look()
+        monitor.look()
         await graph.settle()
         for word in ("a", "b"):
             node.chatter.publish(String(data=word))
         await graph.settle()
-        assert (tap.count, tap.message.data, heard) == (2, "b", ["a", "b"])
-        assert len(tap.arrivals) == 2
-        assert (tap.lost, tap.dropped) == (0, 0)
-        tap.close()
+        assert (monitor.count, monitor.message.data, heard) == (2, "b", ["a", "b"])
+        assert len(monitor.arrivals) == 2
+        assert (monitor.lost, monitor.dropped) == (0, 0)
+        monitor.close()
         node.chatter.publish(String(data="c"))
         await graph.settle()
-        assert tap.count == 2
+        assert monitor.count == 2
 
 
 async def test_a_misspelt_topic(graph: Graph) -> None:
@@ -52,6 +52,6 @@ async def test_without_a_graph() -> None:
     """It waits."""
     async with stage(Content("help")) as s:
         assert s.console.hub.live is not None
-        tap = TopicMonitor(s.console.hub.live, "/x")
-        tap.look()
-        assert not tap.is_open
+        monitor = TopicMonitor(s.console.hub.live, "/x")
+        monitor.look()
+        assert not monitor.is_open

@@ -46,14 +46,14 @@ def test_which_program(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_copy(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The program reads the text; how it fails is told."""
     tool(folder, "keep", f"cat > {folder}/kept")
-    assert clipboard.copy_by(("keep",), "a b") == ""
+    assert clipboard.copy_with(("keep",), "a b") == ""
     assert (folder / "kept").read_text() == "a b"
     tool(folder, "fail", "exit 3")
-    assert clipboard.copy_by(("fail",), "") == "fail ended with 3"
-    assert "nothere" in clipboard.copy_by(("nothere",), "")
+    assert clipboard.copy_with(("fail",), "") == "fail ended with 3"
+    assert "nothere" in clipboard.copy_with(("nothere",), "")
     monkeypatch.setattr(clipboard, "LIMIT", 0.1)
     tool(folder, "hang", "exec sleep 5")
-    assert "timed out" in clipboard.copy_by(("hang",), "")
+    assert "timed out" in clipboard.copy_with(("hang",), "")
 
 
 async def test_what_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

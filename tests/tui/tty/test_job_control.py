@@ -14,4 +14,4 @@ async def test_without_a_shell() -> None:
     async with stage() as s:
         assert not s.console.job_control.has_shell
         await s.press("ctrl+z")
-        await s.until("there is no shell behind this console")
+        await s.until("this console was not started from a shell")

@@ -40,7 +40,7 @@ async def test_calling(graph: Graph) -> None:
         await s.press("down", "enter")
         await s.until("sum: 3")
         await s.press("ctrl+up")
-        await s.until("1 of 2 made before")
+        await s.until("1 of 2 sent before")
         assert line(s, "a").value == "40"
         await s.press("ctrl+down", "ctrl+down")
         await s.until("the defaults")
@@ -60,7 +60,7 @@ async def test_requests_of_earlier_consoles(graph: Graph) -> None:
         await s.prefix("1")
         await s.until(lambda: bool(s.view.query("Form")))
         await s.press("ctrl+up")
-        await s.until("1 of 1 made before")
+        await s.until("1 of 1 sent before")
         assert line(s, "a").value == "5"
 
 

@@ -52,5 +52,5 @@ async def test_sending(graph: Graph) -> None:
         await s.press("n")
         await s.until(lambda: bool(s.view.query("Form")))
         await s.press("ctrl+up")
-        await s.until("1 of 1 made before")
+        await s.until("1 of 1 sent before")
         assert next(i for i in s.view.query(Input) if i.name == "order").value == "7"

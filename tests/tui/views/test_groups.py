@@ -122,10 +122,10 @@ async def test_a_change_that_ends_nothing(fix: Limit | Thread, told_after: float
         rings = {frozenset({("go", "get")}): "a ring"}
         view._rings = lambda: rings  # type: ignore[method-assign]
         view._applied = applied = Applied(fix, rings, 100.0)
-        view._judge(applied, 99.0, 200.0)
-        view._judge(applied, 101.0, 100.0 + told_after - 1.5)
+        view._evaluate(applied, 99.0, 200.0)
+        view._evaluate(applied, 101.0, 100.0 + told_after - 1.5)
         assert (view._applied, view._outcome) == (applied, "")
-        view._judge(applied, 101.0, 100.0 + told_after)
+        view._evaluate(applied, 101.0, 100.0 + told_after)
         assert view._applied is None
         assert view._outcome.startswith("Still stuck")
 
@@ -136,18 +136,18 @@ async def test_a_change_that_ends_one_of_two() -> None:
         view = s.view
         assert isinstance(view, Groups)
         fix = Limit("/left", "main", 2)
-        view._made, view._deadlocks = [fix], [Deadlock((), (), (), False)]
+        view._changes, view._deadlocks = [fix], [Deadlock((), (), (), False)]
         view._rings = lambda: {frozenset({("go", "put")}): "another ring"}  # type: ignore[method-assign]
-        view._judge(Applied(fix, {frozenset({("go", "get")}): "a ring"}, 100.0), 101.0, 101.0)
+        view._evaluate(Applied(fix, {frozenset({("go", "get")}): "a ring"}, 100.0), 101.0, 101.0)
         assert [row.text.plain for row in view._outcome_rows()] == [" ● One ended; a new one, 1 deadlock now: f again."]
-        rows = [row.text.plain for row in view._made_rows()]
+        rows = [row.text.plain for row in view._change_rows()]
         assert rows[0].startswith("   done here: allow 2 runs")
 
 
 async def test_a_race(graph: Graph) -> None:
     """Its report stands here, whole; enter opens the line that /rosout has told for it, as far as it is known."""
     async with stage(Content("groups"), graph=graph) as s:
-        await s.until("no deadlock; for updates that are lost: graphflow up --races")
+        await s.until("no deadlock; for lost updates: graphflow up --races")
         told = record("RACE: an update of self.x is lost", level=2, node="/left")
         more = [
             told._replace(text="  timer a of /left read it in a.py:1 and waited,", is_more=True),
@@ -166,7 +166,7 @@ async def test_a_race(graph: Graph) -> None:
         await s.press("enter")
         await s.until("older than the console")
         assert s.console.hub.live is not None
-        s.console.hub.live._written.append((told.stamp, told.text, f"{__file__}:3"))
+        s.console.hub.live._rosout_records.append((told.stamp, told.text, f"{__file__}:3"))
         await s.press("enter")
         await s.until("source ")
         await s.until("test_groups.py:3")
@@ -179,4 +179,4 @@ async def test_a_thread_for_a_node_that_others_have_started(graph: Graph) -> Non
         assert isinstance(view, Groups)
         await view._apply(Thread("/left", ("go",)))
         await s.until("was not started by this graph's supervisor")
-        assert view._made == []
+        assert view._changes == []

@@ -46,6 +46,6 @@ async def test_it_is_found_by_typing() -> None:
         await s.until("graphflow restart {node}")
         assert "detach" not in s.text
         await s.type("xyz")
-        await s.until("nothing here has 'restartxyz'")
+        await s.until("no match for 'restartxyz'")
         await s.press("escape")
         assert len(s.console.screen_stack) == 1

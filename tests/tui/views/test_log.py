@@ -143,7 +143,7 @@ async def test_the_source_of_a_line_that_names_none(graph: Graph) -> None:
         s.console.hub.logs.add([record("here I am", "/talker", 1, now), record("a print", "/talker", 1, now)])
         await s.look()
         await s.press("up", "enter")
-        await s.until("nobody has told where")
+        await s.until("the source of this line is unknown")
         await s.press("up", "enter")
         await s.until(lambda: len(s.console.window.numbers) == 2)
         assert re.fullmatch(r".*test_log\.py:\d+", s.view.about)

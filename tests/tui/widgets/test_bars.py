@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from graphflow.machines.lifecycle import LifecycleState
 from graphflow.machines.process import State
+from graphflow.tui.feeds.supervision import NodeRow
 from graphflow.tui.panes import Content
-from graphflow.tui.widgets.bars import MARKS, SEEN_AFTER, word_of
+from graphflow.tui.widgets.bars import MARKS, SEEN_AFTER, displayed_state
 from tests.tui.stage import record, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -26,10 +27,10 @@ def test_every_state_has_a_mark() -> None:
 
 def test_the_word_of_a_node() -> None:
     """A deadlock hides that it runs; a state of its life cycle says more than that."""
-    row = {"node": "/a", "state": "ready", "lifecycle": "inactive"}
-    assert word_of(row, {"/a"}) == "deadlock"
-    assert word_of(row, ()) == "inactive"
-    assert word_of({**row, "state": "failed", "lifecycle": ""}, {"/a"}) == "failed"
+    row = cast("NodeRow", {"node": "/a", "state": "ready", "lifecycle": "inactive"})
+    assert displayed_state(row, {"/a"}) == "deadlock"
+    assert displayed_state(row, ()) == "inactive"
+    assert displayed_state({**row, "state": "failed", "lifecycle": ""}, {"/a"}) == "failed"
 
 
 async def test_the_bottom_lines_on_80_columns() -> None:
@@ -65,7 +66,7 @@ async def test_many_windows_leave_room_for_the_states() -> None:
         assert ":topics >" in status
         assert status.endswith(" ●2")
         s.console.deadlocks = 1
-        s.console.deeds.go_to_window(7)
+        s.console.commands.go_to_window(7)
         await s.until(lambda: "7:topics*" in s.text.split("\n")[-1])
         status = s.text.split("\n")[-1]
         assert status.endswith("●2 ✖ 1 DEADLOCK ^b g")
@@ -124,7 +125,7 @@ async def test_what_went_wrong_stays_until_it_is_seen() -> None:
         s.console.say("/arm died", bad=True)
         s.console.say("all nodes have ended")
         assert "/arm died" in s.text
-        assert "all nodes have ended" in s.console.said[-1]
+        assert "all nodes have ended" in s.console.messages[-1]
         s.console.did("graphflow restart /arm")
         assert "$ graphflow restart /arm" in s.text
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from rich.style import Style
 from rich.text import Text
@@ -75,7 +77,7 @@ async def test_a_node_has_one_colour() -> None:
 async def test_lines_drawn_before_a_change_of_theme_follow_it() -> None:
     """There and back."""
     async with stage(Content("prompt")) as s:
-        lines = s.view.query_one(LineView)
+        lines: LineView[Any] = s.view.query_one(LineView)
         colours = s.console.colours
         lines.extend([Text.assemble(("good ", colours.good), ("/talker", colours.nodes[7]), style=colours.dim)])
         for name in (LIGHT.name, DARK.name):
@@ -83,6 +85,7 @@ async def test_lines_drawn_before_a_change_of_theme_follow_it() -> None:
             await s.until(lambda is_dark=name == DARK.name: s.console.colours.is_dark is is_dark)
             colours = s.console.colours
             text = lines.last_row
+            assert text is not None
             assert [text.style, text.spans[0].style] == [colours.dim, colours.good]
             assert text.spans[1].style == colours.nodes[7]
-        assert lines.rows[0].style == colours.dim
+        assert next(lines.whole_rows).style == colours.dim

@@ -33,7 +33,7 @@ async def test_the_windows_are_written(file: Path) -> None:
         await s.until("written to")
         assert file.read_text().startswith(TEXT)
         await s.prefix("ctrl+s")
-        await s.until("says so already")
+        await s.until("needs no change")
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ async def test_what_would_be_no_graph_file_is_not_written(change: str, why: str,
     """Whatever made it so."""
     async with stage(folder=file.parent) as s:
         file_changes.write_file(s.console, file, lambda _: change, "nothing good")
-        assert why in s.console.said[-1]
+        assert why in s.console.messages[-1]
         assert not isinstance(s.console.screen, Ask)
         assert file.read_text() == TEXT
         assert [f.name for f in file.parent.iterdir()] == ["lab.yaml"]
@@ -69,4 +69,4 @@ async def test_nodes_of_others_have_no_file(file: Path) -> None:
     """Nor has a console on a robot."""
     async with stage(supervised=False) as s:
         file_changes.write_nodes(s.console, {"/a"}, lambda text, _: text, "x", lambda: None)
-        assert "there is no graph file" in s.console.said[-1]
+        assert "there is no graph file" in s.console.messages[-1]

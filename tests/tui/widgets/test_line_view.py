@@ -11,16 +11,16 @@ from rich.text import Text
 from textual.widget import Widget
 
 from graphflow.tui.panes import Content
-from graphflow.tui.widgets.line_view import WRAPS_INTO, LineView, breaks
+from graphflow.tui.widgets.line_view import MAX_PARTS, LineView, breaks
 from tests.tui.stage import Stage, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 @asynccontextmanager
-async def lines(**options: Any) -> AsyncIterator[tuple[Stage, LineView]]:
+async def lines(**options: Any) -> AsyncIterator[tuple[Stage, LineView[Any]]]:
     async with stage(Content("nodes"), size=(40, 12)) as s:
-        made = LineView(**options)
+        made: LineView[Any] = LineView(**options)
         view: Widget = s.view
         await view.remove_children()
         await view.mount(made)
@@ -85,7 +85,7 @@ def test_breaking_between_words(text: str, width: int, lines: list[str]) -> None
 
 def test_a_row_that_is_much_too_long() -> None:
     """Becomes a limited number of lines."""
-    assert len([*breaks("a" * 100_000, 10)]) == WRAPS_INTO
+    assert len([*breaks("a" * 100_000, 10)]) == MAX_PARTS
 
 
 async def test_moving() -> None:

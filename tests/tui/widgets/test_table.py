@@ -51,14 +51,14 @@ async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It says what was sought, and how all rows come back."""
+    """It says what was search_text, and how all rows come back."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     Numbers.now = {"a": ("a", "1")}
     async with stage(Content("numbers")) as s:
         await s.look()
         assert "nothing there yet" not in s.text
         await s.press("slash", "z")
-        await s.until("no row has 'z'; esc shows all")
+        await s.until("no row contains 'z'; esc shows all")
         await s.press("enter", "escape")
         assert "esc shows all" not in s.text
 

@@ -14,6 +14,7 @@ from graphflow.times import ago
 from graphflow.tui.commands.actions import Action
 from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.feeds.log_feed import Logs, Record
+from graphflow.tui.feeds.supervision import NodeRow
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 from graphflow.tui.views.source import edit, find_file
@@ -43,7 +44,7 @@ class Crash(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._lines = LineView(2000, wraps=True, copies=True)
+        self._lines = LineView[Text](2000, wraps=True, copies=True)
         self._lines.follows = False
         self._seen: object = None
         self._own: Logs | None = None
@@ -53,7 +54,7 @@ class Crash(View):
         yield self._lines
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._lines
 
     def chosen(self) -> dict[str, str]:
@@ -70,14 +71,14 @@ class Crash(View):
             self._seen = seen
             self._lines.replace(list(self._rows(row)))
 
-    def _rows(self, row: dict[str, object] | None) -> Iterator[Text]:
+    def _rows(self, row: NodeRow | None) -> Iterator[Text]:
         colours = self.colours
         if row is None:
-            yield Text(f"{self.about} is no node of this graph", style=colours.warn)
+            yield Text(f"{self.about} is not a node of this graph", style=colours.warn)
             return
-        state = str(row["state"])
+        state = row["state"]
         mark = MARKS[state]
-        since = ago(time.time() - float(str(row["since"])))
+        since = ago(time.time() - row["since"])
         yield Text.assemble(
             (f"{mark.glyph} {self.about} {state}", getattr(colours, mark.colours)),
             (f", {since} ago", colours.dim),
@@ -115,7 +116,7 @@ class Crash(View):
         return (own or frames)[-1] if frames else None
 
     def do_restart(self) -> None:
-        self.console.deeds.restart(self.about)
+        self.console.commands.restart(self.about)
 
     def do_edit(self) -> None:
         place = self._place()

@@ -57,8 +57,8 @@ class Detail(View):
         return "" if self._inner is None else self._inner.note
 
     @property
-    def heart(self) -> Widget:
-        return self if self._inner is None else self._inner.heart
+    def focus_target(self) -> Widget:
+        return self if self._inner is None else self._inner.focus_target
 
     def chosen(self) -> dict[str, str]:
         return {"node": self.about} if self.about else {}

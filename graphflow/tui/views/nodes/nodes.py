@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import psutil
 from rich.text import Text
@@ -16,17 +16,21 @@ from graphflow.times import ago
 from graphflow.tui.commands.actions import Action
 from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.feeds.log_feed import plain_text
+from graphflow.tui.feeds.supervision import NodeRow
 from graphflow.tui.panes import Content
-from graphflow.tui.widgets.bars import MARKS, word_of
+from graphflow.tui.widgets.bars import MARKS, displayed_state
 from graphflow.tui.widgets.dialogs import Item, Pick
 from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
 
-WORDS = {"foreign": "not ours", "ready": "running"}
+if TYPE_CHECKING:
+    from graphflow.msgs.lifecycle_msgs.msg import State, Transition
+
+STATE_NAMES = {"foreign": "not ours", "ready": "running"}
 """Names of states for display where they differ."""
 GROUPINGS = ("", "namespace", "process", "host")
 GROUP = "group "
 """The prefix of the keys of group rows; the names of nodes contain no space."""
-ANSWER_LIMIT, CHANGE_LIMIT = 2.0, 60.0
+REPLY_TIMEOUT, CHANGE_LIMIT = 2.0, 60.0
 """Seconds that a node has to report its state, and to change it."""
 TRANSITIONS, LABEL = 32, 40
 """Maximum transitions offered, and maximum characters of their labels."""
@@ -114,13 +118,13 @@ class Nodes(TableView):
             pid = row["pid"] if row is not None else pids.get(name)
             is_up = row is None or state in ("ready", "unresponsive", "starting", "stopping", "restarting")
             cost = costs.get(pid) if pid is not None and is_up else None
-            word = word_of(row, stuck) if row is not None else "deadlock" if name in stuck else "foreign"
+            word = displayed_state(row, stuck) if row is not None else "deadlock" if name in stuck else "foreign"
             mark = MARKS[word]
             rate = live.numbers.fastest(name) if live is not None and is_up else None
             lag = live.numbers.lags.get(name) if live is not None and is_up else None
             found[name] = (
                 Text(name, style=colours.node(name)),
-                Text(f"{mark.glyph} {WORDS.get(word, word)}", style=getattr(colours, mark.colours)),
+                Text(f"{mark.glyph} {STATE_NAMES.get(word, word)}", style=getattr(colours, mark.colours)),
                 self._troubles(name),
                 _right("" if rate is None else f"{rate:.1f} Hz"),
                 _right("" if cost is None else f"{cost[0]:.0f}%"),
@@ -132,7 +136,7 @@ class Nodes(TableView):
                 ),
                 self._log_rate(name),
                 _right(ago(time.time() - row["since"]) if row is not None and is_up else ""),
-                _right(str(row.get("restarts") or "") if row is not None else ""),
+                _right(str(row["restarts"] or "") if row is not None else ""),
                 self._last_trouble(name, row),
             )
         return found
@@ -150,7 +154,7 @@ class Nodes(TableView):
         shown = [(text, style) for text, style in counts if not text.endswith("0") or len(text) > 2]
         return Text(" ").join(Text(text, style=style) for text, style in shown)
 
-    def _last_trouble(self, name: str, row: dict[str, Any] | None) -> Text:
+    def _last_trouble(self, name: str, row: NodeRow | None) -> Text:
         """Return why a node is not well, otherwise the last error in its log."""
         if row is not None and row["detail"]:
             return Text(plain_text(row["detail"]).replace("\n", " "), style=self.colours.bad)
@@ -288,7 +292,7 @@ class Nodes(TableView):
             self.open("log", self.key)
 
     def do_newest_error(self) -> None:
-        self.console.deeds.show_newest_error(self.key)
+        self.console.commands.show_newest_error(self.key)
 
     def do_params(self) -> None:
         if self.key:
@@ -301,11 +305,11 @@ class Nodes(TableView):
 
     def do_restart(self) -> None:
         if self.key:
-            self.console.deeds.restart(self.key)
+            self.console.commands.restart(self.key)
 
     def do_stop(self) -> None:
         if self.key:
-            self.console.deeds.stop_node(self.key)
+            self.console.commands.stop_node(self.key)
 
     def do_transition(self) -> None:
         """Let the user choose one of the transitions available now, and request it."""
@@ -313,35 +317,35 @@ class Nodes(TableView):
         if not node or live is None:
             return
         if node not in managed_nodes(live.cache):
-            self.say(f"{node} has no life cycle")
+            self.say(f"{node} is not a lifecycle node")
             return
 
-        async def ask() -> None:
-            now, ways = await live.ask(lambda g: (state(g, node, ANSWER_LIMIT), transitions(g, node, ANSWER_LIMIT)))
+        async def pick_transition() -> None:
+            now, ways = await live.ask(lambda g: (state(g, node, REPLY_TIMEOUT), transitions(g, node, REPLY_TIMEOUT)))
             items = [Item(_label(way.transition), "", way.transition) for way in ways[:TRANSITIONS]]
             empty = "there is no transition from this state"
             self.app.push_screen(Pick(f"{node} is {_label(now)}: which transition?", items, empty), picked)
 
-        def picked(transition: Any) -> None:
+        def picked(transition: Transition | None) -> None:
             if transition is not None:
-                self.work(lambda: make(transition))
+                self.work(lambda: request(transition))
 
-        async def make(transition: Any) -> None:
+        async def request(transition: Transition) -> None:
             command = f"lifecycle set {node} {_label(transition)}"
             self.did(f"graphflow {command}")
             self.hub.announce(command)
             if not await live.ask(lambda g: change(g, node, transition, CHANGE_LIMIT)):
                 self.say(f"{node} did not {_label(transition)}: l shows its log", bad=True)
 
-        self.work(ask)
+        self.work(pick_transition)
 
     def do_copy(self) -> None:
         self.console.copy(self.key)
 
 
-def _label(thing: Any) -> str:
+def _label(named: State | Transition) -> str:
     """Return the printable label of a state or transition, which another process chose."""
-    return plain_text(thing.label[:LABEL])
+    return plain_text(named.label[:LABEL])
 
 
 def _text(cell: Text | str) -> Text:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from functools import partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from rich.text import Text
 from textual.app import ComposeResult
@@ -24,7 +24,10 @@ from graphflow.tui.panes import Content
 from graphflow.tui.widgets.table import FIND, Cells, TableView
 from graphflow.wire.liveliness import Kind
 
-ANSWER_LIMIT = 2.0
+if TYPE_CHECKING:
+    from graphflow.msgs.rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterEvent
+
+REPLY_TIMEOUT = 2.0
 """Seconds that a node has to reply."""
 NODES = 100
 """Maximum nodes whose parameters are shown at once."""
@@ -35,7 +38,7 @@ class Row(NamedTuple):
 
     node: str
     name: str
-    value: Any
+    value: object
     type: int
     limits: str
     doc: str
@@ -66,9 +69,9 @@ class Params(TableView):
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
         self._rows: dict[str, Row] = {}
-        self._changed: dict[tuple[str, str], Any] = {}
-        """Values changed while the view is open, by node and name."""
-        self._before: list[tuple[Row, Any]] = []
+        self._changed: set[tuple[str, str]] = set()
+        """Nodes and names of parameters changed while the view is open."""
+        self._before: list[tuple[Row, object]] = []
         """Parameters set here, with their previous values."""
         self._edited = ""
         self._input = Input(classes="find")
@@ -78,7 +81,7 @@ class Params(TableView):
         self._of: list[str] = []
         self._trouble = ""
         """The error of the last request to a node."""
-        self._is_asking = True
+        self._is_reading = True
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
@@ -93,7 +96,7 @@ class Params(TableView):
         return self._trouble[:60] if self._trouble and self._rows else super().note
 
     def why_empty(self) -> str:
-        return "asking..." if self._is_asking else self._trouble or super().why_empty()
+        return "reading..." if self._is_reading else self._trouble or super().why_empty()
 
     def chosen(self) -> dict[str, str]:
         row = self._rows.get(self.key)
@@ -105,7 +108,7 @@ class Params(TableView):
             return
         if self._events is None:
             self._events = TopicMonitor(live, "/parameter_events")
-            self._events.heard = self._event
+            self._events.on_message = self._event
         self._events.look()
         nodes = [self.about] if self.about else self._with_parameters()
         if nodes != self._of:
@@ -122,12 +125,12 @@ class Params(TableView):
         }
         return [n for n in self.hub.nodes() if n in servers][:NODES]
 
-    def _event(self, message: Any, _: float) -> None:
+    def _event(self, message: ParameterEvent, _: float) -> None:
         node = str(message.node)
         if node in self._of:
             self._stale = True
             for parameter in [*message.new_parameters, *message.changed_parameters]:
-                self._changed[node, str(parameter.name)] = None
+                self._changed.add((node, str(parameter.name)))
 
     async def _read(self) -> None:
         live, nodes = self.hub.live, list(self._of)
@@ -140,7 +143,7 @@ class Params(TableView):
                     rows[f"{row.node} {row.name}"] = row
             except GraphflowError as error:
                 self._trouble = plain_text(str(error))
-        self._rows, self._is_asking = rows, False
+        self._rows, self._is_reading = rows, False
 
     def rows(self) -> dict[str, Cells]:
         colours = self.colours
@@ -233,17 +236,17 @@ class Params(TableView):
         assert live is not None
 
         def work(graph: Graph) -> str:
-            remote = RemoteParameters(graph, row.node, ANSWER_LIMIT)
+            remote = RemoteParameters(graph, row.node, REPLY_TIMEOUT)
             declared = remote.known(row.name)
             value = read_value(text, 0 if declared.dynamic_typing else declared.type)
             message = to_message(value, declared.type if value == [] else type_id(value))
             result = remote.set({row.name: message})[0]
-            return "" if result.successful else str(result.reason) or "refused, without a reason"
+            return "" if result.successful else str(result.reason) or "no reason was given"
 
         refused = await live.ask(work)
         if refused:
             raise ParameterError(f"{row.node} refuses: {plain_text(refused)}")
-        self._changed[row.node, row.name] = None
+        self._changed.add((row.node, row.name))
         self._stale = True
         self._close_input()
         command = shlex.join(["param", "set", row.node, row.name, text])
@@ -262,21 +265,21 @@ class Params(TableView):
         from graphflow.graph.edit import with_params
         from graphflow.tui.widgets.file_changes import write_nodes
 
-        made: dict[str, dict[str, Any]] = {}
+        changed: dict[str, dict[str, object]] = {}
         for node, name in self._changed:
             row = self._rows.get(f"{node} {name}")
             if row is not None:
-                made.setdefault(node, {})[name] = row.value
-        if not made:
-            self.say("nothing was changed since this pane was opened")
+                changed.setdefault(node, {})[name] = row.value
+        if not changed:
+            self.say("no parameter has changed since this pane was opened")
             return
 
         def change(text: str, keys: dict[str, tuple[str, ...]]) -> str:
-            for node, values in made.items():
+            for node, values in changed.items():
                 text = with_params(text, keys[node], values)
             return text
 
-        write_nodes(self.console, set(made), change, "the parameters changed here", self._changed.clear)
+        write_nodes(self.console, set(changed), change, "the parameters changed here", self._changed.clear)
 
     def do_reload(self) -> None:
         self._stale = True
@@ -293,11 +296,11 @@ class Params(TableView):
 
 
 def _read_node(graph: Graph, node: str) -> list[Row]:
-    remote = RemoteParameters(graph, node, ANSWER_LIMIT)
+    remote = RemoteParameters(graph, node, REPLY_TIMEOUT)
     names = remote.names()
     described = remote.describe(names)
     if len(names) != len(remote.get(names)):
-        raise CallError(f"{node} does not tell its parameters")
+        raise CallError(f"{node} does not report its parameters")
     found = []
     for name, message in zip(names, remote.get(names), strict=True):
         declared = described.get(name)
@@ -318,10 +321,11 @@ def _read_node(graph: Graph, node: str) -> list[Row]:
     return found
 
 
-def _limits(declared: Any) -> str:
+def _limits(declared: ParameterDescriptor | None) -> str:
     if declared is None:
         return ""
-    for limits in [*declared.integer_range, *declared.floating_point_range]:
+    ranges: list[IntegerRange | FloatingPointRange] = [*declared.integer_range, *declared.floating_point_range]
+    for limits in ranges:
         low, high = f"{limits.from_value:g}", f"{limits.to_value:g}"
         return f"{low} or more" if high == "inf" else f"{high} or less" if low == "-inf" else f"{low} to {high}"
     return plain_text(str(declared.additional_constraints))[:40]

@@ -59,9 +59,9 @@ class Top(TableView):
                 if row["pid"] and row["state"] not in ("ended", "failed", "given_up", "waiting", "pending"):
                     found.setdefault(row["pid"], []).append(name)
         if live is not None:
-            mine = {token.zid: token.pid for token in live.processes.values() if token.host == host_name()}
+            pids = {token.zid: token.pid for token in live.processes.values() if token.host == host_name()}
             for name, entity in ((e.node_name, e) for e in live.cache):
-                pid = mine.get(entity.zid)
+                pid = pids.get(entity.zid)
                 if pid is None or (is_hidden(name) and pid in found):
                     continue
                 shown = "this console" if pid == os.getpid() else "a visitor" if is_hidden(name) else name

@@ -93,10 +93,10 @@ class Tree(TableView):
             at_end.setdefault((link.kind, link.name), []).append(link)
         found: dict[str, Cells] = {}
         for node in [self.about] if self.about else self.hub.nodes():
-            mine = of_node.get(node, [])
-            head = Text.assemble((self._mark(node, mine), colours.dim), (node, colours.node(node)))
-            found[node] = (head, Text(_count(len(mine), "link"), style=colours.dim), Text(""), Text(""))
-            for link in mine if self._is_open(node) else ():
+            node_links = of_node.get(node, [])
+            head = Text.assemble((self._mark(node, node_links), colours.dim), (node, colours.node(node)))
+            found[node] = (head, Text(_count(len(node_links), "link"), style=colours.dim), Text(""), Text(""))
+            for link in node_links if self._is_open(node) else ():
                 key = "\n".join((node, link.kind, link.name))
                 ends = at_end.get((OTHER_END[link.kind], link.name), [])
                 rate = None if link.is_action else live.numbers.published(link.name)

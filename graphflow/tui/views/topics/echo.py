@@ -38,8 +38,8 @@ class Echo(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._lines = LineView(20_000)
-        self._tap: TopicMonitor | None = None
+        self._lines = LineView[str](20_000)
+        self._monitor: TopicMonitor | None = None
         self._shown = 0
         self._left_out = 0
         self._streams = False
@@ -49,16 +49,16 @@ class Echo(View):
         yield self._lines
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self._lines
 
     @property
     def note(self) -> str:
-        tap = self._tap
-        if tap is None or not tap.count:
+        monitor = self._monitor
+        if monitor is None or not monitor.count:
             return ""
-        lost = self._left_out + tap.dropped
-        words = [f"{tap.count} messages", *([f"{lost} not shown"] if lost and self._streams else [])]
+        lost = self._left_out + monitor.dropped
+        words = [f"{monitor.count} messages", *([f"{lost} not shown"] if lost and self._streams else [])]
         return ", ".join([*words, *(["paused"] if self._paused else [])])
 
     def chosen(self) -> dict[str, str]:
@@ -68,18 +68,18 @@ class Echo(View):
         live = self.hub.live
         if live is None or self._paused:
             return
-        if self._tap is None:
-            self._tap = TopicMonitor(live, self.about)
-        tap = self._tap
-        if not tap.is_open:
-            tap.look()
-            if tap.trouble and not tap.count:
-                self._lines.replace([plain_text(tap.trouble)])
-        if tap.count == self._shown or tap.message is None:
+        if self._monitor is None:
+            self._monitor = TopicMonitor(live, self.about)
+        monitor = self._monitor
+        if not monitor.is_open:
+            monitor.look()
+            if monitor.trouble and not monitor.count:
+                self._lines.replace([plain_text(monitor.trouble)])
+        if monitor.count == self._shown or monitor.message is None:
             return
-        self._left_out += tap.count - self._shown - 1
-        self._shown = tap.count
-        rows = _lines_of(tap.message)
+        self._left_out += monitor.count - self._shown - 1
+        self._shown = monitor.count
+        rows = _lines_of(monitor.message)
         if self._streams:
             self._lines.extend([*rows, "---"])
         else:
@@ -94,7 +94,7 @@ class Echo(View):
         self._left_out = 0
         self._lines.replace([])
         self._lines.follows = True
-        self._shown = 0 if self._tap is None else max(0, self._tap.count - 1)
+        self._shown = 0 if self._monitor is None else max(0, self._monitor.count - 1)
 
     def do_pause(self) -> None:
         self._paused = not self._paused
@@ -106,13 +106,13 @@ class Echo(View):
         self.open("plot", self.about)
 
     def do_copy(self) -> None:
-        if self._tap is not None and self._tap.message is not None:
-            self.console.copy(block(plain(self._tap.message)), "the message as YAML")
+        if self._monitor is not None and self._monitor.message is not None:
+            self.console.copy(block(plain(self._monitor.message)), "the message as YAML")
 
     def closed(self) -> None:
-        if self._tap is not None:
-            self._tap.close()
-            self._tap = None
+        if self._monitor is not None:
+            self._monitor.close()
+            self._monitor = None
 
 
 def _lines_of(message: Any) -> list[str]:

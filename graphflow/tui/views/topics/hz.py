@@ -44,7 +44,7 @@ class Hz(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._tap: TopicMonitor | None = None
+        self._monitor: TopicMonitor | None = None
         self._history: deque[float] = deque([0.0] * HISTORY, maxlen=HISTORY)
         self._counted = 0
         self._at = 0.0
@@ -56,7 +56,7 @@ class Hz(View):
         yield self._words
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self
 
     def chosen(self) -> dict[str, str]:
@@ -71,23 +71,23 @@ class Hz(View):
         live = self.hub.live
         if live is None:
             return
-        if self._tap is None:
-            self._tap = TopicMonitor(live, self.about)
-        tap = self._tap
-        tap.look()
-        if tap.trouble:
-            self._words.update(Text(tap.trouble, style=self.colours.warn))
+        if self._monitor is None:
+            self._monitor = TopicMonitor(live, self.about)
+        monitor = self._monitor
+        monitor.look()
+        if monitor.trouble:
+            self._words.update(Text(monitor.trouble, style=self.colours.warn))
             return
         if self._at:
-            self._history.append((tap.count - self._counted) / (now - self._at))
+            self._history.append((monitor.count - self._counted) / (now - self._at))
             self._line.data = list(self._history)
-        self._counted, self._at = tap.count, now
-        self._words.update(self._numbers(tap))
+        self._counted, self._at = monitor.count, now
+        self._words.update(self._numbers(monitor))
 
-    def _numbers(self, tap: TopicMonitor) -> Text:
+    def _numbers(self, monitor: TopicMonitor) -> Text:
         colours = self.colours
         since = time.monotonic() - WINDOW
-        arrivals = [at for at in tap.arrivals if at > since]
+        arrivals = [at for at in monitor.arrivals if at > since]
         gaps = [b - a for a, b in itertools.pairwise(arrivals)]
         text = Text()
         if gaps:
@@ -95,14 +95,14 @@ class Hz(View):
             text.append(f"average rate {1 / mean if mean else 0.0:.2f} Hz\n", style=colours.strong)
             text.append(f"min {_ms(min(gaps))}   max {_ms(max(gaps))}   jitter {_ms(statistics.pstdev(gaps))}   ")
             text.append(f"over {len(arrivals)} messages\n", style=colours.dim)
-        elif tap.count:
-            text.append(f"nothing for {WINDOW:g} s, {tap.count} messages before\n", style=colours.warn)
+        elif monitor.count:
+            text.append(f"nothing for {WINDOW:g} s, {monitor.count} messages before\n", style=colours.warn)
         else:
             text.append("no message yet\n", style=colours.dim)
-        text.append(f"{tap.lost} lost on the way", style=colours.bad if tap.lost else colours.dim)
+        text.append(f"{monitor.lost} lost on the way", style=colours.bad if monitor.lost else colours.dim)
         text.append(
-            f"   {tap.dropped} came too fast to be looked at",
-            style=colours.warn if tap.dropped else colours.dim,
+            f"   {monitor.dropped} came too fast to be shown",
+            style=colours.warn if monitor.dropped else colours.dim,
         )
         return text
 
@@ -113,8 +113,8 @@ class Hz(View):
         self.open("plot", self.about)
 
     def closed(self) -> None:
-        if self._tap is not None:
-            self._tap.close()
+        if self._monitor is not None:
+            self._monitor.close()
 
 
 def _ms(seconds: float) -> str:

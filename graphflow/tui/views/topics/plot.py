@@ -53,7 +53,7 @@ class Plot(View):
         self._topic, _, fields = self.about.partition(".")
         self._fields = [field for field in fields.split(",") if field][:CURVES]
         self._seconds = float(self.options.get("seconds") or SECONDS)
-        self._tap: TopicMonitor | None = None
+        self._monitor: TopicMonitor | None = None
         self._curves: list[Curve] = []
         self._type_name = ""
         self._trouble = ""
@@ -67,7 +67,7 @@ class Plot(View):
         yield self._plot
 
     @property
-    def heart(self) -> Widget:
+    def focus_target(self) -> Widget:
         return self
 
     def chosen(self) -> dict[str, str]:
@@ -82,16 +82,16 @@ class Plot(View):
         live = self.hub.live
         if live is None:
             return
-        if self._tap is None:
-            self._tap = TopicMonitor(live, self._topic)
-            self._tap.heard = self._heard
-        self._tap.look()
-        if trouble := self._tap.trouble or self._trouble:
+        if self._monitor is None:
+            self._monitor = TopicMonitor(live, self._topic)
+            self._monitor.on_message = self._received
+        self._monitor.look()
+        if trouble := self._monitor.trouble or self._trouble:
             self._legend.update(Text(trouble, style=self.colours.warn))
         elif not self._paused:
             self._draw(time.monotonic())
 
-    def _heard(self, message: Message, now: float) -> None:
+    def _received(self, message: Message, now: float) -> None:
         if self._trouble or now - self._last < 1.0 / SAMPLES_PER_SECOND:
             return
         self._last = now
@@ -138,8 +138,8 @@ class Plot(View):
         """The sharing of charts. Layouts saved by earlier versions have True for `each`."""
         if self.app.no_color:  # colour alone tells curves of one chart apart
             return "each"
-        given = self.options.get("axes")
-        return "each" if given is True else given if given in AXES else AXES[0]
+        axes = self.options.get("axes")
+        return "each" if axes is True else axes if axes in AXES else AXES[0]
 
     def _groups(self) -> list[list[int]]:
         """Return the curves of each chart, by index."""
@@ -160,7 +160,7 @@ class Plot(View):
     def do_fields(self) -> None:
         """Let the user show or hide fields, one after the other, until escape."""
         if not self._type_name:
-            self.say(self._tap.trouble if self._tap is not None and self._tap.trouble else "no message yet")
+            self.say(self._monitor.trouble if self._monitor is not None and self._monitor.trouble else "no message yet")
             return
         shown = [curve.label for curve in self._curves]
         items = [Item(field, "shown" if field in shown else "", field) for field in numbers(self._type_name)]
@@ -200,8 +200,8 @@ class Plot(View):
         self.open("echo", self._topic)
 
     def closed(self) -> None:
-        if self._tap is not None:
-            self._tap.close()
+        if self._monitor is not None:
+            self._monitor.close()
 
 
 VIEW = Plot

@@ -45,17 +45,17 @@ class Topics(TableView):
                 ends.setdefault(entity.name, []).append(entity)
         found: dict[str, Cells] = {}
         for name, types in live.cache.topics(hidden=self.shows_hidden).items():
-            there = ends.get(name, [])
-            if self.about and not any(e.node_name == self.about for e in there):
+            endpoints = ends.get(name, [])
+            if self.about and not any(e.node_name == self.about for e in endpoints):
                 continue
-            publishers = sum(e.kind is Kind.PUBLISHER for e in there)
+            publishers = sum(e.kind is Kind.PUBLISHER for e in endpoints)
             rate = live.numbers.published(name)
-            trouble = misfit(there)
+            trouble = misfit(endpoints)
             found[name] = (
                 Text(name, style=colours.text),
                 Text(", ".join(types), style=colours.dim),
                 Text(str(publishers or ""), justify="right"),
-                Text(str(len(there) - publishers or ""), justify="right"),
+                Text(str(len(endpoints) - publishers or ""), justify="right"),
                 Text("" if rate is None else f"{rate:.1f} Hz", justify="right"),
                 Text(f"✖ {trouble}" if trouble else "", style=colours.bad),
             )

@@ -67,8 +67,8 @@ async def test_it_follows_the_cursor(graph: Graph) -> None:
         await s.press("[")
         await s.until("[all]")
         assert s.view.NAME == "log"
-        await s.until(lambda: s.console.focused is s.view.heart)
-        s.console.workspace.keep_contents()
+        await s.until(lambda: s.console.focused is s.view.focus_target)
+        s.console.workspace.store_contents()
         assert [p.content for p in s.console.window.panes()][1] == Content("detail", "", {"tab": "all"})
 
 

@@ -13,6 +13,7 @@ from graphflow import LifecycleNode, TransitionRefused
 from graphflow.introspect.concurrency import ConcurrencyReport
 from graphflow.machines.waits.rings import Deadlock
 from graphflow.machines.waits.wait_graph import ActivityView, Call, WaitGraph
+from graphflow.msgs.lifecycle_msgs.msg import Transition
 from graphflow.system import host_name
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
@@ -216,7 +217,7 @@ async def test_a_life_cycle(graph: Graph) -> None:
         await s.press("enter")
         await s.until("/lived did not deactivate: l shows its log")
         await s.press("down", "t")
-        await s.until(lambda: s.console.said[-1].endswith("/talker has no life cycle"))
+        await s.until(lambda: s.console.messages[-1].endswith("/talker is not a lifecycle node"))
 
 
 class Lived(LifecycleNode):
@@ -243,14 +244,14 @@ async def test_a_state_that_changes_is_seen_at_once() -> None:
     async with stage(Content("nodes"), Content("topics")) as s:
         s.view.looked = now = time.monotonic()
         for _ in range(3):
-            s.console.heard({"event": "said", "text": "x"})
+            s.console.handle_supervisor_event({"event": "said", "text": "x"})
         assert now - 1.0 < s.view.looked < now - 0.8
         await s.prefix("1")
         s.view.looked = now = time.monotonic()
-        s.console.heard({"event": "said", "text": "x"})
+        s.console.handle_supervisor_event({"event": "said", "text": "x"})
         assert s.view.looked >= now
 
 
 def test_labels_of_others_are_plain() -> None:
     """A process may call its transitions as it likes; the terminal must not obey, nor be filled."""
-    assert _label(SimpleNamespace(label="\x1b[31mgo\x07" + "x" * 100)) == "go" + "x" * (LABEL - 8)
+    assert _label(Transition(label="\x1b[31mgo\x07" + "x" * 100)) == "go" + "x" * (LABEL - 8)

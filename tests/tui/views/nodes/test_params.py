@@ -87,7 +87,7 @@ async def test_saving(graph: Graph, tmp_path: Path) -> None:
         s.console.hub.supervision.plan = load(file, [])
         await s.until("serial")
         await s.press("ctrl+s")
-        await s.until("nothing was changed")
+        await s.until("no parameter has changed")
         node.rate = 3.0
         await graph.settle()
         await s.until(lambda: "3.0" in row(s, "rate"))

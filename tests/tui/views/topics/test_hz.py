@@ -28,6 +28,6 @@ async def test_numbers_and_silence(graph: Graph) -> None:
         await s.until("average rate")
         await s.until("over 5 messages")
         await s.until("0 lost on the way")
-        s.view._tap.arrivals.clear()  # type: ignore[attr-defined]
+        s.view._monitor.arrivals.clear()  # type: ignore[attr-defined]
         await s.look()
         await s.until("nothing for 5 s, 5 messages before")

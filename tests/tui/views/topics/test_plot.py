@@ -64,7 +64,7 @@ async def test_what_is_kept(graph: Graph) -> None:
         view = s.view
         assert isinstance(view, plot.Plot)
         for at in (100.0, 100.001, 100.1, 300.0):
-            view._heard(Twist(), at)
+            view._received(Twist(), at)
             if at < 200.0:
                 assert [*view._curves[0].times] == ([100.0, 100.1] if at == 100.1 else [100.0])
         assert [*view._curves[0].times] == [300.0]
@@ -87,16 +87,16 @@ async def test_a_pause_and_the_end(graph: Graph) -> None:
         await graph.settle()
         await s.look()
         await s.press("space")
-        view._heard(Twist(linear=Vector3(x=5.0)), view._last + 1.0)
+        view._received(Twist(linear=Vector3(x=5.0)), view._last + 1.0)
         await s.look()
         await s.until("━ linear.x 1 m/s")
         await s.press("space")
         await s.look()
         await s.until("━ linear.x 5")
-        assert view._tap is not None
-        assert view._tap.is_open
+        assert view._monitor is not None
+        assert view._monitor.is_open
         view.closed()
-        assert not view._tap.is_open
+        assert not view._monitor.is_open
 
 
 async def test_fields_are_chosen_and_have_axes_of_their_own(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
