@@ -190,6 +190,7 @@ class Console(ConsoleApp):
     # updates
 
     def _display(self, screen: Screen[Any], renderable: Any) -> None:
+        # Textual calls this for each composed frame, and has no public hook between composing and writing.
         if self.is_headless or self.pacing.admits(self._driver):
             super()._display(screen, renderable)
 

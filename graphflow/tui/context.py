@@ -65,6 +65,7 @@ class ConsoleApp(ThemedApp):
         views = [frame.view for frame in self.workspace.frames.values()]
         for view in views:
             view.closed()
+        # Workers of views use the graph, so they end before it is left.
         under_way = [worker for view in views for worker in self.workers.cancel_node(view)]
         ends = asyncio.gather(*(w.wait() for w in under_way), return_exceptions=True)
         await asyncio.wait([ends], timeout=LEAVE_WITHIN)
@@ -72,6 +73,7 @@ class ConsoleApp(ThemedApp):
             await self.hub.live.close()
         if self.hub.supervision is not None:
             await self.hub.supervision.leave()
+        # Last, as one of these follows the supervisor, and `leave` above waits for it.
         self.workers.cancel_group(self, LASTING)
         self.exit(how)
 

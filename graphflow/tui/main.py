@@ -28,7 +28,7 @@ PREFIX_VARIABLE, THEME_VARIABLE = "GRAPHFLOW_PREFIX", "GRAPHFLOW_THEME"
 
 
 class Left:
-    """How a console was left, and the graph's exit code if the graph has ended.
+    """The end of a console session: how it was left, and the graph's exit code if the graph has ended.
 
     `how` is `detach`, `stop` or `failed`; from a guided tour also `next`, or `fixed` for the repaired example.
     """

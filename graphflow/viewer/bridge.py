@@ -277,7 +277,7 @@ class Bridge:
                 for client in self._clients:
                     self._send_graph(client, graph)
                 await is_new.wait()
-                await asyncio.sleep(UPDATE_INTERVAL)
+                await asyncio.sleep(UPDATE_INTERVAL)  # nodes announce their endpoints in bursts
         finally:
             stop()
 

@@ -147,7 +147,8 @@ class Client:
         if self._sent >= WINDOW:
             self._sent = 0
             self._unread += 1
-            asyncio.ensure_future(await self._connection.ping()).add_done_callback(self._ponged)
+            pong = await self._connection.ping()  # sends now; the future is done with the reply
+            asyncio.ensure_future(pong).add_done_callback(self._ponged)
 
     def _ponged(self, pong: asyncio.Future[float]) -> None:
         """Handle a pong: the client has read everything before the ping, or has disconnected."""

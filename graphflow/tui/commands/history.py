@@ -65,9 +65,9 @@ class History:
             return
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            with open(
-                os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "a", encoding="utf-8"
-            ) as file:
+            # Appended in one write, so that lines of several consoles do not mix; private, as commands may be.
+            descriptor = os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+            with open(descriptor, "a", encoding="utf-8") as file:
                 file.write(f"{line}\n")
         except OSError as error:
             self._file = None

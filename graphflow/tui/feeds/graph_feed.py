@@ -12,7 +12,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TypeVar, cast
+from typing import Literal, TypeVar, cast
 
 from graphflow.errors import GraphflowError
 from graphflow.introspect import concurrency
@@ -166,25 +166,26 @@ class Live:
         """The console's own hidden node, once it has joined the graph."""
         return self._node
 
-    def want(self, what: str) -> None:
+    def want(self, report: Literal["numbers", "concurrency"]) -> None:
         """Request that `numbers` or `concurrency` be kept fresh. Views repeat the request at every update."""
-        self._wanted[what] = time.monotonic()
+        self._wanted[report] = time.monotonic()
 
     async def _poll(self) -> None:
         while True:
             now = time.monotonic()
-            wanted = {what for what, at in self._wanted.items() if now - at < WANTED_FOR}
+            wanted = {report for report, at in self._wanted.items() if now - at < WANTED_FOR}
             if "numbers" in wanted:
-                replies = await self._ask(NUMBERS)
+                replies = await self._request(NUMBERS)
                 self.numbers.take(replies, time.monotonic())
             if "concurrency" in wanted:
-                answers = await self._ask(WAITS)
+                answers = await self._request(WAITS)
+                # The time of the request, not of the reply: a change made in between is not in the report.
                 self.concurrency, self.requested_at = concurrency.read(answers), now
                 found = self.concurrency
                 self.deadlocks = explained(found.graph, deadlocked(found.graph)) if found.reports else []
             await asyncio.sleep(max(0.1, POLL_INTERVAL - (time.monotonic() - now)) if wanted else 0.1)
 
-    async def _ask(self, what: str) -> list[bytes]:
+    async def _request(self, report: str) -> list[bytes]:
         assert self.context is not None
         done: asyncio.Future[list[bytes]] = self.context.loop.create_future()
 
@@ -192,7 +193,7 @@ class Live:
             if is_complete and not done.done():
                 done.set_result(replies[:REPLIES_BOUND])
 
-        self.context.session.ask_reports(answer_key(self.domain, what), REPLY_TIMEOUT, on_replies)
+        self.context.session.ask_reports(answer_key(self.domain, report), REPLY_TIMEOUT, on_replies)
         try:
             async with asyncio.timeout(REPLY_TIMEOUT + 1.0):
                 return await done

@@ -169,7 +169,7 @@ class Supervision:
             self.consoles = event["consoles"]
         elif what == "end":
             self.exit_code = int(event["exit_code"])
-        if what in ("ready", "exited", "starting", "left"):
+        if what in ("ready", "exited", "starting", "left"):  # rows have changed: do not wait for the next poll
             self.send(do="ps")
         self.events.append(event)
         self._on_event(event)

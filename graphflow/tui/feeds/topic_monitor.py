@@ -66,7 +66,7 @@ class TopicMonitor:
             self.trouble = f"nobody publishes {self.topic} yet" + (f"; did you mean {near}?" if near else "")
             return
         self.type_name, self.trouble = types[0], ""
-        from graphflow.msgs import registry
+        from graphflow.msgs import registry  # slow to import, and not needed for the first screen
 
         try:
             type_: type[Message] = registry.interface_class(self.type_name)

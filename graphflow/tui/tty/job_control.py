@@ -31,7 +31,7 @@ class JobControl:
         """Handle SIGCONT and SIGTSTP in place of Textual.
 
         After a SIGSTOP, Textual would start a second driver beside the first, whose threads then keep the process from
-        exiting. A SIGTSTP would leave the terminal in raw mode: Ctrl-Z goes through `pause` instead.
+        exiting. A SIGTSTP from elsewhere would leave the terminal in raw mode: Ctrl-Z goes through `pause` instead.
         """
         if self.has_shell:
             loop = asyncio.get_running_loop()
@@ -48,6 +48,7 @@ class JobControl:
         If no shell could resume it, the signal has no effect, and the console goes on at once.
         """
         loop = asyncio.get_running_loop()
+        # The default action of SIGTSTP stops the process; after SIGCONT, leaving `suspend` restores the terminal.
         loop.remove_signal_handler(signal.SIGTSTP)
         loop.remove_signal_handler(signal.SIGCONT)
         with self._app.suspend():

@@ -70,7 +70,7 @@ class LogLines(LineView[Record]):
 
 
 class Log(View):
-    """What nodes have written."""
+    """Log records."""
 
     NAME = "log"
     DOC = "the logs of all nodes, of one, or of a namespace"
@@ -255,8 +255,7 @@ class Log(View):
         return {"node": node} if node else {}
 
     def _chosen(self) -> Record | None:
-        record: Record | None = self._lines.chosen
-        return record
+        return self._lines.chosen
 
     # actions
 
@@ -298,7 +297,7 @@ class Log(View):
         self._go_to_match(-1)
 
     def _go_to_match(self, step: int) -> None:
-        """Go to a warning or an error without hiding the other records."""
+        """Go to the next match of the filter or, without a filter, to the next warning or error."""
         lines = self._lines
         at = lines.cursor if lines.cursor is not None else len(lines.rows) - (step > 0)
         for i in range(at + step, len(lines.rows) if step > 0 else -1, step):

@@ -28,7 +28,7 @@ WAITING = 2_000
 """Maximum lines waiting to be drawn; further ones are counted and dropped."""
 WELCOME = (
     "Any verb of graphflow: topic echo /turtle1/pose, param set ..., action send_goal ...",
-    "tab completes, ↑ recalls, ^c ends what runs; f2 shows a view here instead.",
+    "tab completes, ↑ recalls, ^c interrupts; f2 shows a view here instead.",
 )
 
 
@@ -110,7 +110,7 @@ class Prompt(View):
         self._run(text)
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        if event.value == ":":  # as in any prompt: no verb begins with it
+        if event.value == ":":  # opens the command line, as in other views: no verb begins with it
             self._input.value = ""
             self.console.commands.do_command()
 
@@ -185,7 +185,7 @@ class Prompt(View):
         finally:
             if process.returncode is None:
                 process.kill()
-                await process.communicate()  # drain the pipe, so that it is closed
+                await process.communicate()  # reaps it, and closes its pipes
             self._process = None
 
     async def _read(self, stream: asyncio.StreamReader, style: str) -> None:

@@ -73,11 +73,12 @@ class Source(View):
         lexer = Syntax.guess_lexer(str(self._file), code)
         rows = Syntax("", lexer, theme=theme, background_color="default").highlight(code).split("\n")
         width = len(str(len(rows)))
+        lines = []
         for number, row in enumerate(rows, 1):
             mark = "▶" if number == self._line else " "
             row.stylize_before(self.colours.text)
-            self._lines.rows.append(Text.assemble((f"{mark}{number:>{width}} ", self.colours.dim), row))
-        self._lines.extend([])
+            lines.append(Text.assemble((f"{mark}{number:>{width}} ", self.colours.dim), row))
+        self._lines.extend(lines)
         self.call_after_refresh(self.do_back)
 
     def on_resize(self) -> None:

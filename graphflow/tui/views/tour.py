@@ -44,9 +44,9 @@ class Tour(Groups):
         text = Text(f"{self.options.get('title', '')}\n\n", style=colours.strong)
         advice, keys = self._advice()
         text.append(f"{advice}\n", style=colours.text)
-        for key, what in [*keys, ("q", "leave the tour; its graph goes down")]:
+        for key, effect in [*keys, ("q", "leave the tour; its graph goes down")]:
             text.append(f"  {key}", style=colours.accent)
-            text.append(f"  {what}\n", style=colours.text)
+            text.append(f"  {effect}\n", style=colours.text)
         self._guide.update(text)
 
     def _advice(self) -> tuple[str, list[tuple[str, str]]]:
@@ -56,17 +56,17 @@ class Tour(Groups):
         repaired = ("n", "the same graph, repaired in its file")
         fixed = str(self.options.get("fixed", ""))
         if fixed:
-            return f"Repaired, and it runs; see the log. What its file now says:\n{fixed}", [go_on]
+            return f"Repaired, and it runs; see the log. Its file now reads:\n{fixed}", [go_on]
         if self._deadlocks and any(self._fixes):
             return "The nodes are stuck. The ring below shows who waits for whom, and in which line.", [
                 ("f", f"end it, while the graph runs: {next(found[0].title for found in self._fixes if found)}"),
-                ("enter", "look at the line of source"),
+                ("enter", "open the line of source"),
             ]
         if self._deadlocks:
             return (
                 "The nodes are stuck. The ring below shows why, and which change of the code ends it.",
                 [
-                    ("enter", "look at the line of source"),
+                    ("enter", "open the line of source"),
                     repaired,
                 ],
             )

@@ -196,6 +196,7 @@ class TurtleCanvas(Widget):
                     self._line(x0, y0, x1, y1, line.colour)
             fresh = list(drawing.recent)
         else:
+            # `recent` is bounded: moves that it has dropped come with the next picture.
             count = min(drawing.moves - self._moves, len(drawing.recent))
             fresh = [drawing.recent[i] for i in range(-count, 0)]
         self._moves = drawing.moves

@@ -51,7 +51,7 @@ async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It says what was search_text, and how all rows come back."""
+    """It says what was searched for, and how all rows come back."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     Numbers.now = {"a": ("a", "1")}
     async with stage(Content("numbers")) as s:

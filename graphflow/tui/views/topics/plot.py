@@ -109,7 +109,7 @@ class Plot(View):
         except UsageFault as error:
             self._trouble = str(error)
         if not fields:
-            self._trouble = f"{type_name} has no numbers"
+            self._trouble = f"{type_name} has no numeric fields"
 
     def _draw(self, now: float) -> None:
         colours = self.colours

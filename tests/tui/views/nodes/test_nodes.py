@@ -148,7 +148,7 @@ async def test_a_node_in_a_ring_says_so(graph: Graph) -> None:
         activity = ActivityView("a", "timer tick", "/talker", ("g",), Call("1", "/x"))
         live.concurrency = ConcurrencyReport(WaitGraph({"a": activity}), ["a ring"], {})
         live.deadlocks = [Deadlock(("a",), (), (), is_likely=False)]
-        live.want = lambda what: None  # type: ignore[method-assign]
+        live.want = lambda report: None  # type: ignore[method-assign]
         await s.until("∞ deadlock")
         await s.until("●1 ∞1")
 
