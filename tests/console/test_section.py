@@ -1,4 +1,4 @@
-"""The `console:` section: what it says, and every mistake in it with its place and the nearest right word."""
+"""The `console:` section: its content, and every mistake with its place and a suggestion."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def read(text: str) -> tuple[object, list[str]]:
 
 
 def test_windows_and_panes() -> None:
-    """Rows, columns, sizes, options; a plain list is put in order by a layout."""
+    """Rows, columns, sizes and options are read; a plain list is arranged by a layout."""
     section, wrong = read(
         "console:\n"
         "  prefix: ctrl+a\n"
@@ -94,13 +94,13 @@ def test_windows_and_panes() -> None:
     ],
 )
 def test_mistakes(section: str, problem: str) -> None:
-    """One at a time."""
+    """Each mistake is reported."""
     _, wrong = read(f"console: {section}\n")
     assert len(wrong) == 1
     assert problem in wrong[0]
 
 
 def test_no_section() -> None:
-    """Is none."""
+    """Without the section there is no result."""
     assert read("nodes: {}\n") == (None, [])
     assert "turtle" in known_views()

@@ -17,7 +17,7 @@ PICTURE = """<svg><g>
 
 
 class Talker(Node):
-    """Talks."""
+    """Publishes, serves, and offers an action."""
 
     node_name = "talker"
     rate = Param(2.0, unit="Hz", gt=0.0, le=100.0, doc="How often.")
@@ -46,7 +46,7 @@ class Talker(Node):
 
 
 class Listener(Node):
-    """Listens."""
+    """Subscribes."""
 
     node_name = "listener"
 

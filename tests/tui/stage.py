@@ -1,4 +1,4 @@
-"""A console on a graph in memory: nodes, logs and a supervisor's word that a test makes up."""
+"""A console on a graph in memory, with nodes, logs and a fake supervisor."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ T = TypeVar("T")
 
 
 class Supervised(Supervision):
-    """A supervisor's word, made up; what it is asked is remembered."""
+    """A fake supervisor that records its requests."""
 
     def __init__(self, nodes: list[str], folder: Path) -> None:
         run = GraphRun("id", "lab", 0, 1, 0.0, time.time(), str(folder / "lab.yaml"), "", str(folder), "", "")
@@ -99,7 +99,7 @@ class MemoryView:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Nothing is open."""
+        """Nothing to close."""
 
     @property
     def cache(self) -> GraphCache:
@@ -132,13 +132,13 @@ class MemoryView:
         return answer
 
     def _on_loop(self, work: Callable[[], Coroutine[Any, Any, T]]) -> T:
-        """What the work comes to; nothing is begun when the loop has ended meanwhile."""
+        """Run work on the loop and wait for it; do not start it after the loop has ended."""
         done: Future[T] = Future()
 
         async def working() -> None:
             try:
                 done.set_result(await work())
-            except BaseException as error:  # the thread that waits has it
+            except BaseException as error:  # passed on to the waiting thread
                 done.set_exception(error)
 
         self._loop.call_soon_threadsafe(lambda: self._working.append(asyncio.ensure_future(working())))
@@ -146,7 +146,7 @@ class MemoryView:
 
 
 def _character(key: str) -> str | None:
-    """The character that a key types."""
+    """Return the character that a key types."""
     if len(key) == 1:
         return key
     try:
@@ -156,15 +156,15 @@ def _character(key: str) -> str | None:
 
 
 class Stage:
-    """A console that a test presses keys of."""
+    """A console whose keys a test presses."""
 
     def __init__(self, console: Console, pilot: Pilot[Any]) -> None:
         self.console, self.pilot = console, pilot
 
     @property
     def text(self) -> str:
-        """What is on the screen, a line a row."""
-        self.console.screen._refresh_layout()  # which Textual would do at its next frame
+        """The text on the screen, one line per row."""
+        self.console.screen._refresh_layout()  # Textual would do this at its next frame
         strips = self.console.screen._compositor.render_strips()
         return "\n".join("".join(segment.text for segment in strip).rstrip() for strip in strips)
 
@@ -176,20 +176,20 @@ class Stage:
 
     @property
     def asked(self) -> list[dict[str, Any]]:
-        """What the supervisor was asked, the windows to keep left out."""
+        """Requests to the supervisor, except those to save the windows."""
         supervision = self.console.hub.supervision
         assert isinstance(supervision, Supervised)
         return [r for r in supervision.asked if r["do"] != "keep_layout"]
 
     async def press(self, *keys: str) -> None:
-        """Press keys, each when what the one before has set off is done. Pilot's own waits fifty times as long."""
+        """Press keys, each when the one before has taken effect. Pilot's own method waits fifty times as long."""
         for key in keys:
             name = _character_to_key(key) if len(key) == 1 and not key.isalnum() else key
             self.console.post_message(events.Key(name, _character(name)))
             for _ in range(3):
                 await self.pilot._wait_for_screen()
             deadline = time.monotonic() + LIMIT
-            # A dialog that has just been opened is drawn a moment later; nothing is ever drawn empty.
+            # A new dialog is drawn a moment later; the screen is never empty.
             while self.console.is_running and not (self.console.keyboard.is_quiet and self.text.strip()):
                 assert time.monotonic() < deadline, f"{key} is not done"
                 await self.pilot.pause(0.005)
@@ -202,7 +202,7 @@ class Stage:
         await self.press(*["space" if c == " " else c for c in text])
 
     async def until(self, what: Any, why: str = "") -> None:
-        """Wait until something holds, or a text is on the screen."""
+        """Wait until a condition holds, or a text is on the screen."""
         deadline = time.monotonic() + LIMIT
         holds = (lambda: what in self.text) if isinstance(what, str) else what
         while not holds():
@@ -211,7 +211,7 @@ class Stage:
             await self.pilot.pause(0.02)
 
     async def look(self) -> None:
-        """Let every view look at once, and draw what it found."""
+        """Update every view at once, and draw the result."""
         for frame in self.console.workspace.visible_frames:
             frame.view.look(time.monotonic())
             frame.title_line.refresh_if_changed()
@@ -259,5 +259,5 @@ def record(text: str, node: str = "/talker", level: int = 1, stamp: float = 1.0,
 
 
 def as_json(data: Any) -> Any:
-    """What a round trip over the control socket makes of data."""
+    """Return data as after a round trip over the control socket."""
     return json.loads(json.dumps(data))

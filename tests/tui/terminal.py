@@ -1,4 +1,4 @@
-"""A real terminal: tmux, whose keys and screen a test has."""
+"""A real terminal in tmux, whose keys and screen a test controls."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.conftest import LIMIT, PROJECT, Machine
 
 
 class Terminal:
-    """A terminal of its own, in a tmux server of its own.
+    """A terminal in a tmux server of its own.
 
     Args:
         socket: Where the server listens.
@@ -23,7 +23,7 @@ class Terminal:
         for name in ("COLUMNS", "LINES", "TMUX"):  # the terminal's size is its own
             self._env.pop(name, None)
         width, height = size
-        # The shell stays when the command has ended, so that its last words can be read.
+        # The shell stays after the command has ended, so that its last output can be read.
         shell = f"unset TMUX TMUX_PANE; {command}; echo ended with $?; exec sleep 1000"
         self._do("new-session", "-d", "-x", str(width), "-y", str(height), "-c", str(PROJECT), "sh", "-c", shell)
         self._do("set", "-g", "escape-time", "0")
@@ -35,12 +35,12 @@ class Terminal:
 
     @property
     def text(self) -> str:
-        """What is on the screen."""
+        """The text on the screen."""
         return self._do("capture-pane", "-p")
 
     @property
     def styled_text(self) -> str:
-        """What is on the screen with its colours, as escape sequences that run on from line to line."""
+        """The text on the screen with its colours, as escape sequences that run on from line to line."""
         return self._do("capture-pane", "-epN")
 
     @property
@@ -51,7 +51,7 @@ class Terminal:
 
     @property
     def pid(self) -> int:
-        """The process that runs in the terminal: the shell's child."""
+        """The process in the terminal: the shell's child."""
         shell = int(self._do("display", "-p", "#{pane_pid}"))
         return int(Path(f"/proc/{shell}/task/{shell}/children").read_text().split()[0])
 
@@ -77,5 +77,5 @@ class Terminal:
             time.sleep(0.05)
 
     def hang_up(self) -> None:
-        """Close the terminal: whatever runs in it gets SIGHUP."""
+        """Close the terminal: its processes get SIGHUP."""
         subprocess.run([*self._tmux, "kill-server"], env=self._env, capture_output=True, timeout=LIMIT, check=False)

@@ -1,4 +1,4 @@
-"""The console's screen: what the supervisor says is shown, views look as often as they may, several consoles agree."""
+"""The console's screen: events are shown, views are updated at their rate, several consoles agree."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ],
 )
 async def test_what_the_supervisor_says(event: dict[str, Any], text: str) -> None:
-    """In the bottom line, and among the messages."""
+    """The message is in the bottom line, and among the messages."""
     async with stage() as s:
         s.console.handle_supervisor_event(event)
         assert text in s.text
@@ -36,7 +36,7 @@ async def test_what_the_supervisor_says(event: dict[str, Any], text: str) -> Non
 
 
 async def test_who_has_stopped_the_graph() -> None:
-    """Is still told at its end."""
+    """The reason for stopping is repeated at the end."""
     async with stage() as s:
         s.console.handle_supervisor_event({"event": "stopping", "reason": "down, by pts/7"})
         s.console.handle_supervisor_event({"event": "end", "exit_code": 0})
@@ -44,7 +44,7 @@ async def test_who_has_stopped_the_graph() -> None:
 
 
 async def test_a_terminal_that_has_lost_the_focus() -> None:
-    """As tmux says of one that nobody looks at: the first dialog has the focus nevertheless."""
+    """A terminal reported out of focus, as by tmux, still focuses the first dialog."""
     async with stage() as s:
         s.console.post_message(events.AppBlur())
         await s.until(lambda: not s.console.app_focus)
@@ -61,7 +61,7 @@ async def test_a_terminal_that_has_lost_the_focus() -> None:
 
 
 async def test_a_crash_is_flagged_until_one_looks() -> None:
-    """The window list has a mark, the bottom line the way to go on."""
+    """The window list has a mark, and the bottom line says how to go on."""
     async with stage(Content("log"), Content("nodes")) as s:
         s.console.handle_supervisor_event(
             {"event": "exited", "nodes": ["/arm"], "how": "signal SIGKILL", "unexpected": True}
@@ -74,7 +74,7 @@ async def test_a_crash_is_flagged_until_one_looks() -> None:
 
 
 async def test_logs_are_read_while_the_console_runs() -> None:
-    """By the pulse, without anybody asking."""
+    """Logs are read at every update, even if no view shows them."""
     async with stage(Content("log"), records=[record("one")]) as s:
         await s.until("one")
         s.console.hub.logs.add([record("two")])
@@ -82,7 +82,7 @@ async def test_logs_are_read_while_the_console_runs() -> None:
 
 
 async def test_windows_are_kept_with_the_run() -> None:
-    """After a change, and when the console is left, with what the views show by then."""
+    """Windows are saved after a change and on leaving, with the current content of the views."""
     async with stage(Content("log")) as s:
         await s.press("3")
         s.console.save_layout()
@@ -92,7 +92,7 @@ async def test_windows_are_kept_with_the_run() -> None:
 
 
 async def test_a_small_terminal_shows_one_pane() -> None:
-    """Below what two need."""
+    """A terminal too small for two panes shows one."""
     async with stage(Content("nodes"), size=(80, 24)) as s:
         await s.prefix("percent_sign")
         assert len(s.console.workspace.visible_frames) == 2

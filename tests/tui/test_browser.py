@@ -1,4 +1,4 @@
-"""The console in a real browser, without a window: a page that draws, keys that arrive, a tab that is closed."""
+"""The console in a real, headless browser: a page that draws, keys that arrive, a tab that is closed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ async def consoles(machine: Machine, count: int) -> None:
 
 @slow
 def test_a_console_in_a_tab(machine: Machine, tmp_path: Path) -> None:
-    """It shows the graph, takes keys, and is gone with its tab; the graph runs on. A stranger's page gets nothing."""
+    """A tab shows the graph and takes keys; its console ends with it. Pages of other origins are refused."""
     machine.run("up", "-d", "graphs/talker_listener.yaml")
     port = free_endpoint().rpartition(":")[2]
     url = f"http://127.0.0.1:{port}/"

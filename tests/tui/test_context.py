@@ -1,4 +1,4 @@
-"""A voice to the user, and leaving."""
+"""Messages to the user, and leaving."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_messages_are_kept() -> None:
-    """The last five hundred, commands among them."""
+    """The last five hundred messages are kept, commands among them."""
     async with stage() as s:
         for i in range(600):
             s.console.say(f"message {i}")
@@ -24,7 +24,7 @@ async def test_messages_are_kept() -> None:
 
 
 async def test_leaving_keeps_the_windows_and_lets_go() -> None:
-    """Views are closed, the windows sent."""
+    """Leaving closes the views and saves the windows."""
     async with stage(Content("log")) as s:
         await s.console.leave("detach")
         supervision: Any = s.console.hub.supervision

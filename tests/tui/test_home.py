@@ -1,4 +1,4 @@
-"""What a console shows first."""
+"""The default first window."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ],
 )
 async def test_the_turtle_where_there_is_one(class_path: str, views: list[str], focused: str, tmp_path: Path) -> None:
-    """Else the nodes and their logs."""
+    """A turtle is shown if the graph has one; otherwise nodes and logs only."""
     supervision = Supervised(["/a"], tmp_path)
     supervision.nodes["/a"]["class"] = class_path
     layout = Layout()
@@ -35,7 +35,7 @@ async def test_the_turtle_where_there_is_one(class_path: str, views: list[str], 
 
 @pytest.mark.parametrize(("nodes", "columns", "axis"), [(40, 120, "columns"), (40, 80, "rows"), (4, 120, "rows")])
 def test_many_nodes_have_the_whole_height(nodes: int, columns: int, axis: str, tmp_path: Path) -> None:
-    """Where the terminal is wide enough for what there is of one of them beside the list."""
+    """With many nodes and a wide terminal, the list takes the whole height, with the details beside it."""
     supervision = Supervised([f"/n{i}" for i in range(nodes)], tmp_path)
     layout = Layout()
     open_home(layout, Hub(0, supervision, (), dict), columns)

@@ -1,4 +1,4 @@
-"""All windows of a console, and their two forms as data."""
+"""The windows of a console, and their two forms as data."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def shape(layout: Layout) -> object:
 
 
 def test_what_is_kept_with_the_run_comes_back() -> None:
-    """Windows, panes, sizes, the focus and the zoom."""
+    """Windows, panes, sizes, focus and zoom are restored."""
     layout = drive()
     layout.select(1)
     layout.windows[0].zoomed = True
@@ -73,13 +73,13 @@ def test_what_is_written_into_a_graph_file_reads_back() -> None:
     ],
 )
 def test_what_is_no_layout_is_refused(data: object) -> None:
-    """Whatever another version may have kept."""
+    """Malformed data, possibly of another version, is refused."""
     with pytest.raises(ValueError, match="not a layout"):
         Layout.from_json(data)
 
 
 def test_numbers_of_windows() -> None:
-    """A new window takes the lowest free number; closing goes back to the one before; the last stays."""
+    """A new window takes the lowest free number; closing goes back to the previous window; the last stays."""
     layout = drive()
     assert layout.open("", layout.make_pane(Content("top"))) == 2
     layout.select(2)

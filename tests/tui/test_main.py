@@ -1,4 +1,4 @@
-"""Opening the console: what the supervisor says first decides the windows, the prefix and the theme."""
+"""Opening the console: the supervisor's greeting determines windows, prefix and theme."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SECTION = {
 
 
 class Shown:
-    """In place of the console: remembers how it was made, and is left at once."""
+    """Replaces the console: records its arguments, and is left at once."""
 
     made: list[tuple[Any, Layout | None, str, str]] = []  # noqa: RUF012
     ways: list[str] = []  # noqa: RUF012
@@ -76,7 +76,7 @@ def opened(hello: dict[str, Any], folder: Path, monkeypatch: pytest.MonkeyPatch,
 def test_which_windows(
     hello: dict[str, Any], view: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Those kept with the run, else the file's, else the usual ones."""
+    """Windows saved with the run come first, then the graph file's, then the default."""
     opened(json.loads(json.dumps(hello)), tmp_path, monkeypatch)
     [(hub, layout, _, _)] = Shown.made
     assert list(hub.supervision.nodes) == ["/a"]
@@ -100,7 +100,7 @@ def test_which_windows(
 def test_which_prefix(
     env: dict[str, str], option: str | None, section: Any, prefix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Command line, environment, file; inside tmux not tmux's own."""
+    """The prefix comes from command line, environment or file; inside tmux it is not tmux's own."""
     for name, value in env.items():
         monkeypatch.setenv(name, value)
     opened({"console": section}, tmp_path, monkeypatch, prefix=option)
@@ -109,7 +109,7 @@ def test_which_prefix(
 
 
 def test_going_to_another_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The console opens again, on the other; how it was left is told of that one."""
+    """The console opens again on the other graph, and reports the end of that one."""
     Shown.ways[:] = ["switch other", "stop"]
     monkeypatch.setattr(main, "running", lambda: [run_in(tmp_path), run_in(tmp_path, "other")])
     tour = {"windows": [{"name": "tour", "root": {"view": "tour"}}]}
@@ -121,7 +121,7 @@ def test_going_to_another_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 
 def test_without_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nodes of others: no supervisor, nothing to stop."""
+    """Nodes of others have no supervisor, and nothing can be stopped."""
     left = main.open_console(None, 9, command=("x",), verbs=dict)
     assert Shown.made[0][0].supervision is None
     assert left.run is None

@@ -1,4 +1,4 @@
-"""Panes on the screen: the mouse focuses, drags borders; titles say what is in them."""
+"""Panes on the screen: the mouse focuses them and drags borders; titles describe their content."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_a_click_focuses_a_pane() -> None:
-    """On its title or anywhere in it."""
+    """A click on the title or anywhere in a pane focuses it."""
     async with stage(Content("nodes")) as s:
         await s.prefix("percent_sign")
         a, b = s.console.window.numbers
@@ -25,7 +25,7 @@ async def test_a_click_focuses_a_pane() -> None:
 
 @pytest.mark.parametrize(("key", "axis"), [("percent_sign", "columns"), ("quotation_mark", "rows")])
 async def test_borders_are_dragged(key: str, axis: str) -> None:
-    """The line between columns, the title of the lower of two rows."""
+    """The line between columns can be dragged, and the title of the lower of two rows."""
     async with stage(Content("nodes"), size=(100, 30)) as s:
         await s.prefix(key)
         await s.pilot.pause()
@@ -47,7 +47,7 @@ async def test_borders_are_dragged(key: str, axis: str) -> None:
 
 
 async def test_views_keep_their_state_while_another_window_is_shown() -> None:
-    """A pane is not made anew by going away and back."""
+    """A view is not recreated when its window is left and shown again."""
     async with stage(Content("nodes"), Content("log")) as s:
         await s.prefix("1")
         view = s.view
@@ -58,7 +58,7 @@ async def test_views_keep_their_state_while_another_window_is_shown() -> None:
 
 
 async def test_the_title_says_what_is_special() -> None:
-    """On its right, as far as there is room; the focused one is marked."""
+    """The note is on the right of the title if there is room; the focused title is marked."""
     async with stage(Content("log"), size=(60, 20)) as s:
         assert s.text.startswith("▌log of all nodes")
         assert "follow ▼" in s.text.split("\n")[0]
@@ -68,7 +68,7 @@ async def test_the_title_says_what_is_special() -> None:
 
 
 async def test_a_note_that_comes_and_goes_between_two_looks() -> None:
-    """The title does not keep it: what counts is what was drawn last."""
+    """A note that appears and vanishes between two updates is not left in the title."""
     async with stage(Content("log")) as s:
         title = s.console.workspace.frames[s.console.window.focused].title_line
         title.refresh_if_changed()
@@ -83,11 +83,11 @@ async def test_a_note_that_comes_and_goes_between_two_looks() -> None:
 
 @pytest.mark.parametrize(("width", "shown"), [(6, "a name"), (5, "a na…"), (1, "…"), (0, ""), (-3, "")])
 def test_titles_that_are_too_long(width: int, shown: str) -> None:
-    """They end with a sign that something is missing."""
+    """Long titles end with an ellipsis."""
     assert _cut("a name", width) == shown
 
 
 @pytest.mark.parametrize(("width", "shown"), [(6, "a note"), (5, "a no…"), (4, "a n…"), (3, "")])
 def test_notes_without_room(width: int, shown: str) -> None:
-    """They are left out rather than cut to a few letters."""
+    """Notes are left out rather than cut to a few letters."""
     assert _cut("a note", width, least=4) == shown

@@ -1,4 +1,4 @@
-"""Windows as data: panes never overlap and leave no gap, whatever is done to them."""
+"""Windows as data: panes never overlap and leave no gap."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def window() -> tuple[Layout, Window]:
 
 
 def covered(w: Window, size: tuple[int, int]) -> None:
-    """Every cell belongs to one pane or to the line beside one."""
+    """Check that every cell belongs to one pane or to the line beside one."""
     places = w.places(*size)
     cells: dict[tuple[int, int], int] = {}
     for number, r in places.items():
@@ -51,7 +51,7 @@ OPERATIONS = st.lists(
 @cases(count(few=40, full=150))
 @given(OPERATIONS)
 def test_whatever_is_done_the_panes_fill_the_window(operations: list[tuple[str, int]]) -> None:
-    """Splits, closes, swaps, moved borders, layouts: all cells are used once, and one pane has the focus."""
+    """After splits, closes, swaps, moved borders and layouts, all cells are used once, and one pane has the focus."""
     layout, w = window()
     for what, n in operations:
         number = w.numbers[n % len(w.numbers)]
@@ -78,7 +78,7 @@ def test_whatever_is_done_the_panes_fill_the_window(operations: list[tuple[str, 
 
 
 def test_a_window_that_is_too_small_shows_the_focused_pane() -> None:
-    """Below what two panes need there is one, as large as there is room."""
+    """In too little room for two panes there is one, as large as possible."""
     layout, w = window()
     new = layout.make_pane(Content("log"))
     assert w.split(w.focused, new, "columns", Rect(0, 0, *SIZE))
@@ -87,7 +87,7 @@ def test_a_window_that_is_too_small_shows_the_focused_pane() -> None:
 
 
 def test_a_pane_without_room_is_not_split() -> None:
-    """And nothing has changed."""
+    """A refused split changes nothing."""
     layout, w = window()
     small = Rect(0, 0, 2 * MIN_WIDTH, 2 * MIN_HEIGHT - 1)
     assert not w.split(w.focused, layout.make_pane(Content("log")), "columns", small)
@@ -96,7 +96,7 @@ def test_a_pane_without_room_is_not_split() -> None:
 
 
 def test_splitting_again_halves_one_pane_only() -> None:
-    """As in tmux: the others keep their size."""
+    """As in tmux, the other panes keep their size."""
     layout, w = window()
     a = w.focused
     w.split(a, layout.make_pane(Content("b")), "columns", Rect(0, 0, *SIZE))
@@ -109,7 +109,7 @@ def test_splitting_again_halves_one_pane_only() -> None:
 
 
 def test_borders_are_dragged_as_far_as_there_is_room() -> None:
-    """A pane keeps its least width."""
+    """A pane keeps its minimum width."""
     layout, w = window()
     w.split(w.focused, layout.make_pane(Content("b")), "columns", Rect(0, 0, *SIZE))
     [bar] = w.dividers(*SIZE)
@@ -124,7 +124,7 @@ def test_borders_are_dragged_as_far_as_there_is_room() -> None:
 @pytest.mark.parametrize("layout_name", LAYOUTS)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 8])
 def test_named_layouts(layout_name: str, count: int) -> None:
-    """Each puts all panes somewhere, in order; main layouts give the first the largest share."""
+    """Each layout places all panes in order; main layouts give the first the largest share."""
     panes = [Pane(i, Content("x")) for i in range(1, count + 1)]
     w = Window("w", panes[0] if count == 1 else Split("rows", list(panes)))
     w.arrange(layout_name)

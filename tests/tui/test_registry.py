@@ -20,7 +20,7 @@ class Mine(View):
 
 @pytest.mark.parametrize("name", list(VIEWS))
 def test_the_views_that_graph_files_know_are_there(name: str) -> None:
-    """By the same name, with a line on what each shows."""
+    """Each name in the table of views has a view of that name, with a description."""
     view = view_class(name)
     assert name == view.NAME
     assert describe(name) == view.DOC
@@ -36,7 +36,7 @@ def test_the_views_that_graph_files_know_are_there(name: str) -> None:
     ],
 )
 def test_views_of_other_packages(value: str, doc: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Found by their entry point; one that does not work says why, in its pane."""
+    """Views are found by entry point; one that does not load shows the reason in its pane."""
     entry = EntryPoint("mine", value, PLUGINS)
     monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [entry])
     assert known_views()[-1] == "mine"

@@ -1,6 +1,6 @@
 """Every view as text, with recorded data: `tests/tui/snapshots/NAME.txt`.
 
-`GRAPHFLOW_SNAPSHOTS=write` writes the files anew; look at what has changed before you commit it.
+`GRAPHFLOW_SNAPSHOTS=write` rewrites the files; inspect the changes before committing them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 FOLDER = Path(__file__).parent / "snapshots"
 SIZE = (96, 26)
 VOLATILE = ("nodes", "hz", "top", "goals", "turtle", "crash")
-"""Views whose numbers are measured: digits and gaps count for nothing."""
+"""Views with measured numbers: digits and gaps are ignored."""
 SOURCE = "def tick(self):\n    return self.add.call(1, 2)\n\n\nclass Arm:\n    pass\n"
 TICK, GET = Place("left.py", 12), Place("right.py", 7)
 ASKS, ASKS_BACK = Call("1", "/right/get"), Call("2", "/left/get")
@@ -86,7 +86,7 @@ async def crash(s: Stage, graph: Graph, node: Talker) -> None:
 
 
 async def nothing(s: Stage, graph: Graph, node: Talker) -> None:
-    """The view fills itself."""
+    """Do nothing: the view fills itself."""
 
 
 ABOUT = {"echo": "/chatter", "hz": "/chatter", "plot": "/speed.linear.x", "params": "/talker", "crash": "/talker"}
@@ -104,7 +104,7 @@ SETUPS: dict[str, Setup] = {
 
 @pytest.mark.parametrize("view", sample(list(VIEWS)))
 async def test_a_view(view: str, graph: Graph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It looks as it did."""
+    """The screen equals the recorded one."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
     (tmp_path / "arm.py").write_text(SOURCE)
     about = f"{tmp_path / 'arm.py'}:2" if view == "source" else ABOUT.get(view, "")
@@ -126,7 +126,7 @@ async def test_a_view(view: str, graph: Graph, tmp_path: Path, monkeypatch: pyte
 
 
 def settled(text: str, view: str) -> str:
-    """The screen without the bars below, which have tests of their own, and without what changes from run to run."""
+    """Remove the bars, which have tests of their own, and everything that varies from run to run."""
     text = "\n".join(line.rstrip() for line in text.split("\n")[:-2]).rstrip("\n") + "\n"
     text = re.sub(r"\d\d:\d\d:\d\d", "12:00:00", text)
     if view in VOLATILE:
@@ -137,7 +137,7 @@ def settled(text: str, view: str) -> str:
         text = re.sub(r"rate +fits", "rate  fits", re.sub(r" +\d+\.\d Hz", "", text))
     if view == "top":  # other tests may have left the process a child
         text = re.sub(r" *0\+0", "  0", text)
-    if view == "plot":  # where the dots are depends on the moments at which the messages come
+    if view == "plot":  # the places of the dots depend on the arrival times
         text = re.sub("[ ▔\u2801-\u28ff]+", " ", text)
     if view == "nodes":
         text = re.sub(r"(● running|◆ not ours).*", r"\1 ...", text)
@@ -145,5 +145,5 @@ def settled(text: str, view: str) -> str:
 
 
 def test_no_snapshot_is_left_over() -> None:
-    """Each is of a view that there is."""
+    """Each snapshot belongs to a view."""
     assert {file.stem for file in FOLDER.glob("*.txt")} == set(VIEWS)

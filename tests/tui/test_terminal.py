@@ -1,4 +1,4 @@
-"""The real console in a real terminal: leaving, coming back, dying, hanging; the graph runs on through all of it."""
+"""The real console in a real terminal: detaching, attaching, dying, hanging; the graph runs on throughout."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def consoles(machine: Machine) -> list[str]:
 
 @slow
 def test_leaving_and_coming_back(machine: Machine, terminal: Open, counting: str) -> None:
-    """Split, run a verb, detach; the nodes run on; attach: same panes, and each line of the log once."""
+    """After split, verb and detach, the nodes run on; attaching restores the panes, with each line of the log once."""
     t = terminal(f"up {counting}")
     t.until("● running")
     t.until(lambda text: bool(re.search(r"number \d+", text)))
@@ -108,7 +108,7 @@ def test_leaving_and_coming_back(machine: Machine, terminal: Open, counting: str
 def test_a_console_that_is_killed_or_hangs_or_loses_its_terminal(
     machine: Machine, terminal: Open, counting: str
 ) -> None:
-    """The graph does not notice, and what ran in its panes ends with it."""
+    """The graph is unaffected, and the commands in the console's panes end with it."""
     machine.run("up", "-d", counting)
     pid = rows(machine)["/counting"]["pid"]
 
@@ -159,7 +159,7 @@ def test_a_console_that_is_killed_or_hangs_or_loses_its_terminal(
 
 @slow
 def test_several_consoles_and_sizes(machine: Machine, terminal: Open, counting: str) -> None:
-    """Each has its own view; what one does is told in the other; small terminals show one pane."""
+    """Each console has its own windows; actions of one are reported in the other; small terminals show one pane."""
     machine.run("up", "-d", counting)
     one, two = terminal("attach"), terminal("attach", (80, 24))
     for t in (one, two):
@@ -188,7 +188,7 @@ def test_several_consoles_and_sizes(machine: Machine, terminal: Open, counting: 
 
 
 def test_a_graph_that_cannot_start_says_why(machine: Machine, terminal: Open) -> None:
-    """As text, where no console opens; in the console, where the nodes fail."""
+    """The reason is printed if no console opens, and shown in the console if nodes fail."""
     bad = machine.run_directory / "bad.yaml"
     bad.write_text("nodes:\n  /a: {clas: nodes.talker:Talker}\n")
     t = terminal(f"up {bad}")
@@ -198,7 +198,7 @@ def test_a_graph_that_cannot_start_says_why(machine: Machine, terminal: Open) ->
 
 @slow
 def test_nodes_of_others(machine: Machine, terminal: Open) -> None:
-    """Without a supervisor of ours the console shows what it can, and says what it cannot."""
+    """Without a supervisor of ours, the console shows what it can, and says what it cannot do."""
     node = machine.start("run", "nodes.talker:Talker")
     node.wait_for("Publishing")
     t = terminal("attach")
@@ -211,7 +211,7 @@ def test_nodes_of_others(machine: Machine, terminal: Open) -> None:
 
 @slow
 def test_back_to_the_shell_and_on(machine: Machine, terminal: Open, counting: str) -> None:
-    """Ctrl-Z gives the terminal to the shell, `fg` comes back with the screen and all keys, twice; q still leaves."""
+    """Ctrl-Z gives the terminal to the shell; `fg` restores the screen and all keys, twice; q still leaves."""
     machine.run("up", "-d", counting)
     t = terminal("--version; PS1='READY> ' bash --norc --noprofile -i")
     t.until("READY>")
@@ -234,7 +234,7 @@ def test_back_to_the_shell_and_on(machine: Machine, terminal: Open, counting: st
 
 
 def test_waiting_never_ends_in_silence(machine: Machine, terminal: Open) -> None:
-    """Nothing runs: exit code 3 and what to type."""
+    """If nothing runs, the exit code is 3, and the text says what to type."""
     t = terminal("attach")
     t.until("no graph is running; start one with: graphflow up GRAPH.yaml")
     t.until("ended with 3")
@@ -242,7 +242,7 @@ def test_waiting_never_ends_in_silence(machine: Machine, terminal: Open) -> None
 
 @slow
 def test_the_tour_of_the_deadlocks(machine: Machine, terminal: Open) -> None:
-    """It says what to press: f ends the ring, n leaves for the next; then nothing is left."""
+    """The tour says what to press: f ends the deadlock, n goes to the next; nothing is left running."""
     t = terminal("demo deadlock self_call")
     t.until("tour 1/1 self_call")
     t.until("f  end it")

@@ -1,4 +1,4 @@
-"""What all views have in common, those of other packages too."""
+"""The base class of views, as views of other packages use it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Battery(View):
-    """Counts how often it is looked at."""
+    """Counts its updates."""
 
     NAME = "battery"
     DOC = "how full the battery is"
@@ -54,7 +54,7 @@ class Battery(View):
 
 
 async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is looked at while it is on screen, its keys act, its errors are told, it is closed in the end."""
+    """A view is updated while it is on screen; its keys act, its errors are shown, and it is closed in the end."""
     from graphflow.tui.registry import view_class
 
     def chosen(name: str) -> type[View]:
@@ -83,7 +83,7 @@ async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_the_view_of_the_page(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What docs/console.md shows works: it waits for its topic, shows its messages, and its key acts."""
+    """The example of docs/console.md waits for its topic, shows its messages, and its key acts."""
     [example] = blocks(PROJECT / "docs" / "console.md", "python")
     made: dict[str, Any] = {"__name__": "my_robot.views"}
     exec(example.text, made)

@@ -8,7 +8,7 @@ server = pytest.importorskip("textual_serve.server", reason="the extra `web` is 
 
 
 def test_it_listens_on_this_machine_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    """There is no password: nobody else may reach it."""
+    """There is no password, so only this machine may connect."""
     from graphflow.tui import web
 
     made: list[tuple[str, str, int]] = []
@@ -18,7 +18,7 @@ def test_it_listens_on_this_machine_only(monkeypatch: pytest.MonkeyPatch) -> Non
             made.append((command, host, port))
 
         def serve(self) -> None:
-            """Nobody comes."""
+            """Returns at once: there are no clients."""
 
     monkeypatch.setattr(web, "OwnPageServer", Server)
     web.serve(["python", "-m", "graphflow", "attach", "--graph", "a b"], 8147)

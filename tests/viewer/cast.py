@@ -1,4 +1,4 @@
-"""A viewer for tests: a client of Foxglove's WebSocket protocol, and a robot for it to look at.
+"""A viewer for tests: a client of Foxglove's WebSocket protocol, and a robot to view.
 
 Source: the protocol's specification, foxglove/ws-protocol, version of the subprotocol `foxglove.sdk.v1`.
 """
@@ -60,7 +60,7 @@ class Shown(NamedTuple):
 
 
 class Viewer:
-    """One client: what it was told, and what it asks for."""
+    """One client: its requests, and the messages it has received."""
 
     def __init__(self, socket: ClientConnection) -> None:
         self._socket = socket
@@ -137,11 +137,11 @@ class Viewer:
         await self._socket.send(json.dumps({"op": op, **fields}))
 
     async def say(self, message: str | bytes) -> None:
-        """Send something as it is."""
+        """Send a raw message."""
         await self._socket.send(message)
 
     async def subscribe(self, number: int, topic: str) -> None:
-        """Look at a topic."""
+        """Subscribe to a topic."""
         await self.until(lambda: topic in self.channels)
         await self.send("subscribe", subscriptions=[{"id": number, "channelId": self.channels[topic]["id"]}])
 
@@ -157,7 +157,7 @@ class Viewer:
 
 @asynccontextmanager
 async def viewer(port: int, origin: str = "") -> AsyncIterator[Viewer]:
-    """A client of the server on a port of this machine."""
+    """A client of the server on a local port."""
     protocols = [Subprotocol("foxglove.sdk.v1")]
     page = Origin(origin) if origin else None
     url = f"ws://127.0.0.1:{port}"
@@ -171,7 +171,7 @@ async def viewer(port: int, origin: str = "") -> AsyncIterator[Viewer]:
 
 
 class Served(NamedTuple):
-    """A server, and where it is."""
+    """A server and its port."""
 
     bridge: Bridge
     port: int
@@ -181,7 +181,7 @@ class Served(NamedTuple):
 async def served(
     graph: Graph, *nodes: Node, is_read_only: bool = False, pages: tuple[str, ...] = ()
 ) -> AsyncIterator[Served]:
-    """Nodes, and the server that shows them."""
+    """Start nodes, and the server that shows them."""
     node = Node("bridge")
     await graph.start(*nodes, node)
     bridge = Bridge(node, "lab", is_read_only=is_read_only, pages=frozenset(pages))

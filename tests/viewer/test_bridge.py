@@ -1,4 +1,4 @@
-"""A graph in a viewer, seen by a client of the protocol."""
+"""A graph in a viewer, tested by a client of the protocol."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_what_a_viewer_is_told(graph: Graph) -> None:
-    """Topics with definitions, services, who is connected with whom; what a node takes away goes."""
+    """A viewer receives topics with definitions, services, and the connection graph; removals are sent, too."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen:
         assert seen.info["name"] == "lab"
@@ -50,7 +50,7 @@ async def test_what_a_viewer_is_told(graph: Graph) -> None:
 
 
 async def test_only_looking(graph: Graph) -> None:
-    """Nobody publishes, calls or sets, whatever is sent."""
+    """A read-only server refuses to publish, call or set."""
     robot = Robot()
     async with served(graph, robot, is_read_only=True) as lab, viewer(lab.port) as seen:
         assert not {"clientPublish", "services"} & {*seen.info["capabilities"]}
@@ -65,13 +65,13 @@ async def test_only_looking(graph: Graph) -> None:
 
 
 class Simulator(Node):
-    """Has a clock."""
+    """Publishes a clock."""
 
     clock_ = Publisher(Clock, "/clock", qos=CLOCK)
 
 
 async def test_simulated_time(graph: Graph) -> None:
-    """Is the viewers' time, if there is one."""
+    """Viewers use simulated time if there is one."""
     node = Simulator()
     async with served(graph, node) as lab, viewer(lab.port) as seen:
         assert "time" in seen.info["capabilities"]
@@ -81,7 +81,7 @@ async def test_simulated_time(graph: Graph) -> None:
 
 
 async def test_a_port_that_is_taken(graph: Graph) -> None:
-    """Is an error that says what to do."""
+    """The error says what to do."""
     async with served(graph) as lab:
         node = Node("second")
         await graph.start(node)
@@ -108,7 +108,7 @@ async def test_a_port_that_is_taken(graph: Graph) -> None:
     ],
 )
 async def test_pages(graph: Graph, origin: str, is_let_in: bool) -> None:
-    """Of strangers cannot connect: a browser would let them."""
+    """Pages of other origins are refused, since a browser would let them connect."""
     async with served(graph, pages=("https://viewer.example",)) as lab:
         if is_let_in:
             async with viewer(lab.port, origin):
@@ -145,7 +145,7 @@ WRONG: list[str | bytes] = [
 
 
 async def test_what_is_not_of_the_protocol(graph: Graph) -> None:
-    """Is answered with a warning each, and costs nobody anything."""
+    """Each invalid message is answered with a warning, and affects nothing else."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as bad, viewer(lab.port) as good:
         for count, wrong in enumerate(WRONG, 1):
@@ -159,7 +159,7 @@ async def test_what_is_not_of_the_protocol(graph: Graph) -> None:
 
 
 async def test_too_much_at_once(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Is refused."""
+    """Requests beyond the limit are refused."""
     monkeypatch.setattr(client, "WORK_BOUND", 2)
     monkeypatch.setattr(bridge_module, "CLIENTS_BOUND", 1)
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
@@ -181,7 +181,7 @@ HELLO = "\r\n".join(
 
 @slow
 async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Are sent away when too much waits for them, and hold up no end."""
+    """Viewers that exceed the limit are disconnected, and do not delay closing."""
     monkeypatch.setattr(client, "CONTROL_BOUND", 100_000)
     monkeypatch.setattr(bridge_module, "GRACE", 0.1)
     robot = Robot()
@@ -204,7 +204,7 @@ async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.Monke
 
 
 async def test_a_clock_that_comes_later(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Is that of viewers who come after it; times before 1970 are none."""
+    """Viewers that connect later use the clock; times before 1970 are ignored."""
     node = Simulator()
     async with served(graph) as lab:
         await graph.start(node)

@@ -1,4 +1,4 @@
-"""What waits to be sent to a viewer."""
+"""The send queues of a viewer."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Connection:
-    """Stands for one that takes what it is sent, and reads none of it."""
+    """A connection that accepts messages but never reads them."""
 
     def __init__(self) -> None:
         self.transport = self
@@ -38,7 +38,7 @@ def made() -> tuple[client.Client, Connection]:
 
 
 def test_messages_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The oldest of a channel are left out, which is told once; no channel costs another."""
+    """The oldest messages of a channel are dropped, which is reported once; channels do not affect each other."""
     monkeypatch.setattr(client, "CHANNEL_BOUND", 1000)
     slow, connection = made()
     slow.send_message(2, b"small")
@@ -63,9 +63,7 @@ async def settle() -> None:
 
 
 async def test_a_viewer_that_reads_slowly() -> None:
-    """It is sent no more than it has been seen to read; then words first, small messages next, and of large ones the
-    latest.
-    """
+    """No more is sent than the client has read; then control messages, small messages, and the latest large ones."""
     slow, connection = made()
     large = [bytes([number]) * client.WINDOW for number in range(6)]
     writing = asyncio.ensure_future(slow.write())
@@ -91,7 +89,7 @@ async def test_a_viewer_that_reads_slowly() -> None:
 
 
 def test_words_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is sent away, whatever waits; long texts are cut before."""
+    """A client that exceeds the limit is disconnected; long warnings are cut."""
     monkeypatch.setattr(client, "CONTROL_BOUND", 10_000)
     slow, connection = made()
     slow.warn("x" * 1_000_000)
@@ -104,7 +102,7 @@ def test_words_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_work_that_fails(caplog: pytest.LogCaptureFixture) -> None:
-    """Is told, whatever it was."""
+    """A failed request is reported, whatever its error."""
     found, _ = made()
 
     async def wrong() -> None:
@@ -117,7 +115,7 @@ async def test_work_that_fails(caplog: pytest.LogCaptureFixture) -> None:
 
 
 async def test_large_messages_take_turns() -> None:
-    """The smaller of two large topics does not keep the other back for ever."""
+    """The smaller of two large topics does not starve the other."""
     slow, _ = made()
     sent: list[int] = []
     for _ in range(6):

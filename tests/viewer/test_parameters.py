@@ -11,7 +11,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_parameters(graph: Graph) -> None:
-    """Are read, set and followed; what is refused says why."""
+    """Parameters are read, set and followed; a refusal gives the reason."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen:
         await seen.send("getParameters", parameterNames=[], id="all")
@@ -34,7 +34,7 @@ async def test_parameters(graph: Graph) -> None:
 
 
 async def test_following_all(graph: Graph) -> None:
-    """No name is all names, and in the end none; too many are refused."""
+    """No name means all names, and at the end none; too many are refused."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen:
         await seen.send("subscribeParameterUpdates", parameterNames=[])
@@ -55,7 +55,7 @@ async def test_following_all(graph: Graph) -> None:
 
 
 async def test_numbers_that_json_has_not(graph: Graph) -> None:
-    """Become texts; the others are not lost with them."""
+    """Non-finite numbers become strings, without affecting the others."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen:
         robot.limit = float("inf")

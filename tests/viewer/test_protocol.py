@@ -1,4 +1,4 @@
-"""What clients say and are told."""
+"""Parsing of clients' messages, and encoding of the server's."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from graphflow.viewer import protocol
 
 
 def test_words_of_clients() -> None:
-    """Are read into what they mean."""
+    """JSON messages are parsed."""
     said = protocol.read_text('{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 2, "more": 3}]}')
     assert said == protocol.Subscribe(
         op="subscribe", subscriptions=[protocol.Subscription.model_validate({"id": 1, "channelId": 2})]
@@ -33,7 +33,7 @@ def test_words_of_clients() -> None:
     ],
 )
 def test_words_that_are_none(text: str, message: str) -> None:
-    """Say where they are wrong, in short."""
+    """Errors in JSON messages are located, in short."""
     with pytest.raises(DecodeError) as caught:
         protocol.read_text(text)
     assert message in str(caught.value)
@@ -41,7 +41,7 @@ def test_words_that_are_none(text: str, message: str) -> None:
 
 
 def test_bytes_of_clients() -> None:
-    """Are messages and calls."""
+    """Binary messages and calls are parsed."""
     assert protocol.read_bytes(b"\x01\x07\x00\x00\x00data") == protocol.Message(7, b"data")
     call = protocol.read_bytes(b"\x02\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00cdrdata")
     assert call == protocol.Call(1, 2, "cdr", b"data")
@@ -53,13 +53,13 @@ def test_bytes_of_clients() -> None:
     "data", [b"", b"\x00", b"\x01\x00", b"\x02" + bytes(11), b"\x02" + bytes(8) + b"\x09" + bytes(3)]
 )
 def test_bytes_that_are_none(data: bytes) -> None:
-    """Are refused."""
+    """Other bytes are refused."""
     with pytest.raises(DecodeError, match="do not follow the protocol"):
         protocol.read_bytes(data)
 
 
 def test_what_clients_are_told() -> None:
-    """Is written in the protocol's words; what is not said is left out."""
+    """Fields are encoded in camel case; those that are None are left out."""
     assert json.loads(protocol.control_message("unadvertise", channel_ids=[1])) == {
         "op": "unadvertise",
         "channelIds": [1],

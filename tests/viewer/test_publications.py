@@ -1,4 +1,4 @@
-"""What viewers publish."""
+"""Publishing by viewers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_publishing(graph: Graph) -> None:
-    """In CDR or JSON; what is no message is told, and reaches nobody."""
+    """CDR and JSON are published; malformed messages are reported and not published."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen:
         channels = [
@@ -54,7 +54,7 @@ async def test_publishing(graph: Graph) -> None:
 
 
 async def test_publishers_of_a_viewer_that_has_gone(graph: Graph) -> None:
-    """End with it."""
+    """The publishers of a viewer end with it."""
     async with served(graph, Robot()) as lab:
         async with viewer(lab.port) as seen:
             channel = {"id": 1, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twist"}
@@ -64,7 +64,7 @@ async def test_publishers_of_a_viewer_that_has_gone(graph: Graph) -> None:
 
 
 async def test_too_many_publishers(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Are refused."""
+    """Publishers beyond the limit are refused."""
     monkeypatch.setattr(publications, "BOUND", 2)
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         channel = {"topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twist"}

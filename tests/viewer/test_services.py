@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_calls(graph: Graph) -> None:
-    """Get their answer, or why there is none."""
+    """Calls get their response, or the reason for its absence."""
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         await seen.call(1, "/power", SetBool.Request(data=True).to_bytes())
         await seen.until(lambda: 1 in seen.answers)
@@ -28,7 +28,7 @@ async def test_calls(graph: Graph) -> None:
 
 
 class Forger(Node):
-    """Announces a type of its own under the name of another's service."""
+    """Announces another type under the name of an existing service."""
 
     @service(Trigger, "power")
     def power(self, request: Trigger.Request) -> Trigger.Response:
@@ -36,7 +36,7 @@ class Forger(Node):
 
 
 async def test_a_name_may_have_several_types(graph: Graph) -> None:
-    """Whoever announces another type first does not hide the service."""
+    """An announcement of another type does not hide the service."""
     await graph.start(Forger())
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         both = {("/power", "std_srvs/srv/SetBool"), ("/power", "std_srvs/srv/Trigger")}

@@ -19,13 +19,13 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_messages(graph: Graph) -> None:
-    """Come as they are, with the time of their sending, and only while somebody looks."""
+    """Messages are forwarded unchanged with their source time, only while a client is subscribed."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen, viewer(lab.port) as other:
         twist = Twist(linear=Vector3(x=0.5))
         await seen.until(lambda: "/speed" in seen.channels)
         wanted = [{"id": 6, "channelId": 4_000_000}, {"id": 7, "channelId": seen.channels["/speed"]["id"]}]
-        await seen.send("subscribe", subscriptions=wanted)  # one that has gone costs the other nothing
+        await seen.send("subscribe", subscriptions=wanted)  # unsubscribing one does not affect the other
         await seen.until(lambda: robot.speed.get_subscription_count() == 1)
         robot.speed.publish(twist)
         await seen.until(lambda: seen.messages)
@@ -38,7 +38,7 @@ async def test_messages(graph: Graph) -> None:
 
 
 async def test_a_latched_topic(graph: Graph) -> None:
-    """Is shown to each who comes later."""
+    """Each new subscription receives the latched message."""
     robot = Robot()
     async with served(graph, robot) as lab:
         robot.map.publish(String(data="a map"))
@@ -51,7 +51,7 @@ async def test_a_latched_topic(graph: Graph) -> None:
 
 
 async def test_topics_that_cannot_be_shown(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """Those of types nobody defines, and of names that are none, are told once; the others are shown."""
+    """Topics of undefined types and malformed names are reported once; the others are shown."""
     robot = Robot()
     odd = Node("odd")
     await graph.start(odd)
@@ -76,7 +76,7 @@ async def test_topics_that_cannot_be_shown(graph: Graph, caplog: pytest.LogCaptu
 
 
 async def test_a_viewer_that_goes(graph: Graph) -> None:
-    """Listens no more."""
+    """The subscriptions of a viewer end with it."""
     robot = Robot()
     async with served(graph, robot) as lab:
         async with viewer(lab.port) as seen:
@@ -86,7 +86,7 @@ async def test_a_viewer_that_goes(graph: Graph) -> None:
 
 
 async def test_bounds(graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    """So many topics are shown, and looked at; a number is used once."""
+    """Topics and subscriptions are limited; a subscription number is unique."""
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen:
         await seen.until(lambda: {"/speed", "/map"} <= {*seen.channels})

@@ -1,4 +1,4 @@
-"""The table of keys: each line is carried out by somebody, and written as people write keys."""
+"""The table of keys: every action has a method, and keys are shown in the usual notation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from graphflow.tui.registry import view_class
 
 @pytest.mark.parametrize("action", list(console_actions()), ids=lambda a: a.name)
 def test_every_action_of_the_console_is_carried_out(action: Action) -> None:
-    """There is a method for it, and a key or a chord."""
+    """Every action has a method, and a key or a chord."""
     assert hasattr(ConsoleCommands, f"do_{action.name.partition(':')[0]}")
     assert action.chord or action.keys
     assert action.title
@@ -20,7 +20,7 @@ def test_every_action_of_the_console_is_carried_out(action: Action) -> None:
 
 @pytest.mark.parametrize("name", list(VIEWS))
 def test_every_action_of_a_view_is_carried_out(name: str) -> None:
-    """There is a method for it, no key means two things, and what is hinted has a short title."""
+    """Every action has a method, no key has two meanings, and hints have short titles."""
     view = view_class(name)
     keys = [key for action in view.ACTIONS for key in action.keys]
     assert len(keys) == len(set(keys))
@@ -34,19 +34,19 @@ def test_every_action_of_a_view_is_carried_out(name: str) -> None:
     [("percent_sign", "%"), ("ctrl+b", "^b"), ("alt+1", "M-1"), ("left", "←"), ("ctrl+left", "^←"), ("f2", "f2")],
 )
 def test_keys_as_people_write_them(key: str, text: str) -> None:
-    """Signs as signs, control as tmux writes it."""
+    """Signs are shown as such, control keys as in tmux."""
     assert shown(key) == text
 
 
 def test_all_keys_of_an_action() -> None:
-    """With the prefix where it is needed."""
+    """Chords are shown with the prefix."""
     detach = next(a for a in console_actions() if a.name == "detach")
     assert keys_of(detach, "ctrl+a") == "^a d, q, ^q"
     assert by_chord()["d"] is detach
 
 
 def test_an_action_with_a_word() -> None:
-    """`name:word` calls `do_name("word")`."""
+    """`name:argument` calls `do_name("argument")`."""
 
     class Doer:
         done: list[str] = []  # noqa: RUF012

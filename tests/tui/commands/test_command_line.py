@@ -1,4 +1,4 @@
-"""The command line: views and words of the console's own, else any verb, in a pane."""
+"""The command line: views and commands of the console's own, otherwise any verb, in a pane."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ),
 )
 async def test_what_is_typed(text: str, opens: str) -> None:
-    """A view, or a verb."""
+    """A view or a verb is opened."""
     async with stage(Content("nodes")) as s:
         await s.prefix("colon")
         s.console.screen.query_one("Input").value = text  # type: ignore[attr-defined]
@@ -36,7 +36,7 @@ async def test_what_is_typed(text: str, opens: str) -> None:
 
 
 async def test_words_of_the_consoles_own() -> None:
-    """Layouts; and nothing is nothing."""
+    """Layouts are applied; an empty line does nothing."""
     async with stage(Content("nodes")) as s:
         await s.prefix("percent_sign")
         await s.press("escape")
@@ -50,7 +50,7 @@ async def test_words_of_the_consoles_own() -> None:
 
 
 async def test_recall_and_completion() -> None:
-    """↑ brings back what was typed in any prompt; tab completes."""
+    """↑ recalls commands of any prompt; tab completes."""
     async with stage(Content("nodes")) as s:
         s.console.hub.history.add("ros2 ps --json")
         await s.press("colon")

@@ -40,7 +40,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ),
 )
 async def test_completing(line: str, whole: str, choices: list[str], graph: Graph) -> None:
-    """As far as it is certain, and all that it may become."""
+    """A line is completed as far as it is unambiguous, with all candidates."""
     await graph.start(Talker(), Listener())
     async with stage(Content("nodes"), graph=graph, nodes=()) as s:
         await graph.settle()
@@ -48,7 +48,7 @@ async def test_completing(line: str, whole: str, choices: list[str], graph: Grap
 
 
 async def test_without_a_graph_verbs_are_completed_all_the_same() -> None:
-    """Only the live names are missing."""
+    """Only names from the graph are missing."""
     async with stage(Content("nodes")) as s:
         completer = Completer(s.console.hub)
         assert await completer.complete("ps --") == ("ps --json ", ["--json"])
@@ -56,7 +56,7 @@ async def test_without_a_graph_verbs_are_completed_all_the_same() -> None:
 
 
 async def test_views_are_completed_where_they_can_be_typed(graph: Graph) -> None:
-    """Their names beside the verbs, and what they are about."""
+    """Names of views are completed beside verbs, and so are their subjects."""
     await graph.start(Talker())
     async with stage(Content("topics"), graph=graph) as s:
         completer = Completer(s.console.hub, {"plot": VIEWS["plot"], "topic": VIEWS["topics"]})
@@ -68,7 +68,7 @@ async def test_views_are_completed_where_they_can_be_typed(graph: Graph) -> None
 
 
 class Slow(Completer):
-    """Takes as long as the test wants."""
+    """Completes when the test says so."""
 
     def __init__(self) -> None:
         self.goes_on = asyncio.Event()
@@ -80,7 +80,7 @@ class Slow(Completer):
 
 @pytest.mark.parametrize(("typed", "expected"), [("topic ec/chatter", "topic echo /chatter"), ("top", "top")])
 async def test_what_is_typed_meanwhile_is_kept(typed: str, expected: str) -> None:
-    """Behind what was completed, or in its place."""
+    """Text typed meanwhile stays after the completion, or in its place."""
     async with stage(Content("prompt")) as s:
         line, slow = s.view.query_one(Input), Slow()
         line.value = "topic ec"
@@ -93,6 +93,6 @@ async def test_what_is_typed_meanwhile_is_kept(typed: str, expected: str) -> Non
 
 
 def test_nothing_to_complete() -> None:
-    """Is said."""
+    """The message says so."""
     assert nothing_to_complete("topic zz") == "nothing here begins with 'zz'"
     assert nothing_to_complete("topic ") == "there is nothing to complete here"

@@ -1,4 +1,4 @@
-"""Every other key of the console does what its line says: leaving, asking, telling."""
+"""Every other key of the console does what its description says."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ),
 )
 async def test_keys_that_ask(view: str, key: str, screen: object) -> None:
-    """They open what their line says, and escape takes it away again."""
+    """The dialog opens, and escape closes it."""
     async with stage(Content(view)) as s:
         await s.prefix(key)
         name = type(s.console.screen).__name__
@@ -42,7 +42,7 @@ async def test_keys_that_ask(view: str, key: str, screen: object) -> None:
 
 
 async def test_keys_that_say(graph: Graph) -> None:
-    """The clock, the theme, what to do about a node when none is chosen, what can be copied."""
+    """The clock, the theme, hints if no node is selected, copied texts."""
     async with stage(Content("topics"), graph=graph) as s:
         await s.prefix("t")
         assert s.console.messages[-1].endswith(tuple(f":{n:02d}" for n in range(60)))
@@ -69,7 +69,7 @@ async def test_keys_that_say(graph: Graph) -> None:
 
 @slow
 async def test_the_palette_does_everything() -> None:
-    """What the focused view can, and what the console can; found by typing."""
+    """The palette lists the actions of the focused view and of the console, with a search."""
     async with stage(Content("nodes")) as s:
         await s.press("ctrl+p")
         await s.type("light or dark")
@@ -83,7 +83,7 @@ async def test_the_palette_does_everything() -> None:
 
 @slow
 async def test_the_menu_and_the_search_have_what_is_in_the_graph(graph: Graph) -> None:
-    """Views in the menu; parameters among what is found; and what is called by no name of the graph says so."""
+    """The menu lists views; the search finds parameters; an unknown name is reported."""
     await graph.start(Talker())
     async with stage(Content("nodes"), graph=graph) as s:
         await s.press("ctrl+p")
@@ -101,7 +101,7 @@ async def test_the_menu_and_the_search_have_what_is_in_the_graph(graph: Graph) -
 
 
 async def test_alt_and_a_digit_as_old_terminals_send_it() -> None:
-    """Textual takes it for what a Mac's option key types."""
+    """Textual reads it as a character of a Mac's option key."""
     async with stage(Content("nodes")) as s:
         await s.prefix("percent_sign")
         await s.prefix("trade_mark_sign")
@@ -109,7 +109,7 @@ async def test_alt_and_a_digit_as_old_terminals_send_it() -> None:
 
 
 async def test_the_prefix_itself() -> None:
-    """Twice goes through; an unknown key says so; escape ends it; slow fingers see the keys."""
+    """Typed twice, the prefix goes through; an unknown key is reported; escape cancels; a pause shows the keys."""
     async with stage(Content("prompt")) as s:
         await s.prefix("escape")
         assert not s.console.keyboard.which_key.display
@@ -137,7 +137,7 @@ async def test_leaving(keys: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("keys", [("ctrl+c", "s"), ("ctrl+b", "S", "s")])
 async def test_stopping(keys: tuple[str, ...]) -> None:
-    """Asked for by a key of its own; the question names the other consoles that it ends."""
+    """Stopping has a key of its own; the question names the other consoles."""
     async with stage(Content("nodes")) as s:
         supervision = s.console.hub.supervision
         assert supervision is not None
@@ -152,7 +152,7 @@ async def test_stopping(keys: tuple[str, ...]) -> None:
 
 
 async def test_ctrl_c_never_stops_the_graph() -> None:
-    """Typed twice it only asks; in a prompt it ends what runs, clears the line, and asks nothing."""
+    """Typed twice, it only opens the question; in a prompt it interrupts the command or clears the line."""
     async with stage(Content("nodes"), Content("prompt")) as s:
         await s.press("ctrl+c", "ctrl+c", "ctrl+c")
         await s.until("Leave or stop lab")
@@ -180,7 +180,7 @@ async def test_without_a_supervisor_nothing_can_be_stopped() -> None:
 
 
 def test_every_chord_is_used_once() -> None:
-    """No key after the prefix, and no bare key, means two things."""
+    """No key has two meanings, with or without the prefix."""
     chords = [key for action in console_actions() for key in action.chord]
     keys = [key for action in console_actions() for key in action.keys]
     assert len(chords) == len(set(chords))
@@ -190,7 +190,7 @@ def test_every_chord_is_used_once() -> None:
 
 @pytest.mark.parametrize("verb", ["restart", "stop"])
 async def test_a_supervisor_that_has_gone_is_asked_nothing(verb: str) -> None:
-    """Neither to restart a node nor to stop one; what starts the graph again is said."""
+    """Restart and stop are not sent; the message says how to start the graph again."""
     async with stage(Content("nodes")) as s:
         assert s.console.hub.supervision is not None
         s.console.hub.supervision.is_lost = True

@@ -18,7 +18,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_they_are_kept(file: Path) -> None:
-    """In the order typed, one that is typed twice once, without the program's name; nobody else may read them."""
+    """Commands are kept in order without the program's name, repetitions once, readable by the user only."""
     first = History(file)
     for line in ("ps", "ps", "graphflow topic list", "ros2 node list", "", "two\nlines"):
         first.add(line)
@@ -30,7 +30,7 @@ def test_they_are_kept(file: Path) -> None:
 
 
 def test_two_consoles_keep_one_file(file: Path) -> None:
-    """Neither loses what the other has added."""
+    """Neither console loses commands of the other."""
     one, other = History(file), History(file)
     one.add("ps")
     other.add("top")
@@ -39,7 +39,7 @@ def test_two_consoles_keep_one_file(file: Path) -> None:
 
 
 def test_the_file_does_not_grow_for_ever(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once it has four times what is kept it is cut to that."""
+    """A file of four times the limit is trimmed to the limit."""
     monkeypatch.setattr(history, "KEPT", 3)
     monkeypatch.setattr(history, "LONGEST", 20)
     grows = History(file)
@@ -54,7 +54,7 @@ def test_the_file_does_not_grow_for_ever(file: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_a_folder_that_cannot_be_written(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    """The commands last as long as the console, and its log says why."""
+    """Commands are kept until the console ends, and the log gives the reason."""
     (tmp_path / "taken").write_text("")
     lost = History(tmp_path / "taken" / "history")
     with caplog.at_level(logging.WARNING):
@@ -68,7 +68,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path, caplog: pytest.LogCaptu
 
 
 def test_requests() -> None:
-    """Those of one service; what was typed wrong is passed over."""
+    """Requests of one service are found; commands with errors are skipped."""
     past = History()
     call = ("service", "call", "/add", "example_interfaces/srv/AddTwoInts")
     for line in (
@@ -86,12 +86,12 @@ def test_requests() -> None:
 
 @pytest.mark.parametrize("line", ["graphflow ps", " gf  ps ", "ros2 ps", "ps"])
 def test_the_name_of_the_program_is_left_out(line: str) -> None:
-    """However it was typed."""
+    """The name is removed in all its forms."""
     assert without_program(line) == "ps"
     assert without_program("ros2bag") == "ros2bag"
 
 
 def test_the_file_is_among_what_is_kept_for_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No graph can be called as it is: its logs are beside it."""
+    """No graph can have the file's name, which is beside the graphs' logs."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     assert history_file() == tmp_path / "graphflow" / ".history"

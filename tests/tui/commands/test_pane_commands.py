@@ -1,4 +1,4 @@
-"""Every key for panes and windows does what its line in the table says, with a line of text focused too."""
+"""Every key for panes and windows does what its description says, even while an input is focused."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 @slow
 @pytest.mark.parametrize("focused", some(["list", "line"], "line"))
 async def test_panes(focused: str) -> None:
-    """Splitting, moving about, resizing, zooming, swapping, breaking out, closing; whatever has the focus."""
+    """Panes are split, focused, resized, zoomed, swapped, broken out and closed, whatever has the focus."""
     first = Content("nodes") if focused == "list" else Content("prompt")
     async with stage(first) as s:
 
         def window() -> Window:
-            return s.console.window  # it is another one after each step
+            return s.console.window  # a different one after each step
 
         a = window().focused
         await s.prefix("percent_sign")
@@ -69,7 +69,7 @@ async def test_panes(focused: str) -> None:
 
 @pytest.mark.parametrize("focused", some(["topics", "prompt"]))
 async def test_windows(focused: str) -> None:
-    """Going about, opening, renaming, closing."""
+    """Windows are opened, selected, renamed and closed."""
     async with stage(Content("nodes"), Content(focused), Content("log")) as s:
         windows = s.console.windows
         for key, there in (("n", 1), ("l", 0), ("p", 2), ("1", 1), ("2", 2), ("0", 0), ("l", 2), ("1", 1)):
@@ -111,7 +111,7 @@ async def test_windows(focused: str) -> None:
     ],
 )
 async def test_what_is_opened_has_the_room_that_it_needs(size: tuple[int, int], view: str, where: str) -> None:
-    """Beside, below, or in a window of its own."""
+    """A view opens beside, below, or in a new window."""
     async with stage(Content("top"), size=size) as s:
         s.console.open_beside(Content(view, "/talker"))
         await s.pilot.pause()

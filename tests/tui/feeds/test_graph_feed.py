@@ -1,4 +1,4 @@
-"""The graph as the console's hidden node sees it."""
+"""The graph as the console's hidden node observes it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 async def test_it_is_hidden_and_reports_are_asked_for_only_while_wanted(
     graph: Graph, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """No node of its own in the lists; rates come from two looks."""
+    """The console's node is in no list; rates come from two reports."""
     monkeypatch.setattr(module, "POLL_INTERVAL", 0.05)
     node = Talker()
     await graph.start(node)
@@ -42,7 +42,7 @@ async def test_it_is_hidden_and_reports_are_asked_for_only_while_wanted(
 
 
 async def test_publishers_are_made_once(graph: Graph) -> None:
-    """However often a key is pressed."""
+    """Pressing a key again reuses the publisher."""
     await graph.start(Talker())
     async with stage(Content("help"), graph=graph) as s:
         live = s.console.hub.live
@@ -51,7 +51,7 @@ async def test_publishers_are_made_once(graph: Graph) -> None:
 
 
 async def test_what_takes_time_runs_in_a_thread_and_its_errors_come_back(graph: Graph) -> None:
-    """And without a graph the reason is told."""
+    """Slow work runs in a thread, and its errors come back; without a graph, the error gives the reason."""
     async with stage(Content("help"), graph=graph) as s:
         live = s.console.hub.live
         assert live is not None

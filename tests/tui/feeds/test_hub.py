@@ -1,4 +1,4 @@
-"""What views look at."""
+"""The sources of a console."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_nodes_of_the_graph_and_of_others(graph: Graph) -> None:
-    """The supervisor's first, each once; hidden ones not."""
+    """The supervisor's nodes come first, each once, without hidden ones."""
     await graph.start(Talker(), Listener())
     async with stage(Content("help"), graph=graph, nodes=("/talker", "/ended")) as s:
         await graph.settle()
@@ -23,7 +23,7 @@ async def test_nodes_of_the_graph_and_of_others(graph: Graph) -> None:
 
 
 def test_without_a_supervisor() -> None:
-    """The domain stands for the graph, and there is no file."""
+    """The domain replaces the graph's name, and there is no file."""
     hub = Hub(7, None, (), dict)
     assert hub.graph == "domain 7"
     assert hub.nodes() == []

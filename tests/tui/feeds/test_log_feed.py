@@ -1,4 +1,4 @@
-"""Logs: every line once, whatever the pieces in which it was written and read."""
+"""Logs: every line once, however it is split by writer and reader."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def line(number: int, node: str = "talker", level: str = "INFO") -> str:
 @cases(count(few=40, full=150))
 @given(cuts=st.lists(st.integers(1, 400), max_size=60))
 def test_each_line_comes_once_whatever_the_pieces(cuts: list[int], tmp_path_factory: pytest.TempPathFactory) -> None:
-    """A writer that is cut off anywhere, a reader that reads at any moment: no gap, no duplicate."""
+    """Wherever the writer pauses and the reader reads, no line is lost or repeated."""
     path = tmp_path_factory.mktemp("l") / "talker.log"
     data = "".join(line(i) for i in range(200)).encode()
     read = Logs()
@@ -39,7 +39,7 @@ def test_each_line_comes_once_whatever_the_pieces(cuts: list[int], tmp_path_fact
 
 
 def test_coming_back_shows_what_was_written_meanwhile_once(tmp_path: Path) -> None:
-    """A second console reads the whole file: what the first saw, and what came after."""
+    """A second console reads the whole file, including lines written since the first."""
     path = tmp_path / "talker.log"
     path.write_text("".join(line(i) for i in range(10)))
     first = Logs()
@@ -54,7 +54,7 @@ def test_coming_back_shows_what_was_written_meanwhile_once(tmp_path: Path) -> No
 
 
 def test_a_long_log_is_read_from_a_line_near_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Never from the middle of a line."""
+    """Reading never begins in the middle of a line."""
     monkeypatch.setattr(log_feed, "BACKLOG", 1000)
     path = tmp_path / "talker.log"
     path.write_text("".join(line(i) for i in range(1000)))
@@ -65,7 +65,7 @@ def test_a_long_log_is_read_from_a_line_near_its_end(tmp_path: Path, monkeypatch
 
 
 def test_levels_nodes_and_what_goes_on(tmp_path: Path) -> None:
-    """A traceback belongs to the record before it; a print to the node; a logger below a node to the node."""
+    """A traceback belongs to the record before it; a print, to the node; a child logger, to its node."""
     path = tmp_path / "arm.log"
     path.write_text(
         "hello\n" + line(1, "arm.left.motor", "WARN") + line(2, "arm.right", "ERROR") + "Traceback:\n  File\n\n"
@@ -85,7 +85,7 @@ def test_levels_nodes_and_what_goes_on(tmp_path: Path) -> None:
 
 
 def test_errors_are_kept(tmp_path: Path) -> None:
-    """However much else is written after them, with their tracebacks."""
+    """Errors are kept with their tracebacks, however many records follow."""
     path = tmp_path / "arm.log"
     path.write_text(line(1, "arm", "ERROR") + "Traceback\n" + "".join(line(i, "arm") for i in range(100)))
     read = Logs(bound=30)
@@ -96,7 +96,7 @@ def test_errors_are_kept(tmp_path: Path) -> None:
 
 
 def test_several_files_are_merged_by_time(tmp_path: Path) -> None:
-    """What was written meanwhile comes in the order of time."""
+    """Records of several files are ordered by time."""
     for name, numbers in (("a", range(0, 10, 2)), ("b", range(1, 10, 2))):
         (tmp_path / f"{name}.log").write_text("".join(line(i, name) for i in numbers))
     read = Logs()
@@ -106,7 +106,7 @@ def test_several_files_are_merged_by_time(tmp_path: Path) -> None:
 
 
 def test_the_bound_and_what_is_new_since(tmp_path: Path) -> None:
-    """Only so many are kept; `since` counts all that ever were."""
+    """A limited number of records is kept; `since` counts all ever added."""
     path = tmp_path / "talker.log"
     path.write_text("".join(line(i) for i in range(100)))
     read = Logs(bound=30)
@@ -119,7 +119,7 @@ def test_the_bound_and_what_is_new_since(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_emptied_or_gone(tmp_path: Path) -> None:
-    """It begins again; what is not there says nothing."""
+    """A truncated file is read from its beginning; a missing one is ignored."""
     path = tmp_path / "talker.log"
     path.write_text(line(1))
     read = Logs()
@@ -144,12 +144,12 @@ def test_a_file_that_is_emptied_or_gone(tmp_path: Path) -> None:
     ],
 )
 def test_nothing_that_a_terminal_obeys_is_left(text: str, plain: str) -> None:
-    """Escape sequences, control characters and titles."""
+    """Escape sequences, control characters and titles are removed."""
     assert plain_text(text) == plain
 
 
 def test_a_line_without_end_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However much a node writes without a newline."""
+    """A line without an end does not grow in memory."""
     monkeypatch.setattr(log_feed, "AT_ONCE", 1000)
     path = tmp_path / "talker.log"
     path.write_text("x" * 100_000)

@@ -1,4 +1,4 @@
-"""The line to the supervisor, over a real socket."""
+"""The connection to the supervisor, over a real socket."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Graph:
-    """A supervisor that remembers what it was asked."""
+    """A supervisor that records its requests."""
 
     plan = Plan("g", "g.yaml", "/", ())
     components: Any = None
@@ -59,7 +59,7 @@ async def until(holds: Callable[[], bool]) -> None:
 
 
 async def test_the_end_is_heard_by_who_was_asleep(tmp_path: Path) -> None:
-    """What the supervisor said last is read even when requests can no longer be sent."""
+    """The supervisor's last events are read even when requests can no longer be sent."""
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(str(tmp_path / "s"))
         server.listen()
@@ -78,7 +78,7 @@ async def test_the_end_is_heard_by_who_was_asleep(tmp_path: Path) -> None:
 
 
 async def test_nobody_there(tmp_path: Path) -> None:
-    """That is told, too."""
+    """A missing supervisor is reported."""
     heard: list[dict[str, Any]] = []
     await Supervision(run_at(str(tmp_path / "s")), heard.append).follow()
     assert "the connection to the supervisor is lost: " in heard[0]["message"]
@@ -89,7 +89,7 @@ async def test_nobody_there(tmp_path: Path) -> None:
     [(b"", "lost", "the supervisor has gone"), (b'{"event": "end", "exit_code": 0}\n', "ended", "")],
 )
 async def test_nodes_of_a_supervisor_that_has_gone(tmp_path: Path, last: bytes, state: str, detail: str) -> None:
-    """No node is said to run any more; what had failed before still has."""
+    """No node counts as running any more; one that had failed still has."""
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(str(tmp_path / "s"))
         server.listen()
@@ -125,7 +125,7 @@ async def test_nodes_of_a_supervisor_that_has_gone(tmp_path: Path, last: bytes, 
 
 @pytest.mark.parametrize("portable", ["", "1"])
 async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each is told what the other does, the windows of the one are there for the next, and leaving is noticed."""
+    """Each console sees the actions of the other; the saved windows of one are found by the next; leaving is seen."""
     monkeypatch.setenv("GRAPHFLOW_PORTABLE", portable)
     graph = Graph()
     server = ControlServer(graph)
@@ -152,7 +152,7 @@ async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.M
 
 @pytest.mark.parametrize("portable", ["", "1"])
 async def test_what_was_asked_last_is_done(portable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leaving waits until the supervisor has read it all; that is not taken for the supervisor's end."""
+    """Leaving waits until the supervisor has read all requests, and does not count as the supervisor's end."""
     monkeypatch.setenv("GRAPHFLOW_PORTABLE", portable)
     graph = Graph()
     server = ControlServer(graph)
@@ -172,7 +172,7 @@ async def test_what_was_asked_last_is_done(portable: str, tmp_path: Path, monkey
 
 
 async def test_leaving_a_supervisor_that_does_not_listen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It takes no longer than its limit."""
+    """Leaving takes no longer than its limit."""
     monkeypatch.setattr(module, "LEAVE_WITHIN", 0.05)
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(str(tmp_path / "s"))
@@ -186,7 +186,7 @@ async def test_leaving_a_supervisor_that_does_not_listen(tmp_path: Path, monkeyp
 
 
 async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told, and nothing can be sent any more."""
+    """The end is reported, and nothing can be sent any more."""
     monkeypatch.setattr(module, "POLL_INTERVAL", 0.01)
     graph = Graph()
     server = ControlServer(graph)

@@ -1,4 +1,4 @@
-"""Listening for a view: from whenever the topic is there."""
+"""Subscriptions for views, from the moment the topic exists."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_messages_and_their_arrival(graph: Graph) -> None:
-    """Counted; the latest kept; told to whoever asked; nothing after the end."""
+    """Messages are counted, the latest is kept and passed to the callback; nothing comes after the end."""
     node = Talker()
     async with stage(Content("help"), graph=graph) as s:
         live = s.console.hub.live
@@ -42,14 +42,14 @@ async def test_messages_and_their_arrival(graph: Graph) -> None:
 
 
 async def test_a_misspelt_topic(graph: Graph) -> None:
-    """The nearest name is offered."""
+    """The nearest name is suggested."""
     await graph.start(Talker())
     async with stage(Content("echo", "/chater"), graph=graph) as s:
         await s.until("nobody publishes /chater yet; did you mean /chatter?")
 
 
 async def test_without_a_graph() -> None:
-    """It waits."""
+    """The monitor waits."""
     async with stage(Content("help")) as s:
         assert s.console.hub.live is not None
         monitor = TopicMonitor(s.console.hub.live, "/x")

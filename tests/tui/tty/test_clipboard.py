@@ -1,4 +1,4 @@
-"""The clipboard: which program is used, and what is told where there is none or it fails."""
+"""The clipboard: the choice of program, and the messages if there is none or it fails."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def tool(folder: Path, name: str, script: str) -> None:
 
 
 def test_which_program(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """That of the terminal or the display that one sits at, if it is installed."""
+    """The program of the user's terminal or display is chosen if it is installed."""
     for name in ("tmux", "wl-copy", "xclip"):
         tool(folder, name, "")
     assert clipboard.program() == ()
@@ -44,7 +44,7 @@ def test_which_program(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_copy(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program reads the text; how it fails is told."""
+    """The program reads the text; its failure is reported."""
     tool(folder, "keep", f"cat > {folder}/kept")
     assert clipboard.copy_with(("keep",), "a b") == ""
     assert (folder / "kept").read_text() == "a b"
@@ -57,7 +57,7 @@ def test_a_copy(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_what_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only a program that has copied makes it certain."""
+    """Only an external program confirms the copy."""
     async with stage(Content("nodes")) as s:
         s.console.copy("/talker")
         assert "copied /talker, if the terminal lets programs copy; ^b ] pastes it here" in s.text

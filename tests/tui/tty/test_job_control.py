@@ -1,4 +1,4 @@
-"""The console as a job of its shell; `test_terminal` stops and continues it in a real one."""
+"""The console as a job of its shell; `test_terminal` suspends and resumes it in a real one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_without_a_shell() -> None:
-    """As in a browser: it says so, and nothing is stopped."""
+    """Without a shell, as in a browser, the console says so and is not suspended."""
     async with stage() as s:
         assert not s.console.job_control.has_shell
         await s.press("ctrl+z")

@@ -1,4 +1,4 @@
-"""Keys typed faster than the console can follow: nothing is lost, and each goes where its predecessors led."""
+"""Keys typed faster than the console can follow: none is lost, and each goes where the ones before it led."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def type_ahead(s: Stage, *keys: str) -> None:
-    """Have all keys there at once, and wait until the last is done."""
+    """Post all keys at once, and wait until the last has taken effect."""
     for key in keys:
         s.console.post_message(events.Key(key, key if len(key) == 1 else None))
     await s.pilot.pause()
@@ -21,7 +21,7 @@ async def type_ahead(s: Stage, *keys: str) -> None:
 
 
 async def test_into_a_dialog_and_out_of_it() -> None:
-    """The dialog gets what was typed for it, and the pane what follows its enter."""
+    """A dialog gets the keys typed for it, and the pane those after its enter."""
     async with stage(Content("nodes")) as s:
         await type_ahead(s, "ctrl+b", "c", *"topics", "enter", "ctrl+b", "0", "s")
         assert [w.name for w in s.console.windows.windows.values()] == ["nodes", "topics"]
@@ -30,7 +30,7 @@ async def test_into_a_dialog_and_out_of_it() -> None:
 
 
 async def test_letters_and_keys_that_are_bound() -> None:
-    """In the order in which they were typed, a paste among them."""
+    """Letters and bound keys keep their order, with a paste among them."""
     async with stage(Content("prompt")) as s:
         for key in ("a", "b", "left", "c", "home", "d"):
             s.console.post_message(events.Key(key, key if len(key) == 1 else None))
@@ -40,7 +40,7 @@ async def test_letters_and_keys_that_are_bound() -> None:
 
 
 async def test_after_a_pane_that_goes() -> None:
-    """What had the focus is gone before the key is done; the next one goes to the pane that follows."""
+    """A key may remove its own target; the next key goes to the following pane."""
     async with stage(Content("nodes")) as s:
         await s.prefix("percent_sign")
         await type_ahead(s, "ctrl+b", "x", "s")
@@ -49,7 +49,7 @@ async def test_after_a_pane_that_goes() -> None:
 
 
 async def test_focus_that_was_lost() -> None:
-    """When what has the focus is hidden, the next key brings it back to the pane."""
+    """If the focused widget is hidden, the next key restores the focus of the pane."""
     async with stage(Content("nodes")) as s:
         s.console.screen.set_focus(None)
         await s.press("s")

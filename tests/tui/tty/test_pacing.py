@@ -1,4 +1,4 @@
-"""Slow terminals: frames are left out, a key's effect is soon seen, and the whole screen comes in the end."""
+"""Slow terminals: frames are skipped, keys have a prompt effect, and the whole screen is drawn in the end."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from tests.cases import slow
 from tests.conftest import LIMIT, PROJECT, Machine
 
 RATE = 20_000
-"""Bytes a second that the terminal takes."""
+"""Bytes per second that the terminal reads."""
 ESCAPES = re.compile(rb"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)?|\x1b.")
 
 
 def driver(*writes: str) -> SimpleNamespace:
-    """One with writes that its terminal has not taken."""
+    """A driver with pending writes."""
     waits: queue.Queue[str] = queue.Queue()
     for text in writes:
         waits.put(text)
@@ -36,12 +36,12 @@ def driver(*writes: str) -> SimpleNamespace:
 
 
 def test_frames_are_left_out_while_one_waits() -> None:
-    """And from then on until the screen is drawn as a whole, since what the terminal shows is not known."""
+    """Skipping goes on until a full redraw, since the terminal's screen is not known."""
     now = [0.0]
     pacing, behind = Pacing(lambda: now[0]), driver("frame")
     assert pacing.admits(driver())
     assert not pacing.catches_up(driver())
-    assert pacing.admits(behind)  # the writing thread has not had its turn yet
+    assert pacing.admits(behind)  # the writing thread has not run yet
     now[0] += LATE
     assert not pacing.admits(behind)
     assert not pacing.catches_up(behind)
@@ -52,13 +52,13 @@ def test_frames_are_left_out_while_one_waits() -> None:
 
 
 def test_drivers_that_tell_nothing() -> None:
-    """As in a browser: every frame is written."""
+    """Without a writing thread, as in a browser, every frame is written."""
     assert waiting(object()) == 0
     assert Pacing().admits(None)
 
 
 class SlowTerminal:
-    """A pty that is read no faster than a slow link would."""
+    """A pty that is read at the rate of a slow link."""
 
     def __init__(self, machine: Machine, words: list[str]) -> None:
         self.pid, self._fd = pty.fork()
@@ -71,7 +71,7 @@ class SlowTerminal:
         os.write(self._fd, key)
 
     def until(self, what: bytes) -> int:
-        """Read until a text has come; returns the bytes that came before."""
+        """Read until a text has come; return the bytes before it."""
         began, read, count = time.monotonic(), b"", 0
         while what not in ESCAPES.sub(b"", read):
             assert time.monotonic() - began < LIMIT, read[-2000:]
@@ -103,7 +103,7 @@ def terminal(machine: Machine) -> Iterator[SlowTerminal]:
 @pytest.mark.real
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pty")
 def test_a_link_of_20_kilobytes_a_second(terminal: SlowTerminal) -> None:
-    """While turtles move, what a key does is seen within a few frames, not after thirty of them."""
+    """While turtles move, the effect of a key is visible within a few frames, not after thirty."""
     terminal.until(b"leave")
     terminal.until(b"turtle2")
     for _ in range(2):

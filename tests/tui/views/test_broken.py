@@ -1,4 +1,4 @@
-"""In place of a view that cannot be shown."""
+"""The substitute for a view that cannot be shown."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_a_view_that_is_not_there() -> None:
-    """It says so, with the nearest; the console goes on."""
+    """The pane says so, with the nearest name; the console goes on."""
     async with stage(Content("turtel")) as s:
         assert "there is no view 'turtel'; did you mean 'turtle'?" in s.text
         await s.prefix("quotation_mark")

@@ -1,4 +1,4 @@
-"""Services: a form from the interface, the answer, the requests before."""
+"""Services: a form from the interface, the response, and earlier requests."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def line(s: Stage, name: str) -> Input:
 
 
 async def test_calling(graph: Graph) -> None:
-    """Fill in, send, read; the same request as a shell command; history."""
+    """The form is filled in and sent, the response shown; the equivalent command enters the history."""
     await graph.start(Talker())
     async with stage(Content("calls"), graph=graph, size=(110, 34)) as s:
         await s.until("/add")
@@ -50,7 +50,7 @@ async def test_calling(graph: Graph) -> None:
 
 
 async def test_requests_of_earlier_consoles(graph: Graph) -> None:
-    """They are the commands of its history, those that were typed as well."""
+    """Earlier requests come from the command history, typed commands included."""
     await graph.start(Talker())
     async with stage(Content("calls", "/talker/get_parameters"), Content("calls", "/add"), graph=graph) as s:
         await s.until(lambda: bool(s.view.query("Form")))
@@ -65,7 +65,7 @@ async def test_requests_of_earlier_consoles(graph: Graph) -> None:
 
 
 async def test_a_service_by_name(graph: Graph) -> None:
-    """The form opens at once; errors of the server are told."""
+    """The form opens at once; errors of the server are shown."""
     await graph.start(Talker())
     async with stage(Content("calls", "/talker/get_parameters"), graph=graph, size=(110, 34)) as s:
         await s.until(lambda: bool(s.view.query("Form")))

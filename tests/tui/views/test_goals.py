@@ -1,4 +1,4 @@
-"""Goals: seen by whoever sent them, with feedback; sent by a form, cancelled by a key."""
+"""Goals: those of other clients with their feedback; sent by a form, cancelled by a key."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_a_goal_of_somebody_else(graph: Graph) -> None:
-    """It appears with its feedback, and c cancels it."""
+    """A goal of another client appears with its feedback, and c cancels it."""
     await graph.start(Talker())
     async with stage(Content("goals"), graph=graph) as s:
         await s.until("no goal yet")
@@ -35,7 +35,7 @@ async def test_a_goal_of_somebody_else(graph: Graph) -> None:
 
 
 async def test_sending(graph: Graph) -> None:
-    """A form of the goal's fields; the result is told."""
+    """The form has the goal's fields; the result is reported."""
     await graph.start(Talker())
     async with stage(Content("goals", "/fibonacci"), graph=graph) as s:
         await s.until("no goal yet")

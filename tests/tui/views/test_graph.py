@@ -1,4 +1,4 @@
-"""The graph as boxes: what is in the picture, and what the keys do with it."""
+"""The graph as boxes: the drawing, and its keys."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_the_drawing_and_its_keys(graph: Graph) -> None:
-    """Boxes with names; n chooses one, enter opens it, M copies the drawing."""
+    """Boxes have names; n selects one, enter opens it, M copies the drawing."""
     await graph.start(Talker(), Listener())
     async with stage(Content("graph"), graph=graph, size=(120, 30)) as s:
         await s.until("/chatter")
@@ -31,7 +31,7 @@ async def test_the_drawing_and_its_keys(graph: Graph) -> None:
 
 
 async def test_what_is_wider_than_the_pane(graph: Graph) -> None:
-    """It says so, and scrolls sideways."""
+    """A drawing wider than the pane says so, and scrolls sideways."""
     await graph.start(Talker(), Listener())
     async with stage(Content("graph"), graph=graph, size=(34, 30)) as s:
         await s.until("←→ more")

@@ -1,4 +1,4 @@
-"""The ring drawn, ended by a key, and the ending written into the graph file."""
+"""A deadlock drawn as a ring, ended by a key, and the change written into the graph file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ nodes:
 
 
 class Left(Node):
-    """Asks the other while it cannot answer."""
+    """Calls the other node while it cannot respond."""
 
     node_name = "left"
     main = Group(1)
@@ -47,11 +47,11 @@ class Left(Node):
 
     @task
     async def begin(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
 
 class Right(Node):
-    """Asks back."""
+    """Calls back."""
 
     node_name = "right"
     main = Group(1)
@@ -65,7 +65,7 @@ class Right(Node):
 
 @slow
 async def test_a_deadlock_is_seen_ended_and_written(graph: Graph, tmp_path: Path) -> None:
-    """The ring with places; f moves a handler, the graph goes on, w writes the move with the diff shown first."""
+    """The ring has source locations; f moves a handler, the graph goes on; w writes the move after a diff."""
     file = tmp_path / "lab.yaml"
     file.write_text(FILE)
     graph.deadlock = "report"
@@ -115,7 +115,7 @@ async def test_nothing_to_do() -> None:
     ("fix", "told_after"), [(Limit("/left", "main", 2), 3.0), (Thread("/left", ("go",)), 13.0)], ids=["limit", "thread"]
 )
 async def test_a_change_that_ends_nothing(fix: Limit | Thread, told_after: float) -> None:
-    """Is told after a while, by answers that are newer than it; later where the node is started again."""
+    """An ineffective change is reported after a while, by newer reports; later if the node is restarted."""
     async with stage(Content("groups")) as s:
         view = s.view
         assert isinstance(view, Groups)
@@ -131,7 +131,7 @@ async def test_a_change_that_ends_nothing(fix: Limit | Thread, told_after: float
 
 
 async def test_a_change_that_ends_one_of_two() -> None:
-    """Is told above the ring that is left, which looks like the one before."""
+    """The effect is reported above the remaining deadlock, which looks like the one before."""
     async with stage(Content("groups")) as s:
         view = s.view
         assert isinstance(view, Groups)
@@ -145,7 +145,7 @@ async def test_a_change_that_ends_one_of_two() -> None:
 
 
 async def test_a_race(graph: Graph) -> None:
-    """Its report stands here, whole; enter opens the line that /rosout has told for it, as far as it is known."""
+    """The whole report is shown; enter opens the line known from /rosout, if there is one."""
     async with stage(Content("groups"), graph=graph) as s:
         await s.until("no deadlock; for lost updates: graphflow up --races")
         told = record("RACE: an update of self.x is lost", level=2, node="/left")
@@ -173,7 +173,7 @@ async def test_a_race(graph: Graph) -> None:
 
 
 async def test_a_thread_for_a_node_that_others_have_started(graph: Graph) -> None:
-    """Its code alone can give it one."""
+    """A thread for a node of others requires a change of its code."""
     async with stage(Content("groups"), graph=graph, supervised=False) as s:
         view = s.view
         assert isinstance(view, Groups)

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_every_action_is_in_it() -> None:
-    """The console's and those of every view, with their titles."""
+    """The actions of the console and of every view are listed with their titles."""
     async with stage(Content("help")) as s:
         text = "\n".join(row.plain for row in s.view._lines.rows)  # type: ignore[attr-defined]
     for action in console_actions():
@@ -25,7 +25,7 @@ async def test_every_action_is_in_it() -> None:
 
 
 async def test_long_lines_go_on_beside_the_keys() -> None:
-    """Where they would be cut on 80 columns."""
+    """Lines that do not fit into 80 columns are wrapped."""
     async with stage(Content("nodes"), size=(80, 24)) as s:
         await s.press("f1")
         await s.type("lifecycle set")
@@ -36,7 +36,7 @@ async def test_long_lines_go_on_beside_the_keys() -> None:
 
 
 async def test_it_is_found_by_typing() -> None:
-    """Keys, titles and commands; the view that one comes from stands first."""
+    """Keys, titles and commands are searched; the view that opened the help comes first."""
     async with stage(Content("nodes"), size=(100, 40)) as s:
         await s.press("f1")
         await s.until("View nodes")

@@ -1,4 +1,4 @@
-"""The log: levels, a live filter, following, muting, going to the source."""
+"""The log: levels, filter, following, muting, going to the source."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ RECORDS = [
 
 
 async def test_all_nodes_one_node_a_namespace() -> None:
-    """Names are shown where there are several."""
+    """Names are shown if there are several nodes."""
     async with stage(Content("log"), Content("log", "/talker"), Content("log", "/arm"), records=RECORDS) as s:
         await s.look()
         assert re.search(r"/talker +ready", s.text)
@@ -45,7 +45,7 @@ async def test_all_nodes_one_node_a_namespace() -> None:
 
 @pytest.mark.parametrize(("width", "begins"), [(120, 29), (40, 4)])
 async def test_a_report_in_a_narrow_pane(width: int, begins: int) -> None:
-    """Its further lines begin below the names where there is little room beside them, and keep their steps."""
+    """In little room, a report's further lines begin below the names, and keep their relative indent."""
     told = record("DEADLOCK: a ring", "/turtle1/follower", 3)
     more = [told._replace(text=" " * n + "holds group 'all', and waits", is_more=True) for n in (4, 12)]
     async with stage(Content("log"), records=[told, *more, RECORDS[0]], size=(width, 20)) as s:
@@ -56,7 +56,7 @@ async def test_a_report_in_a_narrow_pane(width: int, begins: int) -> None:
 
 
 async def test_levels_and_filter() -> None:
-    """1 to 5 choose the level; / takes a regular expression while it is typed, and marks what fits."""
+    """1 to 5 choose the level; / filters by a regular expression while it is typed, and marks matches."""
     async with stage(Content("log"), records=RECORDS) as s:
         await s.look()
         await s.press("3")
@@ -77,7 +77,7 @@ async def test_levels_and_filter() -> None:
 
 
 async def test_a_filter_that_is_much_too_long() -> None:
-    """Filters nothing."""
+    """An overlong filter is ignored."""
     async with stage(Content("log"), records=RECORDS) as s:
         await s.press("slash")
         s.view.query_one(Input).value = "x" * 201
@@ -86,7 +86,7 @@ async def test_a_filter_that_is_much_too_long() -> None:
 
 
 async def test_what_is_new_is_followed_until_one_scrolls() -> None:
-    """And again at the end."""
+    """The view follows new lines until the user scrolls up, and again from the end."""
     many = [record(f"old {i}") for i in range(100)]
     async with stage(Content("log"), records=many) as s:
         await s.look()
@@ -106,7 +106,7 @@ async def test_what_is_new_is_followed_until_one_scrolls() -> None:
 
 
 async def test_muting() -> None:
-    """A muted node is left out of merged logs, and its own log still has it."""
+    """A muted node is left out of merged logs, but not of its own log."""
     async with stage(Content("log"), Content("log", "/talker"), records=RECORDS) as s:
         await s.look()
         await s.press("up", "m")
@@ -119,7 +119,7 @@ async def test_muting() -> None:
 
 
 async def test_going_to_the_next_warning_and_to_the_source() -> None:
-    """n and N; enter opens the file that the line names."""
+    """n and N go to warnings; enter opens the file that the line names."""
     async with stage(Content("log"), records=RECORDS) as s:
         await s.look()
         await s.press("N")
@@ -130,7 +130,7 @@ async def test_going_to_the_next_warning_and_to_the_source() -> None:
 
 
 async def test_the_source_of_a_line_that_names_none(graph: Graph) -> None:
-    """/rosout has told where it was written."""
+    """The source of other lines comes from /rosout."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("log"), graph=graph) as s:
@@ -150,7 +150,7 @@ async def test_the_source_of_a_line_that_names_none(graph: Graph) -> None:
 
 
 async def test_long_lines_wrap_unless_told_otherwise() -> None:
-    """What goes on stands below the text, and neither the time nor the node is repeated."""
+    """Wrapped text is aligned with the text of its line, without repeating the time or the node."""
     async with stage(Content("log"), records=[record("  x" * 60 + "END")], size=(70, 20)) as s:
         await s.look()
         lines = [text for text in s.text.split("\n") if "x" in text]
@@ -162,7 +162,7 @@ async def test_long_lines_wrap_unless_told_otherwise() -> None:
 
 
 async def test_a_line_that_comes_again_and_again() -> None:
-    """Is shown once with its number, whenever it comes; another node's, level or traceback is not the same."""
+    """Consecutive repetitions are shown once with their number; other nodes, levels and tracebacks are not merged."""
     same = [record("stuck"), record("stuck"), record("stuck", "/arm"), record("stuck", "/arm", 3)]
     async with stage(Content("log"), records=same) as s:
         await s.look()
@@ -180,7 +180,7 @@ def written(folder: Path, node: str, lines: list[str]) -> None:
 
 
 async def test_a_quiet_node_in_a_flood(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its own log has all its lines, read from its file; the merged one says that older lines are gone."""
+    """A node's own log is complete, read from its file; the merged one reports that older lines are gone."""
     monkeypatch.setattr("graphflow.tui.feeds.log_feed.RECORDS", 50)
     written(tmp_path, "quiet", [f"word {i}" for i in range(10)])
     async with stage(Content("log", "/quiet"), Content("log"), nodes=("/quiet",), folder=tmp_path) as s:
@@ -196,7 +196,7 @@ async def test_a_quiet_node_in_a_flood(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 async def test_errors_outlive_a_flood() -> None:
-    """They are there when the level asks for them."""
+    """Old warnings and errors are still there at their level."""
     async with stage(Content("log")) as s:
         s.console.hub.logs.records = deque(maxlen=50)
         s.console.hub.logs.add([record("it broke", level=3), *(record(f"noise {i}") for i in range(100))])
@@ -208,7 +208,7 @@ async def test_errors_outlive_a_flood() -> None:
 
 
 async def test_going_to_the_newest_error(tmp_path: Path) -> None:
-    """In the log of its node, with the cursor on it, however long ago it was; then it counts as seen."""
+    """The newest error is shown in the log of its node, with the cursor on it, and then counts as seen."""
     lines = "".join(f"[INFO] [{1700000000 + i}.0] [arm]: line {i}\n" for i in range(200))
     (tmp_path / "arm.log").write_text(f"{lines}[ERROR] [1700000300.0] [arm]: it broke\n{lines}")
     async with stage(Content("nodes"), nodes=("/arm",), folder=tmp_path) as s:
@@ -238,5 +238,5 @@ async def test_going_to_the_newest_error(tmp_path: Path) -> None:
     ],
 )
 def test_places_in_lines(text: str, place: str | None) -> None:
-    """As Python's tracebacks and graphflow's reports write them."""
+    """Places are found in the forms of Python's tracebacks and graphflow's reports."""
     assert place_in(text) == place

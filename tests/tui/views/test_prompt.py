@@ -1,4 +1,4 @@
-"""A prompt: verbs run and stream, end by Ctrl-C, are recalled and completed."""
+"""The prompt: verbs run and stream, end by Ctrl-C, are recalled and completed."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 def program(text: str) -> tuple[str, ...]:
-    """In place of `graphflow`."""
+    """Replaces the `graphflow` program."""
     return (sys.executable, "-c", text)
 
 
 async def test_output_streams_and_exit_codes_are_told() -> None:
-    """stdout, stderr and the code; escape sequences are not obeyed."""
+    """stdout, stderr and the exit code are shown; escape sequences have no effect."""
     async with stage(Content("prompt")) as s:
         text = "import sys; print('out', sys.argv[1:]); print('\\x1b[31mred', file=sys.stderr); sys.exit(3)"
         s.console.hub.command = program(text)
@@ -35,7 +35,7 @@ async def test_output_streams_and_exit_codes_are_told() -> None:
 
 
 async def test_ctrl_c_ends_the_verb_and_nothing_else() -> None:
-    """It interrupts what runs, as in a terminal; the console stays."""
+    """Ctrl-C interrupts the command, as in a terminal; the console stays."""
     async with stage(Content("prompt")) as s:
         waits = "import time\nprint('up', flush=True)\ntry:\n    time.sleep(60)\n"
         s.console.hub.command = program(f"{waits}except KeyboardInterrupt:\n    print('bye')")
@@ -51,7 +51,7 @@ async def test_ctrl_c_ends_the_verb_and_nothing_else() -> None:
 
 
 async def test_what_was_interrupted_is_read_at_its_end() -> None:
-    """A command that ends by itself is read from its top, one that was followed where it ended."""
+    """A command that ends by itself is shown from the top; an interrupted one, at its end."""
     lines = "import time\nfor i in range(100): print('line', i, flush=True)\n"
     for ends, shown in (("", "line 0"), ("try:\n    time.sleep(60)\nexcept KeyboardInterrupt: print('bye')", "bye")):
         async with stage(Content("prompt", "topic echo /x", {"run": True}), size=(80, 24)) as s:
@@ -67,7 +67,7 @@ async def test_what_was_interrupted_is_read_at_its_end() -> None:
 
 @slow
 async def test_history_and_words_of_its_own() -> None:
-    """↑ recalls; `clear` empties the pane; a console in a console is refused; quotes must close."""
+    """↑ recalls; `clear` empties the pane; a console in a console is refused; unbalanced quotes are reported."""
     async with stage(Content("prompt")) as s:
         s.console.hub.command = program("print('ran')")
         for text, answer in (
@@ -89,7 +89,7 @@ async def test_history_and_words_of_its_own() -> None:
 
 
 async def test_a_command_that_came_back_with_the_windows_waits_for_enter() -> None:
-    """What it did need not be wanted twice."""
+    """A command restored with the windows is not run again by itself, as it may have effects."""
     async with stage(Content("prompt", "action send_goal /x"), Content("prompt", "ps", {"run": True})) as s:
         s.console.hub.command = program("print('ran')")
         assert s.view.query_one(Input).value == "action send_goal /x"
@@ -102,7 +102,7 @@ async def test_a_command_that_came_back_with_the_windows_waits_for_enter() -> No
 
 
 async def test_completion(graph: Graph) -> None:
-    """Tab completes verbs and live names, and shows the choices where there are several."""
+    """Tab completes verbs and names from the graph, and shows the candidates if there are several."""
     await graph.start(Talker())
     async with stage(Content("prompt"), graph=graph) as s:
         await s.type("to")
@@ -117,7 +117,7 @@ async def test_completion(graph: Graph) -> None:
 
 
 async def test_what_comes_too_fast_is_counted() -> None:
-    """The pane keeps up; what is left out is said."""
+    """The pane keeps up; lines left out are counted."""
     async with stage(Content("prompt")) as s:
         s.console.hub.command = program("for i in range(30000): print(i)")
         await s.type("topic echo /x")
@@ -128,7 +128,7 @@ async def test_what_comes_too_fast_is_counted() -> None:
 
 
 async def test_a_colon_opens_the_command_line() -> None:
-    """As everywhere else, where the line is empty; within a line it is a character."""
+    """A colon in an empty line opens the command line, as in other views; within a line it is a character."""
     async with stage(Content("prompt")) as s:
         await s.type("a:")
         assert s.view.query_one("Input.line").value == "a:"  # type: ignore[attr-defined]
@@ -137,7 +137,7 @@ async def test_a_colon_opens_the_command_line() -> None:
 
 
 async def test_what_was_asked_for_by_a_key_is_read_from_the_top() -> None:
-    """A long answer stands at its beginning; what is typed afterwards is followed again."""
+    """The output of a command started by a key is shown from the top; that of later commands is followed."""
     async with stage(Content("nodes"), size=(80, 20)) as s:
         s.console.hub.command = program("print('\\n'.join(f'line {i}' for i in range(100)))")
         s.view.open("prompt", "topic info -v /x", run=True)

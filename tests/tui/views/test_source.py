@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
-    """Wherever it is in the file; control characters in it are not obeyed."""
+    """The line is marked and visible wherever it is; control characters have no effect."""
     file = tmp_path / "long.py"
     file.write_text("\n".join(f"x{i} = {i}  # \x1b[31m" for i in range(1, 301)))
     async with stage(Content("source", f"{file}:200"), size=(80, 20)) as s:
@@ -26,7 +26,7 @@ async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
 
 
 async def test_the_lines_before_it_are_on_screen(tmp_path: Path) -> None:
-    """Also in a pane that is opened below another one, whose height is known only after a while."""
+    """The lines before it are visible even in a new pane, whose height is known only later."""
     (tmp_path / "long.py").write_text("\n".join(f"x{i} = {i}" for i in range(1, 301)))
     async with stage(Content("nodes"), size=(80, 24)) as s:
         s.view.open("source", f"{tmp_path / 'long.py'}:200")
@@ -36,7 +36,7 @@ async def test_the_lines_before_it_are_on_screen(tmp_path: Path) -> None:
 
 
 async def test_escape_closes_it(tmp_path: Path) -> None:
-    """And goes back to what it was opened from."""
+    """Escape returns to the pane that opened it."""
     (tmp_path / "a.py").write_text("x = 1\n")
     async with stage(Content("nodes")) as s:
         s.view.open("source", f"{tmp_path / 'a.py'}:1")
@@ -46,13 +46,13 @@ async def test_escape_closes_it(tmp_path: Path) -> None:
 
 
 async def test_a_file_that_is_not_there() -> None:
-    """It says so."""
+    """The view says that the file is missing."""
     async with stage(Content("source", "nowhere.py:3")) as s:
         assert "there is no file nowhere.py:3" in s.text
 
 
 async def test_the_editor_must_be_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without one, it says what to set."""
+    """Without an editor, the message says what to set."""
     monkeypatch.delenv("EDITOR", raising=False)
     monkeypatch.delenv("VISUAL", raising=False)
     (tmp_path / "a.py").write_text("x = 1\n")
@@ -68,7 +68,7 @@ async def test_the_editor_must_be_named(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 def test_files_by_their_name_alone(tmp_path: Path) -> None:
-    """As reports write them."""
+    """A file name without a folder, as in reports, is searched for."""
     (tmp_path / "nodes").mkdir()
     file = tmp_path / "nodes" / "arm.py"
     file.write_text("")

@@ -1,4 +1,4 @@
-"""The guide: what is to be seen now, and the key that leads on."""
+"""The guide: a description of the situation, and the keys that lead on."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OPTIONS = {"title": "Two nodes ask each other.", "step": "4/11 crossing", "secon
 
 @slow
 async def test_from_the_ring_to_the_next_example(graph: Graph, tmp_path: Path) -> None:
-    """It says to press f, then w and n; n leaves for what comes next."""
+    """The guide names f, then w and n; n leaves for the next example."""
     file = tmp_path / "lab.yaml"
     file.write_text(FILE)
     graph.deadlock = "report"
@@ -50,7 +50,7 @@ async def test_from_the_ring_to_the_next_example(graph: Graph, tmp_path: Path) -
 
 
 async def test_what_no_ring_explains() -> None:
-    """After its time an example without a ring is called that; n shows it repaired."""
+    """After its time, an example without a deadlock is described as such; n shows it repaired."""
     async with stage(Content("tour", options={**OPTIONS, "seconds": -2.0}), size=(110, 40)) as s:
         await s.until("things happen in the wrong order")
         await s.press("n")
@@ -59,7 +59,7 @@ async def test_what_no_ring_explains() -> None:
 
 
 async def test_repaired() -> None:
-    """What the file says is shown."""
+    """The comment in the repaired graph file is shown."""
     async with stage(Content("tour", options={**OPTIONS, "fixed": "override:\n  /a: {}"}), size=(110, 40)) as s:
         await s.until("Repaired, and it runs")
         assert "override:" in s.text

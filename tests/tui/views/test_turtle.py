@@ -1,4 +1,4 @@
-"""The turtles: found by their poses, drawn with what they drew before, driven by keys."""
+"""The turtles: found by their poses, drawn with their earlier trails, driven by keys."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_a_turtle_draws(graph: Graph) -> None:
-    """What it drew before we looked comes as a picture, what it draws now by its poses."""
+    """Earlier trails come as a picture, new ones by the poses."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("turtle"), graph=graph, size=(60, 30)) as s:
@@ -41,7 +41,7 @@ async def test_a_turtle_draws(graph: Graph) -> None:
     ("key", "linear", "angular"), [("up", 2.0, 0.0), ("down", -2.0, 0.0), ("left", 0.0, 2.0), ("right", 0.0, -2.0)]
 )
 async def test_arrows_drive(key: str, linear: float, angular: float, graph: Graph) -> None:
-    """As turtlesim's own teleop does; the command that would do the same is shown."""
+    """Arrow keys drive as turtlesim's own teleop does; the equivalent command is shown."""
     await graph.start(Talker(), Listener())
     driven = graph.tap(Twist, "/turtle1/cmd_vel")
     async with stage(Content("turtle"), graph=graph) as s:
@@ -54,6 +54,6 @@ async def test_arrows_drive(key: str, linear: float, angular: float, graph: Grap
 
 
 async def test_without_a_turtle() -> None:
-    """It says what it waits for."""
+    """The view says what it waits for."""
     async with stage(Content("turtle")) as s:
         assert "waiting for a turtle" in s.text

@@ -1,4 +1,4 @@
-"""The bottom lines: what can be pressed, the windows, the states; clicks on them."""
+"""The bottom lines: available keys, windows, states; clicks on them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 def test_every_state_has_a_mark() -> None:
-    """Those of processes, of life cycles, failed ones, and nodes of others; those that are wrong have each its own."""
+    """States of processes and lifecycles have marks, as have nodes of others; each bad state has a mark of its own."""
     states = {state.value for state in State} | {state.label for state in LifecycleState if state.is_primary and state}
     assert states | {"failed", "given_up", "lost", "unresponsive", "foreign", "deadlock"} == set(MARKS)
     bad = [mark.glyph for mark in MARKS.values() if mark.colours == "bad"]
@@ -26,7 +26,7 @@ def test_every_state_has_a_mark() -> None:
 
 
 def test_the_word_of_a_node() -> None:
-    """A deadlock hides that it runs; a state of its life cycle says more than that."""
+    """A deadlock takes precedence over a running process, and so does a lifecycle state."""
     row = cast("NodeRow", {"node": "/a", "state": "ready", "lifecycle": "inactive"})
     assert displayed_state(row, {"/a"}) == "deadlock"
     assert displayed_state(row, ()) == "inactive"
@@ -34,7 +34,7 @@ def test_the_word_of_a_node() -> None:
 
 
 async def test_the_bottom_lines_on_80_columns() -> None:
-    """The focused view's keys, and the two that one must know."""
+    """The keys of the focused view, and the two most important ones."""
     async with stage(Content("log"), Content("nodes"), size=(80, 24)) as s:
         hints, status = s.text.split("\n")[-2:]
         assert "/ filter" in hints
@@ -43,7 +43,7 @@ async def test_the_bottom_lines_on_80_columns() -> None:
 
 
 async def test_what_is_wrong_with_the_graph() -> None:
-    """Errors that nobody has looked at with the key to them, and races that were found."""
+    """Unseen errors are shown with their key, and so are races."""
     async with stage(Content("nodes"), size=(110, 24)) as s:
         s.console.hub.logs.add([record("RACE: an update of self.x is lost", level=2), record("bad", level=3)])
         await s.look()
@@ -51,7 +51,7 @@ async def test_what_is_wrong_with_the_graph() -> None:
 
 
 async def test_a_click_on_a_window_opens_it() -> None:
-    """As everything can be reached by the mouse."""
+    """Windows can be chosen by mouse."""
     async with stage(Content("log"), Content("nodes")) as s:
         at = s.text.split("\n")[-1].index("1:nodes")
         await s.pilot.click(type(s.console.status), offset=(at + 1, 0))
@@ -59,7 +59,7 @@ async def test_a_click_on_a_window_opens_it() -> None:
 
 
 async def test_many_windows_leave_room_for_the_states() -> None:
-    """Those around the current one are shown, with marks for the others, which a click opens, too."""
+    """Windows around the current one are shown, with clickable marks for the others."""
     async with stage(*[Content("topics")] * 12, size=(80, 24)) as s:
         status = s.text.split("\n")[-1]
         assert status.startswith(" [lab]  0:topics*  1:topics ")
@@ -76,7 +76,7 @@ async def test_many_windows_leave_room_for_the_states() -> None:
 
 
 async def test_clicks_on_what_can_be_pressed() -> None:
-    """The view's keys, help, and leaving."""
+    """The view's keys, help and leaving can be clicked."""
     async with stage(Content("log"), size=(100, 24)) as s:
         await s.pilot.pause()
         hints = s.text.split("\n")[-2]
@@ -91,7 +91,7 @@ async def test_clicks_on_what_can_be_pressed() -> None:
 
 
 async def test_a_deadlock_is_told_wherever_one_is() -> None:
-    """With the key that shows it."""
+    """A new deadlock is reported in every view, with the key that shows it."""
     async with stage() as s:
         s.console.deadlocks = 1
         await s.look()
@@ -102,7 +102,7 @@ async def test_a_deadlock_is_told_wherever_one_is() -> None:
 
 
 async def test_after_the_end() -> None:
-    """The exit code stays in sight."""
+    """The exit code stays visible."""
     async with stage() as s:
         supervision: Any = s.console.hub.supervision
         supervision.exit_code = 1
@@ -111,7 +111,7 @@ async def test_after_the_end() -> None:
 
 
 async def test_a_supervisor_that_died() -> None:
-    """Its last word is not taken for the truth."""
+    """The states from before its death are not shown as current."""
     async with stage() as s:
         supervision: Any = s.console.hub.supervision
         supervision.is_lost = True
@@ -120,7 +120,7 @@ async def test_a_supervisor_that_died() -> None:
 
 
 async def test_what_went_wrong_stays_until_it_is_seen() -> None:
-    """What is told after it is among the messages; what the user does is answered."""
+    """Later messages do not replace an unseen error; commands do."""
     async with stage(size=(80, 20)) as s:
         s.console.say("/arm died", bad=True)
         s.console.say("all nodes have ended")
@@ -131,7 +131,7 @@ async def test_what_went_wrong_stays_until_it_is_seen() -> None:
 
 
 async def test_a_message_that_is_too_long() -> None:
-    """It says where the rest is; a key takes it away once it has been seen."""
+    """A cut message says how to see all of it; a key dismisses it once it has been seen."""
     async with stage(size=(60, 20)) as s:
         s.console.say("word " * 30)
         await s.look()

@@ -18,7 +18,7 @@ RED = (255, 0, 0)
 
 
 def test_dots_are_braille() -> None:
-    """Two columns and four rows to the cell, in Unicode's order; outside is nothing."""
+    """A cell has two columns and four rows in Unicode's order; dots outside are ignored."""
     dots = Dots(2, 1)
     for x, y in ((0, 0), (1, 3), (2, 1), (-1, 0), (99, 0), (0, 99)):
         dots.dot(x, y, RED)
@@ -26,7 +26,7 @@ def test_dots_are_braille() -> None:
 
 
 def test_lines() -> None:
-    """From one dot to another, without a gap."""
+    """A line has no gaps."""
     dots = Dots(4, 2)
     dots.line(0, 0, 7, 7, RED)
     assert "".join(text for text, _ in dots.row(0)).strip() == "⠑⢄"
@@ -34,7 +34,7 @@ def test_lines() -> None:
 
 
 def test_turtlesims_own_picture_is_read() -> None:
-    """Where its turtle went, in metres, and the colour of its pen."""
+    """The path of the turtle is read in metres, with the colour of its pen."""
     world = World()
     world.canvas.draw("t", Pen((1, 2, 3), 3), (2.0, 3.0), (4.0, 5.0))
     [line] = read_picture(svg(world, (0, 0, 0)))
@@ -46,12 +46,12 @@ def test_turtlesims_own_picture_is_read() -> None:
     "text", ["", "<svg/>", '<polyline points="a,b" stroke="#000000" stroke-width="3"/>', "x" * 10_000_000]
 )
 def test_no_picture(text: str) -> None:
-    """Whatever a service of that name may answer."""
+    """Other responses contain no strokes."""
     assert read_picture(text) == []
 
 
 def test_moves_draw_and_jumps_do_not() -> None:
-    """A turtle that was carried has left no line; what is not a number is no place."""
+    """A teleported turtle leaves no line; positions that are not finite are ignored."""
     drawing = Drawing()
     for x, y in ((1.0, 1.0), (1.5, 1.0), (1.5, 1.0), (9.0, 9.0), (float("nan"), 0.0)):
         drawing.moved("t", x, y, 0.0, jump=1.0)
@@ -60,7 +60,7 @@ def test_moves_draw_and_jumps_do_not() -> None:
 
 
 def test_a_picture_replaces_the_moves_before_it_and_tells_the_pens() -> None:
-    """Those since it was asked for are drawn upon it."""
+    """Moves since the request of the picture are drawn over it."""
     drawing = Drawing()
     for i in range(4):
         drawing.now = float(i)
@@ -73,7 +73,7 @@ def test_a_picture_replaces_the_moves_before_it_and_tells_the_pens() -> None:
 
 
 async def test_only_what_has_changed_is_drawn_again() -> None:
-    """Heads and names where they were and where they are, and the new piece of a line; nothing when nobody moves."""
+    """Heads and names are redrawn at their old and new places, with new pieces of lines; nothing if nothing moves."""
     drawing = Drawing()
     drawing.moved("alice", 2.0, 2.0, 0.0, jump=1.0)
     drawing.moved("bob", 9.0, 9.0, 0.0, jump=1.0)
@@ -98,7 +98,7 @@ async def test_only_what_has_changed_is_drawn_again() -> None:
 
 
 async def test_names_of_turtles_that_are_near_each_other() -> None:
-    """The second one stands below its turtle, as does that of one at the upper edge."""
+    """The second name is below its turtle, as is that of a turtle at the upper edge."""
     drawing = Drawing()
     for name, x, y in (("alice", 2.0, 2.0), ("bob", 2.6, 2.0), ("carol", 9.0, 11.0)):
         drawing.moved(name, x, y, 0.0, jump=1.0)

@@ -1,4 +1,4 @@
-"""Colours can be read: WCAG AA in both themes, and the ansi themes use the terminal's own."""
+"""Contrast: WCAG AA in both themes, and the ansi themes use the terminal's own colours."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 AA = 4.5
-"""The contrast that text of normal size needs. Source: WCAG 2.1, 1.4.3."""
+"""The contrast required for text of normal size. Source: WCAG 2.1, 1.4.3."""
 
 
 def luminance(rgb: tuple[int, int, int]) -> float:
@@ -37,7 +37,7 @@ def rgb(text: str) -> tuple[int, int, int]:
 
 @pytest.mark.parametrize("theme", [DARK, LIGHT], ids=["dark", "light"])
 async def test_all_that_is_written_can_be_read(theme: Theme) -> None:
-    """On the ground, on titles, and on what is chosen."""
+    """Contrast suffices on the background, on titles, and on selected rows."""
     name = theme.name
     async with stage(Content("help")) as s:
         s.console.theme = name
@@ -57,7 +57,7 @@ async def test_all_that_is_written_can_be_read(theme: Theme) -> None:
 
 
 async def test_ansi_themes_use_the_terminals_colours() -> None:
-    """No colour of ours in them."""
+    """The themes contain no colours of their own."""
     async with stage(Content("help")) as s:
         s.console.theme = "ansi-dark"
         await s.pilot.pause()
@@ -69,13 +69,13 @@ async def test_ansi_themes_use_the_terminals_colours() -> None:
 
 
 async def test_a_node_has_one_colour() -> None:
-    """Wherever it is named."""
+    """A node has the same colour in all views."""
     async with stage(Content("help")) as s:
         assert s.console.colours.node("/a") == s.console.colours.node("/a")
 
 
 async def test_lines_drawn_before_a_change_of_theme_follow_it() -> None:
-    """There and back."""
+    """Lines change with the theme, and back."""
     async with stage(Content("prompt")) as s:
         lines: LineView[Any] = s.view.query_one(LineView)
         colours = s.console.colours

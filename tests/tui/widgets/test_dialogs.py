@@ -1,4 +1,4 @@
-"""What the console asks."""
+"""Dialogs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ("keys", "answer"), [(["d"], "d"), (["s"], "s"), (["escape"], None), (["up", "enter"], "s"), (["enter"], None)]
 )
 async def test_a_question(keys: list[str], answer: str | None) -> None:
-    """Answered by a key, by a button, or not at all; enter by mistake goes back."""
+    """A question is answered by a key, by a button, or not at all; an accidental enter cancels."""
     async with stage() as s:
         answers: list[str | None] = []
         s.console.push_screen(
@@ -27,7 +27,7 @@ async def test_a_question(keys: list[str], answer: str | None) -> None:
 
 
 async def test_a_line() -> None:
-    """Enter takes it, escape does not."""
+    """Enter accepts the line, escape cancels."""
     async with stage() as s:
         answers: list[str | None] = []
         s.console.push_screen(AskLine("Name", "old"), answers.append)
@@ -38,7 +38,7 @@ async def test_a_line() -> None:
 
 
 async def test_picking_by_parts_of_a_name() -> None:
-    """The best fits first; arrows choose; names in brackets are no markup; long lists are bounded."""
+    """The best match comes first; arrows select; brackets in names are no markup; long lists are bounded."""
     async with stage() as s:
         answers: list[int | None] = []
         items = [Item(f"/arm{i}/[pose]", "x/msg/Y", i) for i in range(500)]
@@ -52,7 +52,7 @@ async def test_picking_by_parts_of_a_name() -> None:
 
 
 async def test_what_fits_best_comes_first() -> None:
-    """Exactly the name, a word of it, its beginning; then parts, wherever they are."""
+    """An exact match comes first, then words, beginnings and parts."""
     texts = ["detail", "catalogue", "log /arm", "log", "logger", "x"]
     async with stage() as s:
         picked: list[str | None] = []
@@ -69,7 +69,7 @@ async def test_what_fits_best_comes_first() -> None:
 
 
 async def test_nothing_to_pick() -> None:
-    """It says so, and enter does nothing."""
+    """The dialog says so, and enter does nothing."""
     async with stage() as s:
         s.console.push_screen(Pick("Which", [], "no graph runs"))
         await s.until("no graph runs")
@@ -80,7 +80,7 @@ async def test_nothing_to_pick() -> None:
 
 
 async def test_names_and_details_stay_apart() -> None:
-    """On a narrow screen, too, where each keeps to its line."""
+    """On a narrow screen, too, each keeps to its line."""
     items = [Item(f"call /turtle1/{'a' * n}teleport", "turtlesim/srv/TeleportAbsolute", n) for n in (3, 30)]
     async with stage(size=(80, 24)) as s:
         s.console.push_screen(Pick("Which?", items))
@@ -93,7 +93,7 @@ async def test_names_and_details_stay_apart() -> None:
 
 
 async def test_a_name_is_shown_before_its_detail() -> None:
-    """Half of the line is for names that need it."""
+    """Names take up to half of the line if they need it."""
     async with stage(size=(80, 24)) as s:
         s.console.push_screen(Pick("Which?", [Item("call /turtle1/teleport_absolute", "d" * 60, 0)]))
         await s.until("call /turtle1/teleport_absolute")

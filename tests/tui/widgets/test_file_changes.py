@@ -1,4 +1,4 @@
-"""Writing into a graph file: shown first, whole or not at all."""
+"""Changes of a graph file: shown before they are written, and written atomically."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def file(tmp_path: Path) -> Path:
 
 
 async def test_the_windows_are_written(file: Path) -> None:
-    """By a key, after the change was shown; comments stay."""
+    """A key writes the windows after confirmation; comments stay."""
     async with stage(Content("nodes"), Content("log"), folder=file.parent) as s:
         await s.prefix("ctrl+s")
         await s.until("Write the windows of this console to lab.yaml?")
@@ -41,7 +41,7 @@ async def test_the_windows_are_written(file: Path) -> None:
     [("nodes: {", "lab"), ("nodes: {}", "there is no node"), ("nodes: {/a: {clas: x:Y}}", "unknown key 'clas'")],
 )
 async def test_what_would_be_no_graph_file_is_not_written(change: str, why: str, file: Path) -> None:
-    """Whatever made it so."""
+    """A change that would make the file invalid is not written."""
     async with stage(folder=file.parent) as s:
         file_changes.write_file(s.console, file, lambda _: change, "nothing good")
         assert why in s.console.messages[-1]
@@ -51,7 +51,7 @@ async def test_what_would_be_no_graph_file_is_not_written(change: str, why: str,
 
 
 async def test_a_full_disk_leaves_the_old_file(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """And says so."""
+    """The old file stays, and the error is shown."""
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -66,7 +66,7 @@ async def test_a_full_disk_leaves_the_old_file(file: Path, monkeypatch: pytest.M
 
 
 async def test_nodes_of_others_have_no_file(file: Path) -> None:
-    """Nor has a console on a robot."""
+    """Nodes of others have no graph file; neither has a console on a robot."""
     async with stage(supervised=False) as s:
         file_changes.write_nodes(s.console, {"/a"}, lambda text, _: text, "x", lambda: None)
         assert "there is no graph file" in s.console.messages[-1]

@@ -1,4 +1,4 @@
-"""Forms made of interfaces: what is filled in becomes a message, and what does not fit is told by its field."""
+"""Forms from interfaces: input becomes a message, and faults are shown at their fields."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_nested_fields(graph: object) -> None:
-    """By their paths; only what differs from the defaults is said."""
+    """Fields are named by path; only differences from the defaults are kept."""
     async with stage(Content("nodes")) as s:
         form = Form(Twist)
         await s.view.mount(form)
@@ -38,7 +38,7 @@ async def test_nested_fields(graph: object) -> None:
 
 
 async def test_large_messages(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have so many lines, and so deep, and no more."""
+    """The number of lines and their depth are limited."""
     async with stage(Content("nodes")):
         monkeypatch.setattr(forms, "FIELDS", 4)
         assert [path for path, _, _ in Form(Twist)._fields] == ["linear.x", "linear.y", "linear.z", "angular.x"]
@@ -55,13 +55,13 @@ async def test_nothing_to_fill_in() -> None:
 
 
 def test_a_type_that_is_not_known_here() -> None:
-    """It is said where the form would have been."""
+    """The error is shown in place of the form."""
     with pytest.raises(GraphflowError):
         form_for("nowhere/msg/Nothing")
 
 
 async def test_from_line_to_line() -> None:
-    """By tab, enter and arrows, round and round; a value that does not fit is marked, and gets the focus."""
+    """Tab, enter and arrows cycle through the lines; an invalid value is marked, and gets the focus."""
     async with stage(Content("nodes"), size=(60, 20)) as s:
         form = Form(Spawn.Request)
         await s.view.mount(form)

@@ -30,7 +30,7 @@ async def lines(**options: Any) -> AsyncIterator[tuple[Stage, LineView[Any]]]:
 
 
 async def test_only_so_many_are_kept_and_what_is_read_stays_put() -> None:
-    """While one has scrolled up, the oldest go without moving what is on the screen."""
+    """While the user has scrolled up, dropping the oldest lines does not move the visible ones."""
     async with lines(bound=50) as (s, made):
         made.extend([f"line {i}" for i in range(50)])
         assert "line 49" in s.text
@@ -47,7 +47,7 @@ async def test_only_so_many_are_kept_and_what_is_read_stays_put() -> None:
 
 
 async def test_long_rows_wrap() -> None:
-    """In parts of the width; choosing a part chooses the row."""
+    """Rows are split at the width; selecting a part selects the row."""
     async with lines(wraps=True) as (s, made):
         made.extend(["a" * 50, Text("short")])
         assert "a" * 10 in s.text
@@ -59,7 +59,7 @@ async def test_long_rows_wrap() -> None:
 
 
 async def test_a_last_row_that_is_replaced() -> None:
-    """Goes with all of its parts."""
+    """All parts of the row are replaced."""
     async with lines(wraps=True) as (_, made):
         made.extend(["short", "a" * 50])
         made.replace_last("new")
@@ -77,19 +77,19 @@ async def test_a_last_row_that_is_replaced() -> None:
     ],
 )
 def test_breaking_between_words(text: str, width: int, lines: list[str]) -> None:
-    """A line's indent and a frame's border go on; a word that is too long is cut."""
+    """Indent and border are repeated on each line; a word that is too long is cut."""
     scale = 2 if text.startswith("日") else 1
     found = [text[:indent] + text[start // scale : end // scale] for start, end, indent in breaks(text, width)]
     assert found == lines
 
 
 def test_a_row_that_is_much_too_long() -> None:
-    """Becomes a limited number of lines."""
+    """The number of lines is limited."""
     assert len([*breaks("a" * 100_000, 10)]) == MAX_PARTS
 
 
 async def test_moving() -> None:
-    """By lines, pages, to both ends."""
+    """The cursor moves by lines, by pages, and to both ends."""
     async with lines() as (s, made):
         made.extend([f"line {i}" for i in range(100)])
         await s.press("home")
@@ -107,7 +107,7 @@ async def test_moving() -> None:
 
 
 async def test_searching() -> None:
-    """Backwards from the end at first; n and N go on; small letters stand for capital ones too."""
+    """The search begins at the end and goes backwards; n and N continue; lower case matches any case."""
     async with stage(Content("help")) as s:
         lines = s.view.query_one(LineView)
         lines.replace([f"{'Gear' if i % 10 == 0 else 'line'} {i}" for i in range(100)])
@@ -126,7 +126,7 @@ async def test_searching() -> None:
 
 
 async def test_copying_a_line() -> None:
-    """Where `y` copies nothing else."""
+    """`y` copies the line unless the view binds it otherwise."""
     async with stage(Content("prompt")) as s:
         lines = s.view.query_one(LineView)
         lines.replace(["one", "two"])

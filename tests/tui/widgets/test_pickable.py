@@ -1,4 +1,4 @@
-"""What can be picked."""
+"""The entries of pickers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_views_and_things(graph: Graph) -> None:
-    """Every view that needs no more words, and those of each node, topic, service and action."""
+    """Every view without a subject is listed, and those of each node, topic, service and action."""
     await graph.start(Talker())
     async with stage(Content("help"), graph=graph) as s:
         await graph.settle()

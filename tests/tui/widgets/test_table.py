@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Numbers(TableView):
-    """Rows that a test sets."""
+    """Rows set by the test."""
 
     NAME = "numbers"
     COLUMNS: ClassVar[tuple[str, ...]] = ("name", "value")
@@ -28,7 +28,7 @@ class Numbers(TableView):
 
 
 async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever comes before it, changes in it, or goes after it."""
+    """The cursor stays on its row while rows before it come and go."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     Numbers.now = {name: (name, "1") for name in "bdf"}
     async with stage(Content("numbers")) as s:
@@ -51,7 +51,7 @@ async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It says what was searched for, and how all rows come back."""
+    """The message names the search, and the key that clears it."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     Numbers.now = {"a": ("a", "1")}
     async with stage(Content("numbers")) as s:
@@ -64,7 +64,7 @@ async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_long_tables_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is not shown is counted."""
+    """Rows that are not shown are counted."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     monkeypatch.setattr(table, "ROWS", 10)
     Numbers.now = {f"r{i}": (f"r{i}", "") for i in range(25)}
@@ -75,7 +75,7 @@ async def test_long_tables_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_an_order(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By a column's quantities, units and all; once more for backwards; what has none comes last."""
+    """Rows are sorted by quantities with their units; choosing again reverses; rows without a value come last."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     Numbers.now = {name: (name, value) for name, value in zip("abcd", ("10ms", "", "1.5s", "900ms"), strict=True)}
     async with stage(Content("numbers")) as s:
@@ -92,7 +92,7 @@ async def test_an_order(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_a_find_stays_in_the_title(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With how many of all rows it leaves; it comes back with the windows."""
+    """The title gives the number of matches; the search is restored with the windows."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
     Numbers.now = {f"r{i}": (f"r{i}", "") for i in range(25)}
     async with stage(Content("numbers", options={"find": "r2"})) as s:
@@ -104,7 +104,7 @@ async def test_a_find_stays_in_the_title(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 class Wide(Numbers):
-    """One whose last column takes what is left."""
+    """A table whose last column takes the remaining width."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = ("name", "value", "text")
     SHED = ("name", "text", "value")
@@ -116,7 +116,7 @@ class Wide(Numbers):
     ("width", "shown"), [(80, "a one long"), (40, "a one long"), (28, "a long"), (20, "a one"), (12, "a")]
 )
 async def test_the_width_that_is_there(monkeypatch: pytest.MonkeyPatch, width: int, shown: str) -> None:
-    """The last column has the rest of the line; what has no room goes, in the order of its worth."""
+    """The last column takes the rest of the line; columns without room are hidden by importance."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Wide)
     Wide.now = {"a": ("a", "one", "long " * 30)}
     async with stage(Content("numbers"), size=(width, 12)) as s:

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_it_is_put_away_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By escape; it is remembered for the next console."""
+    """Escape hides the line, also in later consoles."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     assert is_first_visit()
     async with stage(size=(80, 24)) as s:
@@ -26,7 +26,7 @@ async def test_it_is_put_away_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 async def test_nowhere_to_remember_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is hidden for now."""
+    """Without a place to store it, the line is hidden for now."""
     (tmp_path / "graphflow").touch()
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     async with stage(size=(80, 24)) as s:

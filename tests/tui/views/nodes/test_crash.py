@@ -1,4 +1,4 @@
-"""The evidence of an end, and the way back."""
+"""The evidence of a crash, and the restart."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TRACE = [
 
 
 async def test_the_evidence() -> None:
-    """How it ended, its traceback with the user's own lines marked, its last words; r restarts it."""
+    """Exit status, traceback with the user's own lines marked, and last output are shown; r restarts."""
     records = [record(text, "/talker", 3 if i else 1, number=i) for i, text in enumerate(TRACE)]
     async with stage(Content("crash", "/talker"), records=records) as s:
         supervision = s.console.hub.supervision
@@ -41,7 +41,7 @@ async def test_the_evidence() -> None:
 
 
 def test_the_last_traceback() -> None:
-    """From its first line to the error; none where there is none."""
+    """The last traceback extends from its first line to the error; empty if there is none."""
     records = [record(text) for text in ("Traceback (most recent call last):", "  old", "Old: x", *TRACE)]
     assert [r.text for r in traceback_of(records)] == TRACE[1:6]
     assert traceback_of([record("fine")]) == []

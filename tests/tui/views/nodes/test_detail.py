@@ -1,4 +1,4 @@
-"""The chosen node, a tab for each view of it; it follows the cursor, and takes what would have split the window."""
+"""Details of the selected node in tabs, which follow the cursor and take what would have split the window."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RECORDS = [record("I talk"), record("I lift", "/arm/left")]
 
 
 def beside(console: Console) -> None:
-    """The list of nodes, and below it what there is of the chosen one."""
+    """The list of nodes, with the details of the selected one below."""
     windows = console.windows
     root = Split("rows", [windows.make_pane(Content("nodes")), windows.make_pane(Content("detail"))])
     windows.select(windows.open("both", root))
@@ -30,7 +30,7 @@ def title(s: Stage) -> str:
 
 
 async def test_a_narrow_pane(graph: Graph) -> None:
-    """It names the tab that is open, and how many there are."""
+    """In a narrow pane the title names the open tab, and the number of tabs."""
     await graph.start(Talker())
     async with stage(Content("log"), graph=graph, records=RECORDS, size=(40, 24)) as s:
         beside(s.console)
@@ -41,7 +41,7 @@ async def test_a_narrow_pane(graph: Graph) -> None:
 
 
 async def test_it_follows_the_cursor(graph: Graph) -> None:
-    """All logs at first; then the chosen node, in the tab that was chosen, without another pane."""
+    """The view begins with all logs; then it shows the selected node in the chosen tab, without another pane."""
     await graph.start(Talker())
     async with stage(Content("log"), graph=graph, records=RECORDS) as s:
         beside(s.console)
@@ -74,7 +74,7 @@ async def test_it_follows_the_cursor(graph: Graph) -> None:
 
 @slow
 async def test_another_node_has_a_pane_of_its_own(graph: Graph) -> None:
-    """Only what is about the chosen node belongs into the tabs."""
+    """Content about another node is not opened in a tab."""
     await graph.start(Talker())
     async with stage(Content("log"), graph=graph) as s:
         beside(s.console)
@@ -85,7 +85,7 @@ async def test_another_node_has_a_pane_of_its_own(graph: Graph) -> None:
 
 
 async def test_before_a_node_is_chosen() -> None:
-    """The tabs of a node have nothing to show, and say so."""
+    """Without a selected node the tabs are empty, and say so."""
     async with stage(Content("detail"), nodes=()) as s:
         await s.press("]")
         await s.until("choose a node in the list of nodes first")

@@ -1,4 +1,4 @@
-"""The list of nodes: state by glyph and word, and the keys that act on the chosen one."""
+"""The list of nodes: states by glyph and word, and the keys that act on the selected node."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def supervised(s: object) -> Supervised:
 
 
 async def test_states_have_a_glyph_and_a_word() -> None:
-    """Running, ended, failed; the cost of a live process; how long it has been up."""
+    """Running, ended and failed nodes differ; a live process has its resource use and uptime."""
     async with stage(Content("nodes"), nodes=("/a", "/b", "/c")) as s:
         rows = supervised(s).nodes
         rows["/a"]["pid"] = rows["/b"]["pid"] = os.getpid()
@@ -51,7 +51,7 @@ async def test_states_have_a_glyph_and_a_word() -> None:
 
 
 async def test_nodes_that_others_have_started(graph: Graph) -> None:
-    """They are shown, and cannot be controlled."""
+    """Nodes of others are shown, but cannot be controlled."""
     await graph.start(Talker())
     async with stage(Content("nodes"), graph=graph, supervised=False) as s:
         await s.until("/talker")
@@ -61,7 +61,7 @@ async def test_nodes_that_others_have_started(graph: Graph) -> None:
 
 
 async def test_processes_of_other_machines() -> None:
-    """Cost nothing here: their numbers are those of other processes."""
+    """Resource use is not measured for processes on other machines, whose ids mean nothing here."""
     async with stage(Content("nodes")) as s:
         view, hub = s.view, s.console.hub
         assert isinstance(view, Nodes)
@@ -75,7 +75,7 @@ async def test_processes_of_other_machines() -> None:
 
 
 async def test_restart_and_stop_ask_first() -> None:
-    """And say what shares the process; a node that has ended restarts at once."""
+    """The questions name the nodes that share the process; a node that has ended restarts at once."""
     async with stage(Content("nodes"), nodes=("/a", "/b")) as s:
         for row in supervised(s).nodes.values():
             row["process"] = "both"
@@ -100,7 +100,7 @@ async def test_restart_and_stop_ask_first() -> None:
     [("l", "ready", "log /a"), ("p", "ready", "params /a"), ("enter", "failed", "crash /a")],
 )
 async def test_keys_open_what_belongs_to_the_node(key: str, state: str, opens: str) -> None:
-    """Its log, its parameters, the evidence of its end."""
+    """Keys open the node's log, parameters and crash."""
     async with stage(Content("nodes"), nodes=("/a",)) as s:
         supervised(s).nodes["/a"]["state"] = state
         await s.look()
@@ -109,7 +109,7 @@ async def test_keys_open_what_belongs_to_the_node(key: str, state: str, opens: s
 
 
 async def test_finding(graph: Graph) -> None:
-    """Typing narrows the list; escape widens it."""
+    """Typing narrows the list; escape clears the search."""
     async with stage(Content("nodes"), nodes=("/arm", "/leg", "/left_arm")) as s:
         await s.look()
         await s.press("slash")
@@ -122,7 +122,7 @@ async def test_finding(graph: Graph) -> None:
 
 
 def test_costs() -> None:
-    """Of a live process; none of one that is not there."""
+    """A live process has a resource use; a missing one has none."""
     costs = Costs()
     found = costs.look(os.getpid())
     assert found is not None
@@ -131,7 +131,7 @@ def test_costs() -> None:
 
 
 async def test_columns_go_where_there_is_no_room_for_them() -> None:
-    """A number is whole, or not there."""
+    """Columns without room are hidden whole: numbers are never cut."""
     async with stage(Content("nodes"), size=(32, 20)) as s:
         await s.until("● running")
         head = s.text.split("\n")[1]
@@ -141,7 +141,7 @@ async def test_columns_go_where_there_is_no_room_for_them() -> None:
 
 
 async def test_a_node_in_a_ring_says_so(graph: Graph) -> None:
-    """However well its process runs."""
+    """A deadlocked node is marked even though its process runs."""
     async with stage(Content("nodes"), graph=graph) as s:
         live = s.console.hub.live
         assert live is not None
@@ -154,7 +154,7 @@ async def test_a_node_in_a_ring_says_so(graph: Graph) -> None:
 
 
 async def test_lifecycle_states_errors_and_floods() -> None:
-    """Each has its place in the row."""
+    """Each has its column in the row."""
     async with stage(Content("nodes"), nodes=("/a", "/b"), size=(140, 20)) as s:
         supervised(s).nodes["/a"]["lifecycle"] = "inactive"
         supervised(s).nodes["/b"]["detail"] = "exit code 3"
@@ -174,7 +174,7 @@ async def test_lifecycle_states_errors_and_floods() -> None:
 
 
 async def test_groups_of_nodes() -> None:
-    """By namespace or process, folded by a key; a group is no node."""
+    """Nodes are grouped by namespace or process, folded by a key; a group is not a node."""
     async with stage(Content("nodes"), nodes=("/arm/left", "/talker", "/arm/right")) as s:
         supervised(s).nodes["/talker"]["process"] = "one"
         await s.look()
@@ -199,7 +199,7 @@ async def test_groups_of_nodes() -> None:
 
 
 async def test_a_life_cycle(graph: Graph) -> None:
-    """t offers the transitions that there are now, and makes one; nodes without a life cycle have none."""
+    """t offers the transitions available now, and requests one; other nodes have none."""
     node = Lived()
     await graph.start(node, Talker())
     async with stage(Content("nodes"), graph=graph, nodes=("/lived", "/talker")) as s:
@@ -221,7 +221,7 @@ async def test_a_life_cycle(graph: Graph) -> None:
 
 
 class Lived(LifecycleNode):
-    """Does not want to be deactivated."""
+    """Refuses to be deactivated."""
 
     node_name = "lived"
 
@@ -240,7 +240,7 @@ class Lived(LifecycleNode):
 
 
 async def test_a_state_that_changes_is_seen_at_once() -> None:
-    """The list does not wait for its next look, and looks once for many events."""
+    """The list is updated early after events, but once for many of them."""
     async with stage(Content("nodes"), Content("topics")) as s:
         s.view.looked = now = time.monotonic()
         for _ in range(3):
@@ -253,5 +253,5 @@ async def test_a_state_that_changes_is_seen_at_once() -> None:
 
 
 def test_labels_of_others_are_plain() -> None:
-    """A process may call its transitions as it likes; the terminal must not obey, nor be filled."""
+    """Labels from other processes are limited, and cannot control the terminal."""
     assert _label(Transition(label="\x1b[31mgo\x07" + "x" * 100)) == "go" + "x" * (LABEL - 8)

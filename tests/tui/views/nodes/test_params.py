@@ -1,4 +1,4 @@
-"""Parameters: shown with range and source, changed in place, refused with the node's reason."""
+"""Parameters: shown with range and origin, edited in place, refused with the node's reason."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def row(s: Stage, name: str) -> str:
 
 @slow
 async def test_what_is_shown(graph: Graph, tmp_path: Path) -> None:
-    """Value, type, range, source and description; changes from elsewhere appear."""
+    """Value, type, range, origin and description are shown; changes from elsewhere appear."""
     file = tmp_path / "lab.yaml"
     file.write_text("nodes:\n  /talker:\n    class: tests.tui.nodes:Talker\n    params: {shout: true}\n")
     node = Talker(shout=True)
@@ -47,7 +47,7 @@ async def test_what_is_shown(graph: Graph, tmp_path: Path) -> None:
 
 
 async def test_changing(graph: Graph) -> None:
-    """Enter edits; what the node refuses is told with its reason and kept as it was; the command is shown."""
+    """Enter edits; a refused value is reported with its reason and not kept; the command is shown."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("params", "/talker"), graph=graph, size=(140, 30)) as s:
@@ -76,7 +76,7 @@ async def test_changing(graph: Graph) -> None:
 
 @slow
 async def test_saving(graph: Graph, tmp_path: Path) -> None:
-    """What was changed is written into the graph file, whose comments stay; the change is shown first."""
+    """Changes are written into the graph file after confirmation, and its comments stay."""
     file = tmp_path / "lab.yaml"
     text = "# my lab\nnodes:\n  /talker:  # talks\n    class: tests.tui.nodes:Talker\n"
     file.write_text(text)

@@ -1,4 +1,4 @@
-"""What processes cost."""
+"""Resource use of processes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_a_row_a_process() -> None:
-    """With all its nodes, and the supervisor; those that have ended are left out."""
+    """Each process has a row with all its nodes, the supervisor included; ended ones are left out."""
     async with stage(Content("top"), nodes=("/a", "/b", "/gone")) as s:
         supervision = s.console.hub.supervision
         assert isinstance(supervision, Supervised)

@@ -14,12 +14,12 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 def lines(text: str) -> list[str]:
-    """The lines below the head of the table, without what stands beside the first two columns."""
+    """The rows of the table, reduced to the first two columns."""
     return [" ".join(line.split()) for line in text.split("\n")[2:] if "/" in line]
 
 
 async def test_a_node(graph: Graph) -> None:
-    """All that is below it: an action is one link, and what every node has is none."""
+    """A node's links are below it: an action is one link, and those of every node are left out."""
     await graph.start(Talker(), Listener())
     async with stage(Content("tree", "/talker"), graph=graph, size=(110, 30)) as s:
         await s.until("has the action, no clients")
@@ -45,7 +45,7 @@ async def test_a_node(graph: Graph) -> None:
 
 
 async def test_all_nodes(graph: Graph) -> None:
-    """They are folded at first; the rows that are opened are kept with the windows."""
+    """All nodes are folded at first; unfolded rows are saved with the windows."""
     await graph.start(Talker(), Listener())
     async with stage(Content("tree"), graph=graph, size=(110, 30)) as s:
         await s.until("▸ /listener")
@@ -66,7 +66,7 @@ async def test_all_nodes(graph: Graph) -> None:
 
 @pytest.mark.parametrize(("name", "opened"), [("/add", "call /add"), ("/fibonacci", "goals")])
 async def test_what_is_opened(graph: Graph, name: str, opened: str) -> None:
-    """A service's form, an action's goals."""
+    """Enter opens a service's form or an action's goals."""
     await graph.start(Talker())
     async with stage(Content("tree", "/talker"), graph=graph, size=(110, 30)) as s:
         await s.until(name)
@@ -77,7 +77,7 @@ async def test_what_is_opened(graph: Graph, name: str, opened: str) -> None:
 
 
 async def test_from_the_list_of_nodes(graph: Graph) -> None:
-    """By x."""
+    """x opens the tree."""
     await graph.start(Talker())
     async with stage(Content("nodes"), graph=graph, size=(110, 30)) as s:
         await s.until("/talker")

@@ -1,4 +1,4 @@
-"""The messages of a topic: the latest, or one after the other; what is left out is counted."""
+"""The messages of a topic: the latest, or as a stream; messages left out are counted."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ async def say(s: Stage, graph: Graph, node: Talker, *words: str) -> None:
 
 
 async def test_the_latest_message(graph: Graph) -> None:
-    """In place; escape sequences in it are shown, not obeyed."""
+    """The latest message is updated in place; escape sequences in it have no effect."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("echo", "/chatter"), graph=graph) as s:
@@ -37,7 +37,7 @@ async def test_the_latest_message(graph: Graph) -> None:
 
 
 async def test_one_after_the_other(graph: Graph) -> None:
-    """What came between two looks is counted."""
+    """Messages between two updates are counted."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("echo", "/chatter"), graph=graph) as s:
@@ -54,7 +54,7 @@ async def test_one_after_the_other(graph: Graph) -> None:
 
 
 async def test_a_topic_that_nobody_publishes(graph: Graph) -> None:
-    """It says so, and begins when somebody does."""
+    """The view says that there is no publisher, and begins once there is one."""
     async with stage(Content("echo", "/chatter"), graph=graph) as s:
         await s.look()
         await s.until("nobody publishes /chatter yet")

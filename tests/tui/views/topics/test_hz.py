@@ -14,7 +14,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_numbers_and_silence(graph: Graph) -> None:
-    """Rate, shortest and longest gap, jitter, losses; and silence is called so."""
+    """The view shows rate, shortest and longest gap, jitter and losses; and silence as such."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("hz", "/chatter"), graph=graph) as s:

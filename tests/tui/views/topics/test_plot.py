@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """`topic.a,b` are two curves, a topic alone all its numbers."""
+    """`topic.a,b` are two curves; a topic alone, all its numeric fields."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
     node = Talker()
     await graph.start(node)
@@ -42,7 +42,7 @@ async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPa
 
 
 async def test_without_colours(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each curve has a chart of its own: only colours tell those of one chart apart."""
+    """Without colours, each curve has a chart of its own."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
     monkeypatch.setenv("NO_COLOR", "1")
     node = Talker()
@@ -59,7 +59,7 @@ async def test_without_colours(graph: Graph, monkeypatch: pytest.MonkeyPatch) ->
 
 
 async def test_what_is_kept(graph: Graph) -> None:
-    """So many samples a second, of four times the seconds shown; of those there are 2 to 600."""
+    """A limited number of samples per second is kept, for four times the seconds shown, which are 2 to 600."""
     async with stage(Content("plot", "/speed.linear.x"), graph=graph) as s:
         view = s.view
         assert isinstance(view, plot.Plot)
@@ -75,7 +75,7 @@ async def test_what_is_kept(graph: Graph) -> None:
 
 
 async def test_a_pause_and_the_end(graph: Graph) -> None:
-    """What is drawn stays while it is paused; when the view is closed the topic is left."""
+    """The drawing stays while paused; the topic is left when the view is closed."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("plot", "/speed.linear.x"), graph=graph) as s:
@@ -100,7 +100,7 @@ async def test_a_pause_and_the_end(graph: Graph) -> None:
 
 
 async def test_fields_are_chosen_and_have_axes_of_their_own(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One by one, until escape; what was drawn of those that stay is kept."""
+    """Fields are chosen one by one until escape; curves that stay keep their samples."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
     node = Talker()
     await graph.start(node)
@@ -131,7 +131,7 @@ async def test_fields_are_chosen_and_have_axes_of_their_own(graph: Graph, monkey
 
 
 async def test_fields_of_one_unit_share_an_axis(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A layout that says `axes: true`, as earlier versions did, gives each its own."""
+    """A layout of an earlier version, with `axes: true`, gives each curve an axis of its own."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
     node = Talker()
     await graph.start(node)
@@ -157,7 +157,7 @@ async def test_fields_of_one_unit_share_an_axis(graph: Graph, monkeypatch: pytes
     ],
 )
 async def test_what_cannot_be_drawn(graph: Graph, about: str, message: str) -> None:
-    """Is told in its place."""
+    """The reason is shown in place of curves."""
     node = Talker()
     await graph.start(node)
     async with stage(Content("plot", about), graph=graph) as s:

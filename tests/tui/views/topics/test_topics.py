@@ -1,4 +1,4 @@
-"""The topics, and what does not fit."""
+"""The list of topics, with mismatches."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Careless(Node):
-    """Publishes what its listener does not take."""
+    """Publishes with a QoS that its listener does not accept."""
 
     fast = Publisher(String, "scan", Qos(reliability=Reliability.BEST_EFFORT))
     number = Publisher(Int32, "word")
 
 
 class Careful(Node):
-    """Wants every message."""
+    """Requires reliable messages."""
 
     scan = Subscription(String, "scan")
     word = Subscription(String, "word")
 
 
 async def test_types_and_counts(graph: Graph) -> None:
-    """Who publishes, who listens; hidden topics on request."""
+    """Publishers and subscriptions are counted; hidden topics are shown on request."""
     await graph.start(Talker(), Listener())
     async with stage(Content("topics"), graph=graph) as s:
         await s.until("/chatter")
@@ -42,7 +42,7 @@ async def test_types_and_counts(graph: Graph) -> None:
 
 
 async def test_what_does_not_fit_is_said(graph: Graph) -> None:
-    """QoS and type, in the row of the topic."""
+    """Mismatches of QoS and type are described in the row of the topic."""
     await graph.start(Careless(), Careful())
     async with stage(Content("topics"), graph=graph) as s:
         await s.until("/scan")
@@ -53,7 +53,7 @@ async def test_what_does_not_fit_is_said(graph: Graph) -> None:
 
 @pytest.mark.parametrize(("key", "opens"), [("enter", "echo"), ("h", "hz"), ("p", "plot")])
 async def test_keys(key: str, opens: str, graph: Graph) -> None:
-    """What is shown of a topic opens beside."""
+    """Keys open the views of the topic."""
     await graph.start(Talker())
     async with stage(Content("topics"), graph=graph) as s:
         await s.until("/chatter")
