@@ -72,10 +72,10 @@ class Console(ConsoleApp):
         if not self.windows.windows:
             open_home(self.windows, hub)
         self.workspace = Workspace(self.windows, self._make_view)
-        self.commands = ConsoleCommands(self)
+        self._commands = ConsoleCommands(self)
         self.hints = Hints()
         self.status = Status()
-        self.keyboard = Keyboard(self, super().on_event, self.commands.do)
+        self.keyboard = Keyboard(self, super().on_event, self._commands.do)
         self.welcome = Welcome()
         self.welcome.display = welcome
         self.job_control = JobControl(self, self.hints.refresh)
@@ -228,8 +228,11 @@ class Console(ConsoleApp):
                     lines.recolour(recolour)
         self.refresh(layout=True)
 
+    @property
+    def commands(self) -> ConsoleCommands:
+        return self._commands
+
     def open_beside(self, content: Content) -> None:
-        """Open a view beside the focused pane, or in a new window if there is no room."""
         self.commands.open_beside(content)
 
     # keys

@@ -15,9 +15,8 @@ from graphflow.tui.pane_area import Workspace
 from graphflow.tui.panes import Window
 from graphflow.tui.tty import clipboard
 from graphflow.tui.tty.job_control import JobControl
-from graphflow.tui.view import View
+from graphflow.tui.view import ConsoleBase, View
 from graphflow.tui.widgets.bars import Hints, Status
-from graphflow.tui.widgets.colours import ThemedApp
 from graphflow.tui.widgets.welcome import Welcome
 
 MESSAGES = 500
@@ -30,7 +29,7 @@ LEAVE_WITHIN = 2.0
 """Seconds to wait for the panes' workers to end."""
 
 
-class ConsoleApp(ThemedApp):
+class ConsoleApp(ConsoleBase):
     """The console as its views, bars and commands see it."""
 
     hints: Hints
@@ -45,11 +44,9 @@ class ConsoleApp(ThemedApp):
         self.windows = windows
         self.prefix = prefix
         self.flags: dict[int, str] = {}
-        """Marks in the window list, by window number: `!` for a crash in that window."""
         self.deadlocks = 0
         self.clipboard_text = ""
         self.last_shell = ""
-        """The shell command equivalent to the last action."""
         self.messages: list[str] = []
         """The messages shown so far, oldest first."""
         self._save_timer: Timer | None = None
@@ -59,7 +56,6 @@ class ConsoleApp(ThemedApp):
         self.run_worker(work, group=LASTING)
 
     async def leave(self, how: str) -> None:
-        """Leave the console. The graph runs on."""
         if self.hub.supervision is not None:
             self.save_layout()
         views = [frame.view for frame in self.workspace.frames.values()]
@@ -79,12 +75,10 @@ class ConsoleApp(ThemedApp):
 
     @property
     def focused_view(self) -> View | None:
-        """The view in the focused pane."""
         frame = self.workspace.focused
         return None if frame is None else frame.view.active
 
     def say(self, text: str, *, bad: bool = False) -> None:
-        """Show a message in the bottom line."""
         self._log_message(text)
         self.hints.say(text, "bad" if bad else "text")
 
@@ -93,7 +87,6 @@ class ConsoleApp(ThemedApp):
         del self.messages[:-MESSAGES]
 
     def did(self, shell: str) -> None:
-        """Show the shell command equivalent to the action just taken."""
         self.last_shell = shell
         self._log_message(f"$ {shell}")
         self.hints.say(f"$ {shell}   ({shown(self.prefix)} y copies)", "accent")

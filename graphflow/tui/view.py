@@ -8,18 +8,81 @@ from __future__ import annotations
 
 import time
 from collections.abc import Awaitable, Callable
-from typing import Any, ClassVar
+from typing import ClassVar, Protocol
 
 from textual.widget import Widget
 
 from graphflow.errors import GraphflowError
 from graphflow.tui.commands.actions import Action, carry_out
 from graphflow.tui.feeds.hub import Hub
+from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Content
-from graphflow.tui.widgets.colours import Colours, colours_of
+from graphflow.tui.widgets.colours import Colours, ThemedApp, colours_of
 
 SOON = 0.1
 """Seconds by which an early update is delayed, so that a burst of events is drawn once."""
+
+
+class Commands(Protocol):
+    """The commands of the console that views and bars use."""
+
+    def do_close_pane(self) -> None: ...
+
+    def do_detach(self) -> None: ...
+
+    def do_groups(self) -> None: ...
+
+    def do_help(self) -> None: ...
+
+    def go_to_window(self, number: int) -> None: ...
+
+    def do_command(self) -> None: ...
+
+    def do_mute_node(self) -> None: ...
+
+    def restart(self, node: str) -> None: ...
+
+    def stop_node(self, node: str) -> None: ...
+
+    def show_newest_error(self, node: str) -> None: ...
+
+
+class ConsoleBase(ThemedApp):
+    """The console as its views and bars see it. `context` and `app` implement it, and import those."""
+
+    hub: Hub
+    windows: Layout
+    prefix: str
+    flags: dict[int, str]
+    """Marks in the window list, by window number: `!` for a crash in that window."""
+    deadlocks: int
+    last_shell: str
+    """The shell command equivalent to the last action."""
+
+    @property
+    def focused_view(self) -> View | None:
+        """The view in the focused pane."""
+        raise NotImplementedError
+
+    @property
+    def commands(self) -> Commands:
+        raise NotImplementedError
+
+    def say(self, text: str, *, bad: bool = False) -> None:
+        """Show a message in the bottom line."""
+        raise NotImplementedError
+
+    def did(self, shell: str) -> None:
+        """Show the shell command equivalent to the action just taken."""
+        raise NotImplementedError
+
+    def open_beside(self, content: Content) -> None:
+        """Open a view beside the focused pane, or in a new window if there is no room."""
+        raise NotImplementedError
+
+    async def leave(self, how: str) -> None:
+        """Leave the console. The graph runs on."""
+        raise NotImplementedError
 
 
 class View(Widget):
@@ -119,9 +182,11 @@ class View(Widget):
         return colours_of(self)
 
     @property
-    def console(self) -> Any:
+    def console(self) -> ConsoleBase:
         """The console that contains the view."""
-        return self.app
+        app = self.app
+        assert isinstance(app, ConsoleBase)
+        return app
 
     def say(self, text: str, *, bad: bool = False) -> None:
         """Show a message in the bottom line."""
@@ -135,7 +200,7 @@ class View(Widget):
         """Show the shell command equivalent to the action just taken."""
         self.console.did(shell)
 
-    def open(self, view: str, about: str = "", **options: Any) -> None:
+    def open(self, view: str, about: str = "", **options: object) -> None:
         """Open a view in a pane beside this one."""
         self.console.open_beside(Content(view, about, options))
 

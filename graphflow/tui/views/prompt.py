@@ -28,7 +28,7 @@ WAITING = 2_000
 """Maximum lines waiting to be drawn; further ones are counted and dropped."""
 WELCOME = (
     "Any verb of graphflow: topic echo /turtle1/pose, param set ..., action send_goal ...",
-    "tab completes, ↑ recalls, ^c interrupts; f2 shows a view here instead.",
+    "tab completes, ↑ recalls, ^c ends the command; f2 shows a view here instead.",
 )
 
 

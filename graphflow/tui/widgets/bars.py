@@ -6,7 +6,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Container, Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rich.segment import Segment
 from rich.style import Style
@@ -16,6 +16,7 @@ from textual.widget import Widget
 
 from graphflow.tui.commands.actions import console_actions, shown
 from graphflow.tui.feeds.supervision import NodeRow
+from graphflow.tui.view import ConsoleBase
 
 MESSAGE_SECONDS = 6.0
 """Seconds for which a message replaces the hints."""
@@ -68,8 +69,10 @@ class Bar(Widget):
     """A bar of styled text."""
 
     @property
-    def console_app(self) -> Any:
-        return self.app
+    def console_app(self) -> ConsoleBase:
+        app = self.app
+        assert isinstance(app, ConsoleBase)
+        return app
 
     def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
         """Return the styled pieces of a line."""
@@ -118,8 +121,10 @@ class Hints(Bar):
         """Return name, key and title of the focused view's actions, as far as they fit."""
         view = self.console_app.focused_view
         room = width - 1
-        found = []
-        for action in view.ACTIONS if view is not None else ():
+        found: list[tuple[str, str, str]] = []
+        if view is None:
+            return found
+        for action in view.ACTIONS:
             if view.offers(action) and action.keys:
                 label = action.label or f"{shown(action.keys[0])} {action.title}"
                 key, _, title = label.partition(" ")
@@ -139,7 +144,9 @@ class Hints(Bar):
         for name, key, title in self._shown(self.size.width):
             at += len(key) + len(title) + 3
             if event.x < at:
-                self.console_app.focused_view.action_act(name)
+                view = self.console_app.focused_view
+                if view is not None:
+                    view.action_act(name)
                 return
 
 

@@ -11,14 +11,14 @@ from pathlib import Path
 from graphflow.errors import GraphFileError, GraphflowError
 from graphflow.graph.edit import KeyPath, node_paths
 from graphflow.graph.resolve import load
-from graphflow.tui.context import ConsoleApp
+from graphflow.tui.view import ConsoleBase
 from graphflow.tui.widgets.dialogs import Ask, Choice
 
 DIFF_LINES = 30
 
 
 def write_nodes(
-    console: ConsoleApp,
+    console: ConsoleBase,
     nodes: set[str],
     change: Callable[[str, dict[str, KeyPath]], str],
     what: str,
@@ -48,7 +48,7 @@ def write_nodes(
 
 
 def write_file(
-    console: ConsoleApp,
+    console: ConsoleBase,
     file: Path,
     change: Callable[[str], str],
     what: str,
