@@ -1,4 +1,4 @@
-"""Commands on a graph file, whose arguments are `NAME:=VALUE`: what is said where one is written as an option."""
+"""Commands on a graph file: correct options that were meant as arguments, which are written `NAME:=VALUE`."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import click
 from graphflow.names import nearest
 
 OF_NODES = {
-    "--params-file": "Parameters of a file are given where a node is written in the graph file: params_file: FILE.yaml",
+    "--params-file": "A parameter file belongs to a node of the graph file: params_file: FILE.yaml",
     "--ros-args": "ROS arguments are for one node, started by run. A graph file has params: and remap: for each node",
 }
-"""Options of `run` that concern one node, and what a graph file has in their place."""
+"""Options of `run` that concern one node, and the entries of a graph file that replace them."""
 
 
 class GraphCommand(click.Command):
-    """A command that tells how an argument of the graph is written where it does not know an option."""
+    """A command that answers an unknown option with the graph argument that was probably meant."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         try:
@@ -26,24 +26,24 @@ class GraphCommand(click.Command):
                 raise click.NoSuchOption(error.option_name, OF_NODES[error.option_name], ctx=ctx) from None
             if text is None or nearest(error.option_name, known, cutoff=0.85) is not None:
                 raise
-            message = f"No such option {error.option_name!r}. An argument of the graph is written {text}"
+            message = f"No such option {error.option_name!r}. An argument of the graph is written as {text}"
             raise click.NoSuchOption(
                 error.option_name, f"{message}; up GRAPH --show-args lists them.", ctx=ctx
             ) from None
 
 
 def as_argument(option: str, words: list[str]) -> str | None:
-    """An option that a command does not know as an argument of a graph, with its value; None where it cannot be one.
+    """Convert an unknown option to an argument of a graph, with its value; None if it cannot be one.
 
     Args:
-        option: As in `--rate`.
+        option: Such as `--rate`.
         words: The command line.
     """
-    if not option.startswith("--"):  # which ends after one letter
+    if not option.startswith("--"):  # click reports only the first letter of a short option
         option = next((word for word in words if word.startswith(option) and ":=" in word), option)
         if ":=" in option:
             return option.lstrip("-")
-    name = option.lstrip("-").replace("-", "_")
+    name = option.lstrip("-").replace("-", "_")  # as click names the parameter
     if not name.isidentifier():
         return None
     for place, word in enumerate(words):

@@ -1,4 +1,4 @@
-"""What a shell may complete: verbs, options, live names, types, and messages to fill in."""
+"""Completions for a shell: verbs, options, live names, types, and messages to fill in."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from graphflow.errors import GraphflowError
 _PLAIN = re.compile(r"[\w/.~-]+", re.ASCII)
 NAMES = ("NODE", "NODES", "TOPIC", "TOPICS", "SERVICE", "ACTION")
 LIVE = (*NAMES, "TYPE", "PARAMETER", "PARAMETERS")
-"""Places for which the graph is asked."""
+"""Arguments that are completed from the running graph."""
 PACKAGED = ("executables", "prefix", "xml")
-"""Verbs of `pkg` that are for one package."""
+"""Verbs of `pkg` that take one package."""
 ANSWER_LIMIT = 1.0
-"""Seconds that a node has to tell its parameters."""
+"""Seconds that a node has to list its parameters."""
 
 
 def choices(words: Sequence[str], partial: str) -> list[str]:
-    """The words that a word may become.
+    """Return the completions of a word.
 
     Args:
-        words: Those before it, without `graphflow`.
-        partial: Its beginning. One that begins with a quotation mark gets a message in such marks.
+        words: The words before it, without `graphflow`.
+        partial: Its beginning. If that is a quotation mark, messages are quoted with the same mark.
     """
     command, context, rest = _command(words)
     if isinstance(command, click.Group):
@@ -40,13 +40,13 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
     mark = partial[:1] if partial[:1] in ("'", '"') else ""
     try:
         found = _named(what, given, mark or "'")
-    except GraphflowError:  # nothing runs, or it cannot be asked: there is nothing to complete with
+    except GraphflowError:  # no graph is running or reachable, so there are no names to offer
         found = []
     return sorted({name for name in found if name.startswith(partial)})
 
 
 def _command(words: Sequence[str]) -> tuple[click.Command, click.Context, list[str]]:
-    """The command that some words name, and those that are left."""
+    """Return the command that some words name, and the remaining words."""
     from graphflow.cli.main import cli
 
     command: click.Command = cli
@@ -80,7 +80,7 @@ def _valued(command: click.Command) -> set[str]:
 
 
 def _expected(command: click.Command, words: Sequence[str]) -> tuple[str, list[str]]:
-    """What the next word is for: an argument, `--option` or nothing; and the arguments so far."""
+    """Return the argument or `--option` that the next word fills, or an empty text; and the arguments so far."""
     valued, given, owner = _valued(command), list[str](), ""
     for word in words:
         if owner:
@@ -121,13 +121,13 @@ def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
             found = RemoteParameters(view, view.node(given[0]), ANSWER_LIMIT).names()
         else:
             found = completions.names_for(word, given, view.cache)
-    # They come from other processes, and a shell runs what it is given: what it might obey is not offered.
+    # The names come from other processes, and the shell evaluates them: offer none with characters special to it.
     plain = [name for name in found if _PLAIN.fullmatch(name)]
     return _types() if word == "TYPE" and not plain else plain
 
 
 def _started_by(given: Sequence[str]) -> set[str]:
-    """The packages that have executables, or the executables of the one that was named."""
+    """Return the packages that have executables or, given a package, its executables."""
     from graphflow.workspace.executables import all_executables
     from graphflow.workspace.project import project_root
 
@@ -136,7 +136,7 @@ def _started_by(given: Sequence[str]) -> set[str]:
 
 
 def _types() -> list[str]:
-    """All types that are installed."""
+    """Return the names of all installed types."""
     from graphflow.msgs import registry
 
     kinds = registry.KINDS
@@ -150,7 +150,7 @@ _graphflow() {
     set -f
     COMPREPLY=($(graphflow completion words -- "$line" 2>/dev/null))
     local word="${line##*[[:space:]]}" cut="${COMP_WORDS[COMP_CWORD]}"
-    # bash takes a colon for the end of a word, and wants only what comes behind it
+    # bash splits words at colons, and expects only the part after the last one
     if [[ "$word" == *:* && "$word" != [\\'\\"]* && "$cut" != "$word" ]]; then
         local head="${word%"${word##*:}"}"
         COMPREPLY=("${COMPREPLY[@]#"$head"}")
@@ -162,7 +162,7 @@ complete -o default -F _graphflow graphflow gf
 #compdef graphflow gf
 _graphflow() {
     local -a found
-    # zsh takes an opening quotation mark off the line, and adds both to what it is given
+    # zsh removes an opening quotation mark from the line, and adds both marks to each completion
     found=("${(@f)$(graphflow completion words -- "${LBUFFER%$PREFIX}$QIPREFIX$PREFIX" 2>/dev/null)}")
     [[ -n "$QIPREFIX" ]] && found=("${(@)${(@)found#$QIPREFIX}%$QIPREFIX}")
     [[ -n "$found" ]] && compadd -Q -U -- $found || _files
@@ -178,4 +178,4 @@ complete -c graphflow -f -a '(__graphflow)'
 complete -c gf -f -a '(__graphflow)'
 """,
 }
-"""What a shell reads to ask for `graphflow completion words`."""
+"""Completion scripts, by shell; each calls `graphflow completion words`."""

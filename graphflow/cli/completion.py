@@ -19,40 +19,40 @@ _FILES = {
     "zsh": ".zfunc/_graphflow",
     "fish": ".config/fish/completions/graphflow.fish",
 }
-"""Where each shell looks, below the home."""
+"""The file that each shell reads, below the home folder."""
 
 
 @click.group(cls=Verbs)
 def completion() -> None:
-    """Let TAB complete verbs, options, live names, types and messages."""
+    """Set up TAB completion of verbs, options, live names, types and messages."""
 
 
 @completion.command()
 @click.argument("shell", type=click.Choice(list(SCRIPTS)), required=False)
 def install(shell: str | None) -> int:
-    """Write the file that a shell reads; which shell is taken from SHELL unless one is named."""
+    """Write the completion script where the shell reads it. [the shell in $SHELL]"""
     from pathlib import Path
 
     name = shell or Path(os.environ.get("SHELL", "")).name
     if name not in SCRIPTS:
-        raise UsageFault(f"which shell is meant? graphflow completion install {'|'.join(SCRIPTS)}")
+        raise UsageFault(f"name the shell: graphflow completion install {'|'.join(SCRIPTS)}")
     at = home()
     if at is None:
-        raise UsageFault(f"there is no home folder: set HOME, or place the output of graphflow completion show {name}")
+        raise UsageFault(f"there is no home folder: set HOME, or use graphflow completion show {name}")
     file = at / _FILES[name]
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(SCRIPTS[name], encoding="utf-8")
-        if name == "bash":  # it looks by the name of the command
+        if name == "bash":  # which finds a script by the name of the command
             (file.parent / "gf").write_text(SCRIPTS[name], encoding="utf-8")
     except OSError as error:
         output.error(f"{file}: {error.strerror}")
         return exits.FAILED
     output.data(str(file))
     hint = {
-        "bash": f"new shells have it where bash-completion is installed; in this one, and elsewhere: . {file}",
+        "bash": f"new shells load it if bash-completion is installed; for this shell, or without that: . {file}",
         "zsh": "add to ~/.zshrc, before compinit: fpath=(~/.zfunc $fpath)",
-        "fish": "new shells have it",
+        "fish": "new shells load it",
     }
     output.talk(hint[name])
     return exits.OK
@@ -61,24 +61,24 @@ def install(shell: str | None) -> int:
 @completion.command()
 @click.argument("shell", type=click.Choice(list(SCRIPTS)))
 def show(shell: str) -> None:
-    """Print what a shell reads, to be evaluated: eval "$(graphflow completion show bash)"."""
+    """Print the completion script, to be evaluated: eval "$(graphflow completion show bash)"."""
     output.data(SCRIPTS[shell])
 
 
 @completion.command(hidden=True)
 @click.argument("line")
 def words(line: str) -> None:
-    """Print the words that the last word of a line may become."""
+    """Print the completions of the last word of a line."""
     before, partial = parted(line)
     output.lines(choices(before[1:], partial))
 
 
 def parted(line: str) -> tuple[list[str], str]:
-    """The words of a line as a shell takes them, and the beginning of the last one, with its quotation mark."""
+    """Split a line as a shell does, except for the last word, which is returned as typed, with its quotation mark."""
     found = re.search(r"""(?:^|\s)((?:'[^']*|"[^"]*|[^\s'"]+)?)\Z""", line)
     partial = found[1] if found else ""
     head = line[: len(line) - len(partial)]
     try:
         return shlex.split(head), partial
-    except ValueError:  # a quotation that does not end
+    except ValueError:  # an unclosed quotation
         return head.split(), partial

@@ -1,4 +1,4 @@
-"""The way in: Ctrl-C ends the process quietly from here on, even while commands are still being imported."""
+"""The entry point: Ctrl-C ends the process quietly from here on, even while commands are still being imported."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def _end(*_: object) -> None:
-    os._exit(0)  # nothing has been done yet, and nothing is to be cleaned up
+    os._exit(0)  # nothing has been started yet, so there is nothing to clean up
 
 
-_IS_HEARD = signal.getsignal(signal.SIGINT) is signal.default_int_handler
-"""Whether Ctrl-C is for this process: shells have what they start in the background ignore it."""
-if _IS_HEARD:
+_TAKES_INTERRUPTS = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+"""Whether Ctrl-C is meant for this process: shells make background processes ignore it."""
+if _TAKES_INTERRUPTS:
     signal.signal(signal.SIGINT, _end)
 
 
@@ -36,7 +36,7 @@ def main() -> None:
         end_with_parent(int(os.environ.pop("GRAPHFLOW_ENDS_WITH")), signal.SIGINT)
     from graphflow.cli.main import main
 
-    if _IS_HEARD:
+    if _TAKES_INTERRUPTS:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         main()
@@ -47,10 +47,10 @@ def main() -> None:
 
 
 def _announce() -> None:
-    """Let a `down` that begins after this wait for the graph, while the command is still being imported."""
+    """Announce that a graph is being started, so that a `down` given from now on waits for it."""
     from graphflow.errors import SupervisorError
 
-    with suppress(SupervisorError):  # which the command will tell
+    with suppress(SupervisorError):  # the command meets the same error and reports it
         _announced().begin()
 
 
@@ -61,9 +61,9 @@ def _announced() -> Announcement:
 
 
 def _leave(end: SystemExit) -> None:
-    """End the process, without the interpreter's clearing up: that takes as long as a listing.
+    """End the process without the interpreter's finalization, which takes as long as a listing.
 
-    Where a node has been, the user's own code has, which may want to be called at the end.
+    A process that has run a node ends normally: the user's code may have registered `atexit` functions.
     """
     if "graphflow.runtime.node" not in sys.modules and isinstance(end.code, int):
         sys.stdout.flush()

@@ -17,7 +17,7 @@ OK, FAILED, USAGE, NOT_RUNNING, TIMEOUT = range(5)
 
 
 def exit_code(error: GraphflowError) -> int:
-    """The exit code of a command that raised `error`."""
+    """Return the exit code of a command that raised `error`."""
     if isinstance(error, SupervisorError):
         return error.exit_code
     if isinstance(error, CallTimeout):

@@ -1,4 +1,4 @@
-"""Single keys of the terminal, for commands that go on while they are pressed."""
+"""Single key presses in the terminal, for commands that keep running meanwhile."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _KEYS = {UP: UP, DOWN: DOWN, RIGHT: RIGHT, "\x1bOA": UP, "\x1bOB": DOWN, "\x1bOC
 
 @contextlib.contextmanager
 def pressed(handle: Callable[[str], object]) -> Iterator[bool]:
-    """Call `handle` with each key that is pressed meanwhile; gives whether there is a terminal to press them at.
+    """Call `handle` with each key pressed inside the block; the context value is whether keys can be read.
 
-    The terminal still turns Ctrl-C into a signal, and is afterwards as it was.
+    The terminal still turns Ctrl-C into a signal; its settings are restored at the end.
     """
     if not sys.stdin.isatty() or sys.platform == "win32" or os.tcgetpgrp(sys.stdin.fileno()) != os.getpgrp():
-        yield False  # in the background it would be stopped for asking
+        yield False  # reading the terminal from the background would stop the process (SIGTTIN)
         return
     import termios
     import tty
@@ -32,7 +32,7 @@ def pressed(handle: Callable[[str], object]) -> Iterator[bool]:
 
     def read() -> None:
         data = os.read(fd, 64).decode(errors="ignore")
-        for key in _ONE.findall(data):  # several may have come at once
+        for key in _ONE.findall(data):  # one read may return several keys
             handle(_KEYS.get(key, key))
 
     tty.setcbreak(fd)

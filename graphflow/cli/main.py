@@ -36,51 +36,51 @@ _VERBS = {
     "start": ("graphs.nodes", "Start nodes that have ended."),
     "restart": ("graphs.nodes", "Restart nodes, whether they run or have ended."),
     "stop": ("graphs.nodes", "Stop nodes."),
-    "status": ("graphs.nodes", "Show how a node is, how it last ended, and the end of its log."),
+    "status": ("graphs.nodes", "Show a node's state, how it last ended, and the end of its log."),
     "wait": ("graphs.nodes", "Wait until nodes are ready."),
-    "logs": ("graphs.graphs", "Show what the nodes of a graph have written."),
+    "logs": ("graphs.graphs", "Show the logs of a graph's nodes."),
     "plan": ("graphs.files", "Show exactly what a graph file would run."),
     "check": ("graphs.files", "Report every mistake in a graph file."),
-    "explain": ("graphs.files", "Explain how a name of a graph comes about."),
+    "explain": ("graphs.files", "Explain how a name in a graph is resolved."),
     "schema": ("graphs.files", "Print the JSON Schema of graph files."),
     "launch": ("ros.launch", "Start a launch file as `up` does, or convert it."),
     "run": ("ros.run", "Run one node."),
-    "rclpy": ("ros.rclpy", "Let plain `python` import rclpy, or not."),
-    "ws": ("ros.ws", "Show the packages of a ROS 2 workspace; nothing has to be built."),
+    "rclpy": ("ros.rclpy", "Make rclpy importable from plain `python`, or undo that."),
+    "ws": ("ros.ws", "Show the packages of a ROS 2 workspace, which need not be built."),
     "demo": ("graphs.demo", "Walk through an example, step by step."),
-    "graph": ("graphs.graph", "Draw the nodes and topics that run."),
-    "snapshot": ("graphs.snapshot", "Write what turtlesim has drawn into FILE, an SVG picture."),
+    "graph": ("graphs.graph", "Draw the running nodes and topics."),
+    "snapshot": ("graphs.snapshot", "Save turtlesim's drawing as an SVG picture."),
     "view": ("graphs.view", "Serve the running graph to Foxglove, Lichtblick and PlotJuggler."),
-    "top": ("graphs.top", "Show what the processes of the running graph cost."),
-    "router": ("graphs.router", "Run a Zenoh router, the rendezvous of this machine."),
+    "top": ("graphs.top", "Show CPU, memory and message rates of running processes."),
+    "router": ("graphs.router", "Run a Zenoh router as the rendezvous of this machine."),
     "node": ("ros.node", "List and describe nodes."),
     "topic": ("ros.topic", "List, describe, show and publish to topics."),
     "service": ("ros.service", "List and call services."),
     "action": ("ros.action", "List actions and send goals to them."),
     "param": ("ros.param", "List, get, set, describe, dump and load parameters."),
-    "bag": ("ros.bag", "Record topics into bags, and play and change bags."),
-    "pkg": ("ros.pkg", "List packages and what is in them, or make one."),
+    "bag": ("ros.bag", "Record, play, inspect and convert bags."),
+    "pkg": ("ros.pkg", "List packages and their contents, or create one."),
     "component": ("ros.component", "Load nodes into running processes, and unload them."),
-    "lifecycle": ("ros.lifecycle", "Bring lifecycle nodes from state to state."),
+    "lifecycle": ("ros.lifecycle", "Show and change the states of lifecycle nodes."),
     "waits": ("graphs.waits", "Show which handlers hold slots, what they wait for, and where."),
     "groups": ("graphs.waits", "Show a node's groups, or change them while it runs."),
     "doctor": ("ros.doctor", "Check the running graph for problems."),
     "console": ("graphs.console", "Open the console on a running graph, here or in a browser."),
-    "completion": ("completion", "Let TAB complete verbs, options, live names, types and messages."),
+    "completion": ("completion", "Set up TAB completion of verbs, live names, types and messages."),
     "interface": ("ros.interface", "Show message, service and action types."),
 }
-"""Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
+"""Verb -> its module and its line in the help; the module is imported only when the verb is used."""
 
 
 _NO_NUMBER = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?\.")
 _NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
-"""Click's words about one that is no number, and the number that it may begin with, as `10hz` does."""
+"""Click's message about an invalid number, and the number that the text may begin with, as `10hz` does."""
 ALIKE = 0.55
-"""How like an unknown option those are that are offered."""
+"""Similarity to an unknown option from which another is suggested."""
 _ALIASES = {"wtf": "doctor"}
-"""Verbs of two names, as in ROS 2."""
+"""Second names of verbs, as in ROS 2."""
 _OTHER_WORDS = {"kill": "stop", "interfaces": "interface"}
-"""What people coming from other tools type."""
+"""Verbs of other tools, and ours of the same meaning."""
 
 
 class _Verbs(Verbs):
@@ -144,24 +144,24 @@ def cli(ctx: click.Context, /, domain: int | None, wire: str | None, connect: tu
     reach(connect, net)
     try:
         wire_profile()
-    except GraphflowError as error:  # a misspelt variable is reported before anything is done
+    except GraphflowError as error:  # report a misspelt variable before doing anything
         raise UsageFault(str(error)) from None
 
 
 def _open_standard_streams() -> None:
-    """Put nothing in the place of a standard stream that is closed: the next file that is opened would be it."""
+    """Open the null device for each closed standard stream, whose number the next opened file would get."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest number, which this is
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free number, which is `number`
         if getattr(sys, name) is None:
-            raw = open(number, "wb" if number else "rb", closefd=False)  # noqa: SIM115 - for good
+            raw = open(number, "wb" if number else "rb", closefd=False)  # noqa: SIM115 - open until the process ends
             setattr(sys, name, (output.Closed if number == 1 else TextIOWrapper)(raw, encoding="utf-8"))
 
 
 def _forget_output() -> None:
-    """Keep the interpreter from flushing, at its end, into what takes no more."""
+    """Redirect standard output to the null device, so that the flush at exit cannot fail again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
@@ -171,10 +171,10 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
 
 
 def _refuse_pasted(words: Sequence[str]) -> None:
-    """See that no option begins with a dash that is no hyphen, as slides and web pages have them.
+    """Refuse options that begin with a typographic dash, as copied from slides and web pages.
 
     Raises:
-        UsageFault: One does; with the option.
+        UsageFault: One does; the text has the option as it should be.
     """
     pasted = {word: meant_option(word) for word in words}
     if not any(pasted.values()):
@@ -188,11 +188,11 @@ def _refuse_pasted(words: Sequence[str]) -> None:
             command, context = inner, click.Context(inner, parent=context, info_name=word)
     for word, option in pasted.items():
         if option.partition("=")[0] in known:
-            raise UsageFault(f"the dash of {word!r} is no hyphen; write {option}")
+            raise UsageFault(f"{word!r} begins with a typographic dash, not a hyphen; write {option}")
 
 
 def _invoked(args: Sequence[str]) -> object:
-    """What a command returns. Click's own `main` would take a reader that has had enough for a failure."""
+    """Run a command and return its result. Click's own `main` would report a closed pipe as a failure."""
     name = "gf" if os.path.basename(sys.argv[0]) == "gf" else "graphflow"
     _refuse_pasted(args)
     try:
@@ -202,26 +202,26 @@ def _invoked(args: Sequence[str]) -> object:
         return end.exit_code
 
 
-def _tell_starts(told: str) -> None:
-    """Say that a graph is being started, unless the error that was told says so."""
+def _report_starts(reported: str) -> None:
+    """Print which graph is being started, unless the error already printed mentions it."""
     from graphflow.supervisor.starts import being_started
 
-    with suppress(SupervisorError):  # there is no run directory, and so nothing is being started
+    with suppress(SupervisorError):  # there is no run directory, so nothing is being started
         starts = being_started()
-        if starts not in told:
+        if starts not in reported:
             output.talk(starts)
 
 
 def _improved(error: click.UsageError) -> click.UsageError:
-    """Without options that an unknown one is not like, and without click's own terms for numbers."""
+    """Return a usage error with only suggestions that are similar, and with plain words for invalid numbers."""
     if isinstance(error, click.NoSuchOption) and error.ctx is not None:
-        if told := option_answer(error.ctx.command_path.partition(" ")[2], error.option_name):
-            return click.UsageError(f"No such option {error.option_name!r}; {told}", error.ctx)
+        if hint := option_answer(error.ctx.command_path.partition(" ")[2], error.option_name):
+            return click.UsageError(f"No such option {error.option_name!r}; {hint}", error.ctx)
         known = {name for param in error.ctx.command.params for name in param.opts}
         if (other := error.option_name.swapcase()) in known or (other := error.option_name.lower()) in known:
             return click.UsageError(f"{error.message} Did you mean {other!r}?", error.ctx)
     if isinstance(error, click.NoSuchOption) and error.possibilities:
-        word = error.option_name.lstrip("-")  # whose dashes would make all alike
+        word = error.option_name.lstrip("-")  # the dashes would make all options similar
         alike = [known for known in error.possibilities if nearest(word, [known.lstrip("-")], cutoff=ALIKE)]
         return click.NoSuchOption(error.option_name, error.message, alike, error.ctx)
     text = _NO_NUMBER.sub(_number_wanted, error.message)
@@ -231,7 +231,7 @@ def _improved(error: click.UsageError) -> click.UsageError:
 
 
 def _number_wanted(found: re.Match[str]) -> str:
-    """Answer a word that is no number: for `10hz`, that 10 is meant."""
+    """Describe an invalid number; for `10hz`, suggest 10."""
     number = _NUMBER.match(found[1])
     meant = f"; write {number[0].replace(',', '.')}" if number else "."
     return f"{found[1]!r} is not a {'whole ' if found[2] == 'integer' else ''}number{meant}"
@@ -253,17 +253,17 @@ def _main(args: Sequence[str] | None) -> int:
     except (KeyboardInterrupt, click.Abort):
         return exits.OK
     except BrokenPipeError:
-        _forget_output()  # the reader, `head` perhaps, has had enough
+        _forget_output()  # the reader, such as `head`, has closed the pipe
         return exits.OK
     except GraphflowError as error:
         output.error(str(error))
         if (code := exits.exit_code(error)) == exits.NOT_RUNNING:
-            _tell_starts(str(error))
+            _report_starts(str(error))
         return code
-    except OSError as error:  # a full disk, a file that went away: what the system says is what there is to say
+    except OSError as error:  # a full disk, a file that has gone: the system's own text says it best
         _forget_output()
-        what = f"{error.filename}: " if error.filename else "output: " if error.errno == errno.ENOSPC else ""
-        output.error(f"{what}{error.strerror or error}")
+        place = f"{error.filename}: " if error.filename else "output: " if error.errno == errno.ENOSPC else ""
+        output.error(f"{place}{error.strerror or error}")
         return exits.FAILED
     return result if isinstance(result, int) else exits.OK
 

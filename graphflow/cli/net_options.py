@@ -1,23 +1,23 @@
-"""`--connect` and `--net`: options that reach other machines, of `graphflow` itself and of `up`."""
+"""`--connect` and `--net`: the options that reach other machines, of `graphflow` itself and of some verbs."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import click
 
 from graphflow.errors import UsageFault
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
-# As in transport.config, which imports Zenoh.
+# Copies of the names in transport.config: importing that would import Zenoh.
 _CONNECT, _NET = "GRAPHFLOW_CONNECT", "GRAPHFLOW_NET"
 
 
 def reach_options(command: F) -> F:
-    """Give a command the options `connect` and `net`."""
+    """Add the options `--connect` and `--net` to a command."""
     connect = click.option(
         "--connect",
         multiple=True,
@@ -28,13 +28,13 @@ def reach_options(command: F) -> F:
         "--net",
         type=click.Path(exists=True, dir_okay=False, resolve_path=True),
         metavar="PROFILE.yaml",
-        help=f"Let others reach this machine, encrypted as the profile says; else {_NET}.",
+        help=f"Let others reach this machine, encrypted as the net profile says; else {_NET}.",
     )
     return connect(net(command))
 
 
 def reach(connect: tuple[str, ...], net: str | None) -> None:
-    """Put what the options say where the transport looks.
+    """Set the environment variables that the transport reads to the options' values.
 
     Raises:
         UsageFault: An endpoint is misspelt.

@@ -1,4 +1,4 @@
-"""Commands of ROS 1, and ones that a user of ROS 2 half remembers: each with the line to type, or why there is none."""
+"""Commands of ROS 1 and misremembered ones of ROS 2, with the command to type or the reason that there is none."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import shlex
 from collections.abc import Sequence
 
-_INIT = "graphflow init NAME makes a project, and graphflow pkg create NAME a package"
+_INIT = "graphflow init NAME creates a project, and graphflow pkg create NAME a package"
 _LINES = {
     "action call": "action send_goal",
     "action feedback": "action echo",
@@ -101,36 +101,36 @@ _LINES = {
     "topic send": "topic pub",
     "version": "--version",
 }
-"""The verb that the words behind them follow, or the whole line where it has a place for the first of them."""
-_NO_CORE = "none is needed: nodes find each other, and each machine starts what they meet at by itself"
-_THERE = "a topic is there as soon as a node publishes it or subscribes to it"
-_RENAMED = "names are changed where a node is started: graphflow run NODE -r OLD:=NEW"
+"""Our verb, which the remaining words follow; or a whole command, in which `{0}` is the first of them."""
+_NO_CORE = "none is needed: nodes find each other, and each machine starts its own rendezvous"
+_TOPICS = "a topic exists as soon as a node publishes or subscribes to it"
+_RENAMED = "names are changed when a node is started: graphflow run NODE -r OLD:=NEW"
 _SENTENCES = {
     **dict.fromkeys(("core", "roscore", "master", "rosmaster"), _NO_CORE),
-    **dict.fromkeys(("topic create", "topic add", "topic delete", "topic remove"), _THERE),
+    **dict.fromkeys(("topic create", "topic add", "topic delete", "topic remove"), _TOPICS),
     **dict.fromkeys(("topic remap", "remap", "topic rename", "node rename"), _RENAMED),
     "action cancel": (
-        "Ctrl-C at graphflow action send_goal cancels its goal; all goals of an action are cancelled by: graphflow "
+        "Ctrl-C in graphflow action send_goal cancels its goal; to cancel all goals of an action: graphflow "
         "service call {0}/_action/cancel_goal action_msgs/srv/CancelGoal"
     ),
     "action result": "graphflow action send_goal prints the result of its goal",
     "bag stop": "Ctrl-C in its terminal ends a recording",
-    "bag pause": "SPACE in its terminal pauses it",
+    "bag pause": "the space bar in its terminal pauses it",
     "node cleanup": "none is needed: a node that has gone is not listed",
     "rosnode cleanup": "none is needed: a node that has gone is not listed",
     "node create": "a node is a class in a file: graphflow init NAME writes one, and graphflow run FILE.py runs it",
     "test": "tests are run by pytest: python -m pytest",
     "rostest": "tests are run by pytest: python -m pytest",
-    **dict.fromkeys(("rviz", "rviz2"), "RViz is not here: graphflow view serves the graph to Foxglove and Lichtblick"),
-    **dict.fromkeys(("gazebo", "gz"), "no simulator is here but turtlesim: graphflow run turtlesim"),
+    **dict.fromkeys(("rviz", "rviz2"), "RViz is not included: graphflow view serves Foxglove and Lichtblick"),
+    **dict.fromkeys(("gazebo", "gz"), "the only simulator included is turtlesim: graphflow run turtlesim"),
     **dict.fromkeys(("roscd", "rosls", "rosed"), "graphflow pkg prefix --share PACKAGE prints where a package is"),
-    "rosclean": "logs are in folders of their own: graphflow logs shows them",
-    "setup": "nothing has to be set up or sourced: graphflow init NAME makes a project",
+    "rosclean": "each run has its own folder of logs: graphflow logs shows them",
+    "setup": "nothing has to be set up or sourced: graphflow init NAME creates a project",
 }
 _OPTIONS = {
-    **dict.fromkeys(("topic echo --count", "topic echo -1"), "one message is shown by --once"),
-    "topic echo -p": "values separated by commas are shown by --csv",
-    **dict.fromkeys(("param list --node", "param list -n"), "the node stands by itself: graphflow param list NODE"),
+    **dict.fromkeys(("topic echo --count", "topic echo -1"), "--once shows a single message"),
+    "topic echo -p": "--csv prints comma-separated values",
+    **dict.fromkeys(("param list --node", "param list -n"), "the node is an argument: graphflow param list NODE"),
     **dict.fromkeys(
         (
             "param dump -o",
@@ -139,30 +139,30 @@ _OPTIONS = {
             "param dump --output-file",
             "param dump -f",
         ),
-        "it is printed, and written into a file by: graphflow param dump NODE > FILE.yaml",
+        "the output is printed; to save it: graphflow param dump NODE > FILE.yaml",
     ),
     **dict.fromkeys(("bag record -j", "bag record --bz2", "bag record --lz4"), "write --compression zstd"),
-    **dict.fromkeys(("bag record --name", "bag record --bag-name", "bag record -n"), "the bag's folder is named by -o"),
-    **dict.fromkeys(("bag record --split", "bag record --size"), "a new file begins after --max-bag-size BYTES"),
-    "bag play -u": "seconds of the bag to play are --playback-duration",
-    **dict.fromkeys(("bag play -i", "bag play --immediate"), "all messages at once are sent by: graphflow bag burst"),
-    **dict.fromkeys(("launch --screen", "launch --log", "launch -v"), "leave it out: what nodes print is shown"),
+    **dict.fromkeys(("bag record --name", "bag record --bag-name", "bag record -n"), "-o names the bag's folder"),
+    **dict.fromkeys(("bag record --split", "bag record --size"), "--max-bag-size BYTES starts another file"),
+    "bag play -u": "--playback-duration limits the seconds to play",
+    **dict.fromkeys(("bag play -i", "bag play --immediate"), "graphflow bag burst publishes all at once"),
+    **dict.fromkeys(("launch --screen", "launch --log", "launch -v"), "leave it out: nodes' output is always shown"),
     "launch --wait": "leave it out: there is no master to wait for",
 }
-"""Options of other tools, by the verb."""
+"""Options of other tools by our verb, and what to type instead."""
 _TYPE = re.compile(r"\A([a-z]\w*)/([A-Z]\w*)\Z")
 _PRIVATE = re.compile(r"\A_(?=[a-z])(\w+):=")
 _NAMED = re.compile(r"\A__(name|ns):=")
-"""A private parameter, and a node's name, as ROS 1 has them."""
+"""A private parameter and a node's name, as written in ROS 1."""
 _KINDS = {"msg": "msg", "rosmsg": "msg", "message": "msg", "srv": "srv", "rossrv": "srv"}
 
 
 def answer(path: str, words: Sequence[str]) -> str:
-    """What to say of words that are no command; empty where that is not known.
+    """Return the error text for words that are not a command; empty if they are not known.
 
     Args:
         path: The verbs before them, as in `topic`; empty at the top.
-        words: From the unknown one on.
+        words: The unknown word and those after it.
     """
     word, whole = words[0], [*path.split(), *words]
     for count in range(min(2, len(whole)), len(path.split()), -1):
@@ -182,12 +182,12 @@ def answer(path: str, words: Sequence[str]) -> str:
 
 
 def option_answer(path: str, option: str) -> str:
-    """What to say of an option that a verb does not have; empty where that is not known."""
+    """Return what to use instead of an option that a verb does not have; empty if the option is not known."""
     return _OPTIONS.get(f"{path} {option}", "")
 
 
 def _line(key: str, words: Sequence[str]) -> str:
-    """The whole line, with types as they are written now."""
+    """Return the whole command, with types in ROS 2's notation."""
     kind = _KINDS.get(key.partition(" ")[0])
     if kind is not None:
         words = [_TYPE.sub(rf"\1/{kind}/\2", word) for word in words]
@@ -205,5 +205,5 @@ def _renamed(found: re.Match[str]) -> str:
 
 
 def _with(text: str, words: Sequence[str], otherwise: str) -> str:
-    """A text with the first of some words in its place."""
+    """Replace `{0}` in a text with the first of some words that is not an option."""
     return text.replace("{0}", next((word for word in words if not word.startswith("-")), otherwise))

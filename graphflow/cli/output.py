@@ -1,6 +1,6 @@
-"""Everything the command line prints: data to stdout, talk to stderr.
+"""All printing of the command line: data to stdout, messages to the user to stderr.
 
-Names, messages and errors may come from other processes: nothing that a terminal would obey gets through.
+Names, messages and errors may come from other processes, so control characters are made harmless.
 """
 
 from __future__ import annotations
@@ -16,41 +16,41 @@ from graphflow.errors import harmless, uncoloured
 
 
 def is_terminal() -> bool:
-    """Whether there is a terminal on which a console can be opened; a browser that Textual serves counts as one."""
+    """Whether the console can be opened here: on a terminal, or in a browser that Textual serves."""
     if "web_driver" in os.environ.get("TEXTUAL_DRIVER", ""):
         return True
     return sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM", "") not in ("", "dumb")
 
 
 class Closed(io.TextIOWrapper):
-    """Takes the place of a standard output that was closed at the start: nodes may print, and nobody reads it."""
+    """Replacement of a standard output that was closed at the start: nodes may still print, to the null device."""
 
 
 def _write(text: str, *, flush: bool = True) -> None:
     """Write to standard output.
 
     Raises:
-        OSError: There is none.
+        OSError: It was closed at the start.
     """
     if isinstance(sys.stdout, Closed):
-        raise OSError(errno.EBADF, "standard output is closed; to throw away what is printed: > /dev/null")
+        raise OSError(errno.EBADF, "standard output is closed; to discard the output: > /dev/null")
     print(text, end="", flush=flush)
 
 
 def data(text: str) -> None:
-    """A line of what was asked for."""
+    """Print one line of a command's result."""
     _write(f"{harmless(text)}\n")
 
 
 def lines(texts: Iterable[str]) -> None:
-    """Several lines of what was asked for."""
+    """Print several lines of a command's result."""
     for text in texts:
         _write(f"{harmless(text)}\n", flush=False)
     sys.stdout.flush()
 
 
 def listing(names: Iterable[str], *, json: bool) -> None:
-    """Names that were asked for: one a line, or as a list for programs."""
+    """Print names, one per line or as a JSON list."""
     if json:
         as_json(list(names))
     else:
@@ -58,17 +58,17 @@ def listing(names: Iterable[str], *, json: bool) -> None:
 
 
 def colored(head: str, colour: int, texts: Iterable[str]) -> None:
-    """Several lines, each with a head in a colour of the terminal, from 31 to 36."""
+    """Print lines that each begin with a coloured head; `colour` is an SGR code from 31 to 36."""
     for text in texts:
         _write(f"\x1b[{colour}m{harmless(head)}\x1b[0m{uncoloured(text)}\n", flush=False)
     sys.stdout.flush()
 
 
 def svg(rows: Iterable[Sequence[tuple[str, str]]], title: str) -> str:
-    """Rows of a terminal as a picture.
+    """Draw the rows of a terminal as an SVG picture.
 
     Args:
-        rows: Texts with their styles, in Rich's words.
+        rows: Texts with their styles, as Rich names them.
     """
     from rich.console import Console
     from rich.text import Text
@@ -83,30 +83,30 @@ def svg(rows: Iterable[Sequence[tuple[str, str]]], title: str) -> str:
 
 
 def progress(text: str) -> None:
-    """A line of how it goes, in place of the last one; only on a terminal, and empty to take it away."""
+    """Show progress in place of the last progress line, if stderr is a terminal; an empty text removes it."""
     if sys.stderr.isatty():
         print(f"\r\x1b[2K{harmless(text)}", end="", file=sys.stderr, flush=True)
 
 
 def clear() -> None:
-    """Empty the terminal, if there is one."""
+    """Clear the terminal, if there is one."""
     if sys.stdout.isatty():
         print("\x1b[2J\x1b[H", end="")
 
 
 def screen(text: str) -> None:
-    """Lines in place of all that the terminal showed; the caller answers for their escape sequences."""
+    """Replace the terminal's contents; the caller is responsible for escape sequences in `text`."""
     print("\x1b[H" + "".join(f"{line}\x1b[K\n" for line in text.splitlines()) + "\x1b[J", end="", flush=True)
 
 
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows as lines, each column as wide as it must be."""
+    """Align rows of cells as lines of text."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def as_json(value: Any) -> None:
-    """What was asked for, for programs."""
+    """Print a command's result as one line of JSON."""
     import json
 
     _write(f"{json.dumps(value, default=_plain)}\n")
@@ -119,10 +119,10 @@ def _plain(value: Any) -> Any:
 
 
 def talk(text: str) -> None:
-    """A word to the user: progress, hints, warnings."""
+    """Print a message to the user: progress, a hint or a warning."""
     print(harmless(text), file=sys.stderr, flush=True)
 
 
 def error(text: str) -> None:
-    """Why the command failed, and what to do."""
+    """Print why the command failed and what to do about it."""
     talk(text if text.startswith("error:") else f"error: {text}")

@@ -1,4 +1,4 @@
-"""Options of `graphflow` itself that are written behind the verb: what to type in their place."""
+"""Options of `graphflow` itself that were written after the verb, and the command with them in the right place."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import shlex
 from collections.abc import Sequence
 
 OF_GRAPHFLOW = ("--domain", "--wire", "--connect", "--net")
-"""They have a value each, and stand before the verb."""
+"""Options that come before the verb; each takes a value."""
 _NOT_OURS = ("--", "--ros-args")
-"""Words from which on nothing is for graphflow."""
+"""Words after which no word is an option of graphflow's."""
 
 
 def behind(words: Sequence[str]) -> str | None:
-    """The first option of graphflow's among words that come after the verb."""
+    """Return the first option of graphflow's own among words after the verb; None if there is none."""
     for word in words:
         if word in _NOT_OURS:
             return None
@@ -22,7 +22,7 @@ def behind(words: Sequence[str]) -> str | None:
 
 
 def before_the_verb(option: str, words: Sequence[str]) -> str:
-    """The command line with an option where it belongs, as a sentence.
+    """Return an error text with the command line that has the option before the verb.
 
     Args:
         words: The command line, without the program's name.
@@ -30,4 +30,4 @@ def before_the_verb(option: str, words: Sequence[str]) -> str:
     place = next((n for n, word in enumerate(words) if word.partition("=")[0] == option), 0)
     end = place + (1 if "=" in words[place] else 2)
     moved = [*words[place:end], *words[:place], *words[end:]]
-    return f"{option} stands before the verb: graphflow {shlex.join(moved)}"
+    return f"{option} goes before the verb: graphflow {shlex.join(moved)}"

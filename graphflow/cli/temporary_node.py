@@ -1,4 +1,4 @@
-"""Commands that take part in the graph for a while: a hidden node, until Ctrl-C or until its work is done."""
+"""A hidden node for one command, which runs until its work is done or Ctrl-C."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ def visit(
     has_services: bool = False,
     parameters: Mapping[str, Any] | None = None,
 ) -> int:
-    """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0.
+    """Run `work` with a started hidden node; Ctrl-C ends it with code 0.
 
     Args:
-        name: Of the node, which is not hidden then.
-        parameters: Values for its parameters.
-        has_services: Whether it has the services of any node, such as those for parameters and definitions.
+        name: The node's name; the node is not hidden then.
+        parameters: Values of its parameters, by name.
+        has_services: Whether it has the standard services of a node, such as those for parameters and definitions.
     """
     return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services, parameters or {}))
 
 
 class _Talk(logging.Handler):
-    """Tells what goes wrong in the words of a command; they may come from other processes."""
+    """Print warnings of graphflow's loggers as messages of the command."""
 
     def emit(self, record: logging.LogRecord) -> None:
         output.talk(self.format(record))
@@ -46,8 +46,8 @@ async def _visit(
     stop = asyncio.Event()
     catch_signals(stop)
     context = await Context.open()
-    context.unmatched.close()  # verbs tell it themselves
-    context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
+    context.unmatched.close()  # verbs report unmatched endpoints themselves
+    context.search.watchdog.close()  # a late import may block the loop for a second, which delays no node of the user's
     talk = _Talk(logging.WARNING)
     logging.getLogger("graphflow").addHandler(talk)
     node: Node | None = None

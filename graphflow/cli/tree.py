@@ -1,4 +1,4 @@
-"""The command line as data: verbs, what follows them, their options."""
+"""The command line as data: verbs, their arguments and options."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import click
 
 
 def verbs() -> dict[str, Any]:
-    """Every verb with its help, its arguments and its options, those below it likewise.
+    """Return every verb with its help, arguments and options, and its own verbs likewise.
 
     {"topic": {"help": ..., "commands": {"echo": {"help": ..., "arguments": ["TOPIC", "[TYPE]"],
     "options": {"--once": False, "--field": True}}}}}: True for an option with a value.

@@ -1,4 +1,4 @@
-"""The environment variables that graphflow reads, and those that are misspellings of one."""
+"""The environment variables that graphflow reads, and misspellings of them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from graphflow.names import nearest
 PREFIX = "GRAPHFLOW_"
 KNOWN = (
     *("CONNECT", "DOMAIN", "LOG", "LOOP", "NET", "PORTABLE", "RACES", "RENDEZVOUS", "SHARED_MEMORY", "WIRE"),
-    *("PREFIX", "THEME"),  # of the console
-    *("ENDS_WITH", "PYTHON"),  # between processes of graphflow's own
+    *("PREFIX", "THEME"),  # read by the console
+    *("ENDS_WITH", "PYTHON"),  # set by graphflow for its own processes
 )
-"""Without the prefix."""
+"""Names of the variables, without the prefix."""
 
 
 def misspelt(variables: Iterable[str]) -> Iterator[str]:
-    """A sentence on each variable that nothing reads, and that is like one that something does."""
+    """Yield a sentence on each variable that is not read but resembles one that is."""
     for variable in variables:
         word = variable.removeprefix(PREFIX)
         if word != variable and word not in KNOWN and (meant := nearest(word, KNOWN, cutoff=0.75)) is not None:

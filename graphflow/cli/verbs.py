@@ -1,6 +1,6 @@
-"""Groups of verbs that help with a word they do not know: a misspelt one, or one of `ros2` that is not here yet.
+"""Groups of verbs that answer an unknown word: a misspelling, or a verb of `ros2` that is not needed here.
 
-Those that look at a graph take the options by which `ros2` finds its daemon; there is none, so they change nothing.
+Verbs that inspect a graph accept, and ignore, the options by which `ros2` finds its daemon: graphflow has none.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ import click
 from graphflow.cli.other_words import answer
 from graphflow.names import did_you_mean, nearest
 
-_BUILT_IN = "its verbs are built in; graphflow pkg executables lists what packages bring"
+_BUILT_IN = "its verbs are built in; graphflow pkg executables lists the programs of packages"
 NOT_NEEDED = {
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
     **dict.fromkeys(("extensions", "extension_points"), _BUILT_IN),
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
-"""Verbs of `ros2` that graphflow does without: the reason, or what to use."""
+"""Verbs of `ros2` that graphflow does not need: the reason, or what to use instead."""
 _NOT_BUILT = "nothing has to be built or sourced: what you edit is what runs; graphflow ws shows the packages"
 HABITS = {
     **dict.fromkeys(("colcon", "build", "source", "catkin", "catkin_make"), _NOT_BUILT),
-    "rosdep": "Python packages are installed by pip; packages of ROS 2's lie in the workspace, as source",
+    "rosdep": "Python packages are installed by pip; ROS 2 packages are in the workspace, as source",
     "install": "nothing has to be installed for a package to run; graphflow ws shows the packages",
 }
-"""Commands that a ROS 2 workspace needs there and not here, each with the answer to it."""
+"""Commands for a ROS 2 workspace that are not needed here, and why."""
 
 
 OF_ONE = {
@@ -42,11 +42,11 @@ OF_ONE = {
     "ps": "status",
     "waits": "groups",
 }
-"""Verbs that tell of all, and take no name; each with the one that takes it."""
+"""Verbs that list everything and take no name, and the verb that takes one."""
 
 
 class Verb(click.Command):
-    """A verb that, where it tells of all, names the one that takes the name behind it."""
+    """A verb that answers surplus words: a verb that lists everything names the one that takes a name."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         path = ctx.command_path.partition(" ")[2]
@@ -62,16 +62,16 @@ class Verb(click.Command):
         return left
 
     def one_too_many(self, ctx: click.Context, left: Sequence[str]) -> str:
-        """What to say of words that are left."""
+        """Return the error text for surplus words."""
         return f"Got unexpected extra argument{'s' if len(left) > 1 else ''} ({' '.join(left)})"
 
 
 _A_VALUE = re.compile(r"[-+]?[\d.]+\w{0,2}|true|false|yes|no|on|off", re.IGNORECASE)
-"""What looks like an option's value, and like no name."""
+"""A word that looks like an option's value rather than a name."""
 
 
 def flag_before(command: click.Command, word: str, args: Sequence[str]) -> str:
-    """The option without a value that stands before a word which looks like one; empty if none does."""
+    """Return the flag directly before `word` if that looks like a value; empty otherwise."""
     before = args[list(args).index(word) - 1] if word in args[1:] else ""
     flags = {
         name for param in command.params if isinstance(param, click.Option) and param.is_flag for name in param.opts
@@ -103,11 +103,11 @@ class Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
-        """An answer to words that are a command in another order; empty if they are none."""
+        """Return the error text for a command whose words are in the wrong order; empty if they are not."""
         return ""
 
     def unknown(self, ctx: click.Context, word: str) -> str:
-        """Answer a word that is no verb."""
+        """Return the error text for a word that is not a verb."""
         path = word if ctx.parent is None else f"{ctx.info_name} {word}"
         if path in NOT_NEEDED:
             return f"graphflow has no {path!r}: {NOT_NEEDED[path]}".replace("`", "")
@@ -118,11 +118,11 @@ class Verbs(click.Group):
 
 
 _STAYING = {"echo", "hz", "bw", "delay", "plot", "pub", "call", "send_goal"}
-"""Verbs that take part in a graph for a while, and would go by its time."""
+"""Verbs that run for a while, for which simulated time would matter: they must not ignore `--use-sim-time`."""
 
 
 class GraphVerbs(Verbs):
-    """Verbs that look at a graph."""
+    """Verbs that inspect a graph."""
 
     def add_command(self, cmd: click.Command, name: str | None = None) -> None:
         known = {word for param in cmd.params for word in param.opts}

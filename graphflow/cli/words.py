@@ -1,8 +1,8 @@
-"""Splitting a command line into options and values, where values may look like options.
+"""Split a command line into options and values, where values may look like options.
 
-`graphflow topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist {linear: {x: -2.0}} -1` comes from the shell as many words.
-A word is an option when it is written as one of the command's options (`-r10` too), stands outside all brackets and
-not after a field's colon; everything else is a value, and the values of a message are joined again.
+`graphflow topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist {linear: {x: -2.0}} -1` arrives as many words.
+A word is an option if it is spelled as one of the command's options (`-r10`, too), is outside all brackets and does not
+follow a field's colon; everything else is a value, and the values of a message are joined again.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from graphflow.errors import GraphflowError
 from graphflow.reading import found_text
 from graphflow.typographic import is_quoted, plain
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 _QUOTED = re.compile(r"""(?<!\w)("(?:\\.|[^"\\])*"|'[^']*')""")
 _TIGHT = re.compile(r"\w:\S")
@@ -35,26 +35,26 @@ _REPAIRS = (
     (re.compile(r"(?<=\d),(?=\d)"), "."),
     (re.compile(r"(?<=[\w.}\]'\"])\s+(?=\w+:\s)"), ", "),
 )
-"""Slips in the values of a message, and what is right: `{x: 'it's'}`, `{x: 1; y: 2}`, `{p: {x: 1}, {q: {y: 2}}`,
+"""Mistakes in the values of a message, and corrections: `{x: 'it's'}`, `{x: 1; y: 2}`, `{p: {x: 1}, {q: {y: 2}}`,
 `{p: x: 1}`, `{x:1}`, `{x=1}`, `{x: 1,5}`, `{x: 1 y: 2}`."""
 _BETWEEN_DOCUMENTS = re.compile(r"^---(?=\s|\Z)", re.MULTILINE)
-"""Nothing else begins a line so, not even in a text of several lines: YAML 1.2.2, section 9.1.2."""
-_IS_SAID = re.compile(r"^\s*[^\s#]", re.MULTILINE)
-"""Something other than a comment."""
+"""The separator of documents; even a multi-line text cannot contain such a line: YAML 1.2.2, section 9.1.2."""
+_CONTENT = re.compile(r"^\s*[^\s#]", re.MULTILINE)
+"""Anything but a comment."""
 _MESSAGES_BOUND = 1 << 30
-"""Bytes that a file of messages may have: what `topic echo` has printed can be long."""
+"""Most bytes of a file of messages; recorded output of `topic echo` can be long."""
 _WITH_NUMBER = re.compile(r"(-[A-Za-z])\d+(\.\d*)?\Z")
 
 
 def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[str]) -> list[str]:
-    """The same words in the order click wants: options first, then `--`, then everything that is a value.
+    """Reorder words for click: options first, then `--`, then all values.
 
     Args:
-        flags: Options without a value.
-        valued: Options with one.
+        flags: Options that take no value.
+        valued: Options that take one.
 
     Raises:
-        NoSuchOption: A word is a long option but for a dash.
+        NoSuchOption: A word is a long option with one dash too few.
     """
     options: list[str] = []
     values: list[str] = []
@@ -76,7 +76,7 @@ def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[
             values += rest
             break
         elif word.startswith("--") and len(word) > 2:
-            options.append(word)  # click says what is wrong with it
+            options.append(word)  # unknown: click reports it
         else:
             values.append(word)
     return [*options, "--", *values]
@@ -106,11 +106,11 @@ class ValueCommand(click.Command):
 
 
 def pattern_option(_: click.Context, __: click.Parameter, value: str) -> str:
-    """A regular expression; as a callback of an option."""
+    """Check that an option's value is a regular expression; a callback for click."""
     try:
         re.compile(value)
     except re.error as error:
-        raise click.BadParameter(f"{value!r} is no regular expression: {error}") from None
+        raise click.BadParameter(f"{value!r} is not a regular expression: {error}") from None
     return value
 
 
@@ -121,7 +121,7 @@ def stdin_option(command: F) -> F:
 
 
 def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
-    """The values of a message from the words after its type, or from standard input; None for none.
+    """Read the values of a message from the words after its type or from standard input; None if there are none.
 
     Raises:
         UsageFault: The words are not YAML, or a missing space keeps them from being a mapping.
@@ -138,28 +138,28 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
         whole = next((n for n in range(1, len(words)) if _is_closed(" ".join(words[:n]))), None)
         if whole is not None:
             message = " ".join(words[:whole])
-            raise UsageFault(f"{words[whole]!r} is one word too many: {message!r} is a message by itself") from None
+            raise UsageFault(f"{words[whole]!r} is one word too many: {message!r} is complete") from None
         if (lists := _lists(words)) is not None:
             return lists
         meant = repaired(text)
         raise UsageFault(f"{text!r} is not valid YAML; did you mean {meant!r}?" if meant else str(error)) from None
     keys = [values] if isinstance(values, str) else values if isinstance(values, dict) else []
     if any(_TIGHT.search(key) for key in keys):
-        raise UsageFault(f"{text!r}: write a space after each colon and quotes around all, for example '{{x: 2.0}}'")
+        raise UsageFault(f"{text!r}: write a space after each colon and quotes around it all, for example '{{x: 2.0}}'")
     if isinstance(values, str) and _is_message(values):
-        raise UsageFault(f"{text!r} is a text because of the quotes in it; did you mean {values!r}?")
+        raise UsageFault(f"{text!r} is a string because of its inner quotes; did you mean {values!r}?")
     if not _has_fields(values) and (meant := repaired(text)):
-        raise UsageFault(f"{text!r} has a key that is no name of a field; did you mean {meant!r}?")
+        raise UsageFault(f"{text!r} has a key that cannot be the name of a field; did you mean {meant!r}?")
     if not from_stdin and (name := _emptied(values, text)):
-        why = "a shell takes away quotes within others"
+        why = "the shell removes double quotes within double quotes"
         raise UsageFault(f"{text!r}: {name} has no value, since {why}; write {name}: ''")
     if odd := next(_quoted_in(values), ""):
-        talk(f"note: the quotes around {odd} are sent with it; those of YAML are ' and \"")
+        talk(f"note: the quotes around {odd} become part of the text; YAML's quotes are ' and \"")
     return values
 
 
 def _emptied(value: Any, text: str) -> str:
-    """The key that has nothing behind it, as `name: ""` within double quotes has; empty for none."""
+    """Return the first key without a value, as `name: ""` becomes within double quotes; empty if there is none."""
     if isinstance(value, list):
         return next((name for inner in value if (name := _emptied(inner, text))), "")
     for key, inner in value.items() if isinstance(value, dict) else ():
@@ -171,7 +171,7 @@ def _emptied(value: Any, text: str) -> str:
 
 
 def _quoted_in(value: Any) -> Iterator[str]:
-    """Texts in quotes that are none."""
+    """Yield the texts that are within quotation marks of other kinds than YAML's."""
     if isinstance(value, str) and is_quoted(value):
         yield value
     for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
@@ -179,7 +179,7 @@ def _quoted_in(value: Any) -> Iterator[str]:
 
 
 def _lists(words: Sequence[str]) -> list[Any] | None:
-    """The values of words that are a list each, as ROS 1 takes them; None where one is none."""
+    """Parse words that are one list each, as ROS 1 takes them; None if one is not a list."""
     from graphflow.markup.source import parse_value
 
     if len(words) < 2 or not all(word.startswith("[") for word in words):
@@ -190,9 +190,9 @@ def _lists(words: Sequence[str]) -> list[Any] | None:
 
 
 def repaired(text: str) -> str | None:
-    """The values that were probably meant, by adding braces, a space or comma or changing a sign; None if unclear.
+    """Return the values that were probably meant, with a brace, space, comma or sign corrected; None if unclear.
 
-    Quotes and dashes of the keyboard are tried first, in place of others.
+    Typographic quotes and dashes are replaced first.
     """
     straight = plain(text)
     straight = straight[1:-1] if is_quoted(text) else straight
@@ -207,12 +207,12 @@ def repaired(text: str) -> str | None:
 
 
 def _is_closed(text: str) -> bool:
-    """Whether a text is the fields of a message in braces."""
+    """Whether a text is a complete message in braces."""
     return text.startswith("{") and _is_message(text)
 
 
 def _is_message(text: str) -> bool:
-    """Whether a text reads as fields with their values."""
+    """Whether a text parses as fields with values."""
     from graphflow.markup.source import parse_value
 
     with suppress(GraphflowError):
@@ -222,17 +222,17 @@ def _is_message(text: str) -> bool:
 
 
 def _has_fields(value: Any) -> bool:
-    """Whether the keys of a value, and of those in it, could all be names of fields."""
+    """Whether all keys of a value, at any depth, could be names of fields."""
     if isinstance(value, dict):
         return all(str(key).isidentifier() and _has_fields(inner) for key, inner in value.items())
     return all(map(_has_fields, value)) if isinstance(value, list) else True
 
 
 def messages_in(file: Path) -> list[tuple[str, Any]]:
-    """The values of the messages in a file, each with its place there: documents of YAML, as `topic echo` prints them.
+    """Read the messages in a file, each with its place: documents of YAML, as `topic echo` prints them.
 
     Raises:
-        UsageFault: It cannot be read, has no message, or one of its documents is not YAML.
+        UsageFault: The file cannot be read, has no message, or one of its documents is not YAML.
     """
     from graphflow.errors import GraphFileError, UsageFault
     from graphflow.markup.source import read
@@ -243,7 +243,7 @@ def messages_in(file: Path) -> list[tuple[str, Any]]:
         raise UsageFault(f"{file}: {getattr(error, 'strerror', None) or 'is not UTF-8 text'}") from None
     found, line = [], 0
     for document in _BETWEEN_DOCUMENTS.split(text):
-        if _IS_SAID.search(document):
+        if _CONTENT.search(document):
             first = line + document[: len(document) - len(document.lstrip())].count("\n") + 1
             try:
                 found.append((f"{file}:{first}", read("\n" * line + document, str(file)).data))

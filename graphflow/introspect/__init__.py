@@ -1,1 +1,1 @@
-"""Looking at a running graph."""
+"""Inspection of a running graph."""

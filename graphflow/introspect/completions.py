@@ -1,4 +1,4 @@
-"""What may stand in a place of a command line: live names by the word that the place is called by, and messages."""
+"""Completions of a command line's arguments: live names by the argument's name, and messages."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from graphflow.errors import GraphflowError
 from graphflow.machines.cache import GraphCache
 
 MESSAGES = ("VALUES", "GOAL", "REQUEST")
-"""Places for a message; the type was named second."""
+"""Arguments that are messages, whose type is the second argument."""
 
 
 def names_for(place: str, given: Sequence[str], cache: GraphCache) -> list[str]:
-    """The names that a place may have; none for a place of another kind.
+    """Return the names that complete an argument; none for an argument of another kind.
 
     Args:
-        place: The name of an argument, such as `TOPIC`.
+        place: The argument's name, such as `TOPIC`.
         given: The arguments before it.
     """
     match place.upper():
@@ -35,7 +35,7 @@ def names_for(place: str, given: Sequence[str], cache: GraphCache) -> list[str]:
 
 
 def message(type_name: str, mark: str = "'") -> list[str]:
-    """A message with all its fields, between quotation marks, to be filled in; none if there is no such type."""
+    """Return a quoted message with all its fields, to be filled in; nothing if there is no such type."""
     from graphflow.introspect.messages.echo import flow, plain
     from graphflow.msgs import registry
 

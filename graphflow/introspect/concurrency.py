@@ -1,4 +1,4 @@
-"""What holds what and what waits, in all processes of a domain, as `graphflow waits`, `groups`, `doctor` show it."""
+"""Slots and waits in all processes of a domain, for `graphflow waits`, `groups` and `doctor`."""
 
 from __future__ import annotations
 
@@ -32,31 +32,31 @@ from graphflow.wire.process import GROUPS, answer_key
 
 @dataclass
 class ConcurrencyReport:
-    """The answers of all processes."""
+    """The combined answers of all processes."""
 
     graph: WaitGraph
     reports: list[str]
-    """Current deadlocks, explained."""
+    """Explanations of current deadlocks."""
     nodes: dict[str, list[dict[str, Any]]]
-    """Groups by node."""
+    """Groups by node, as `deadlock.inspection` describes them."""
     unreadable: int = 0
     processes: set[str] = field(default_factory=set)
     """Sessions that have answered."""
     stalls: list[str] = field(default_factory=list)
-    """Groups that are held for long while others wait, explained."""
+    """Explanations of groups that are occupied for long while others wait."""
     blocked: list[tuple[str, float]] = field(default_factory=list)
-    """Nodes whose event loop is blocked now, and for how many seconds at least."""
+    """Nodes whose event loop is blocked now, and for at least how many seconds."""
     late: list[tuple[str, int, float]] = field(default_factory=list)
-    """Nodes whose event loop was late: how often, and how many seconds at most."""
+    """Nodes whose event loop was late: how often, and by at most how many seconds."""
 
 
 def read(replies: list[bytes]) -> ConcurrencyReport:
-    """Combine the answers; one that cannot be read is counted."""
-    pictures, found = [], ConcurrencyReport(WaitGraph(), [], {})
+    """Combine the answers; unreadable ones are counted."""
+    graphs, found = [], ConcurrencyReport(WaitGraph(), [], {})
     for reply in replies:
         try:
             data = json.loads(reply)
-            pictures.append(from_json(data))
+            graphs.append(from_json(data))
             found.processes.add(str(data["process"]))
             found.stalls += [str(text) for text in data["stalls"]]
             found.reports += [str(text) for text in data["reports"]]
@@ -68,12 +68,12 @@ def read(replies: list[bytes]) -> ConcurrencyReport:
                 found.late.append((who, int(data["late"]), float(data["longest"])))
         except (ValueError, KeyError, TypeError, RecursionError):
             found.unreadable += 1
-    found.graph = joined(pictures)
+    found.graph = joined(graphs)
     return found
 
 
 def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
-    """Processes with nodes that have not answered, with a possible reason."""
+    """Describe processes with nodes that have not answered, with a possible reason."""
     found = []
     for zid, process in view.processes().items():
         nodes = sorted({e.node_name for e in view.cache if e.zid == zid} & set(view.cache.nodes(hidden=False)))
@@ -83,7 +83,7 @@ def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
 
 
 def change_groups(view: View, node: str, requests: Sequence[Mapping[str, Any]], timeout: float) -> dict[str, Any]:
-    """Have a node change its groups; returns the groups as they are then, and the lines of a graph file that say so.
+    """Change the groups of a node; return its new groups, and the lines of a graph file for them.
 
     Args:
         requests: See `deadlock.inspection`; at least one.
@@ -91,7 +91,7 @@ def change_groups(view: View, node: str, requests: Sequence[Mapping[str, Any]], 
 
     Raises:
         CallTimeout: The node does not answer.
-        RemoteError: It refuses.
+        RemoteError: The node refuses a change.
     """
     zid = view.cache.owners(node)[0].zid
     for request in requests:
@@ -107,13 +107,13 @@ def change_groups(view: View, node: str, requests: Sequence[Mapping[str, Any]], 
 
 
 def stuck(waits: ConcurrencyReport) -> set[str]:
-    """Activities that seem deadlocked, by one snapshot only; a decision takes a second one."""
+    """Return the activities that seem deadlocked in this snapshot; a deadlock is only certain in a second one."""
     dead = deadlocked(waits.graph)
     return {i for d in explained(waits.graph, dead) for i in (*d.ring, *d.victims)}
 
 
 def rows(waits: ConcurrencyReport) -> list[dict[str, Any]]:
-    """Every activity that holds a slot or waits for something, the longest waiting first."""
+    """Describe every activity that holds a slot or waits, the longest first."""
     graph, dead = waits.graph, stuck(waits)
     found = []
     for a in sorted(graph.activities.values(), key=lambda a: -a.age):
@@ -124,7 +124,7 @@ def rows(waits: ConcurrencyReport) -> list[dict[str, Any]]:
             {
                 "activity": title(a),
                 "holds": group,
-                "waits_for": words(a.wait, graph),
+                "waits_for": describe(a.wait, graph),
                 "since": round(a.age, 3),
                 "left": None if a.left is None else round(a.left, 3),
                 "place": f"{a.place} in {a.function}" if a.place.file else "",
@@ -135,7 +135,7 @@ def rows(waits: ConcurrencyReport) -> list[dict[str, Any]]:
 
 
 def queued(waits: ConcurrencyReport) -> list[dict[str, Any]]:
-    """Handlers with work that waits for a slot."""
+    """Describe the handlers whose work is queued for a slot."""
     found = []
     for queue in waits.graph.queues.values():
         if queue.waiting:
@@ -149,15 +149,15 @@ def queued(waits: ConcurrencyReport) -> list[dict[str, Any]]:
     return found
 
 
-def words(condition: Condition, graph: WaitGraph) -> str:
-    """A condition in words."""
+def describe(condition: Condition, graph: WaitGraph) -> str:
+    """Describe the condition for which an activity waits."""
     match condition:
         case Call(id=call, name=name):
             server = next((a for a in graph.activities.values() if a.serves == call), None)
-            what = (
+            awaited = (
                 f"the {'goal' if call.startswith('goal:') else 'response'} of {name}" if name else "the end of a goal"
             )
-            return f"{what} (which {title(server)} is handling)" if server is not None else what
+            return f"{awaited} (which {title(server)} is handling)" if server is not None else awaited
         case Slot(group=group):
             return f"a slot of group {graph.groups[group].name!r}" if group in graph.groups else "a slot"
         case Opening(service=service):
@@ -168,8 +168,8 @@ def words(condition: Condition, graph: WaitGraph) -> str:
         case SetBy(what=what):
             return what
         case All(of=conditions):
-            return " and ".join(words(c, graph) for c in conditions)
+            return " and ".join(describe(c, graph) for c in conditions)
         case AnyOf(of=conditions):
-            return " or ".join(words(c, graph) for c in conditions)
+            return " or ".join(describe(c, graph) for c in conditions)
         case _:
             return ""

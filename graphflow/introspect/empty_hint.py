@@ -1,4 +1,4 @@
-"""What to say where a listing is empty: where else something runs."""
+"""Hints for an empty listing: other domains that have nodes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from graphflow.wire.liveliness import NODES
 
 
 def nothing_here(what: str) -> str:
-    """`no nodes in domain 5; there are 3 nodes in domain 0: graphflow --domain 0 ...`.
+    """Return `no nodes in domain 5; there are 3 nodes in domain 0: graphflow --domain 0 ...`.
 
     Args:
-        what: What is missing: `no topics`.
+        what: The missing things, such as `no topics`.
     """
     here = domain_id()
     client = Client()

@@ -1,4 +1,4 @@
-"""A look at the graph from outside, without asyncio and without showing up in it: for short commands."""
+"""The graph as seen from outside it, for short commands: without asyncio and without taking part."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ from graphflow.wire.process import ProcessToken
 logger = logging.getLogger("graphflow")
 
 TAKEN_SHOWN = 5
-"""Names with their owners that are told when many are taken."""
+"""Most taken names that an error lists."""
 STOPPED_SHOWN = 3
-"""Stopped processes that are told."""
+"""Most stopped processes that an error lists."""
 PATIENCE = 0.5
-"""Seconds that a node has to answer when it is asked whether it is there."""
-ASKED = {
+"""Seconds that a node has to answer a call that checks its existence."""
+NODE_SERVICES = {
     "get_parameters": "rcl_interfaces/srv/GetParameters",
     "get_type_description": "type_description_interfaces/srv/GetTypeDescription",
 }
 """Services of every node, with their types."""
 GID = bytes(16)
-"""Commands are not entities of the graph, so they have no GID of their own."""
+"""The GID of commands, which are not entities of the graph and so have none of their own."""
 
 
 class View:
@@ -68,15 +68,15 @@ class View:
 
     def refresh(self) -> None:
         """Read the graph again."""
-        # Both at one moment: a process that does not answer is forgotten by the router a few seconds later.
+        # Query both together: the router forgets a process that does not answer within a few seconds.
         self._processes = self._client.tokens(process.watch_key(self.domain))
         self.cache = GraphCache(self._client.tokens(watch_key(self.domain)))
 
     def node(self, name: str) -> str:
-        """The full name of the node that `name` means: full, or without the leading slash.
+        """Return the full name of the node `name`, whose leading slash may be missing.
 
         Raises:
-            CallError: There is no such node; the text names the nearest.
+            CallError: There is no such node; the text suggests the nearest.
         """
         wanted = name if name.startswith("/") else f"/{name}"
         nodes = self.cache.nodes()
@@ -90,15 +90,15 @@ class View:
         return "" if names else self.nobody_here() or f"; domain {self.domain} has no nodes"
 
     def nobody_here(self) -> str:
-        """`; this domain, 5, has no other nodes; domain 0 has 3: ...`, for the end of a sentence, if it is so."""
+        """Return `; this domain, 5, has no other nodes; domain 0 has 3: ...` to end an error with; or an empty text."""
         text = elsewhere(self.domain, self._client.tokens(NODES), COMMANDS)
         return text and f"; {text}"
 
     def service_types(self, name: str) -> list[str]:
-        """The types of a service that is offered: several, if nodes announce different ones. Anybody may announce any.
+        """Return the types of an offered service: several, if nodes announce different ones.
 
         Raises:
-            ServiceUnavailable: No node offers it; the text names the nearest.
+            ServiceUnavailable: No node offers it; the text suggests the nearest.
         """
         types = sorted({server.type for server in self.cache.endpoints(Kind.SERVICE, name)})
         if types:
@@ -122,14 +122,14 @@ class View:
             self.refresh()
 
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
-        """Call a service; returns the response message.
+        """Call a service and return the response message.
 
         Args:
             name: Full name of the service.
             type_name: `package/srv/Name`, as the server announces it.
             request: A message of its request type.
             timeout: Seconds.
-            plain: Numeric arrays of the response are lists.
+            plain: Whether numeric arrays of the response are lists.
 
         Raises:
             CallError: As for `ServiceClient.call`.
@@ -152,23 +152,23 @@ class View:
         return codec(service.response.name).decode(reply.payload)
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
-        """What all graphflow processes answer on one of graphflow's keys."""
+        """Query all graphflow processes on one of graphflow's keys; return their answers."""
         return self._client.reports(key, timeout)
 
     def ask(self, key: str, request: bytes, timeout: float) -> Answer:
-        """Ask one graphflow process on one of graphflow's keys.
+        """Query one graphflow process on one of graphflow's keys.
 
         Raises:
             TimeoutError: The process did not answer in time.
-            ServerLost: The process has gone.
+            ServerLost: The process has ended.
         """
         answer = self._client.call(key, request, attachment.pack(1, 0, GID), timeout)
         if answer is None:
-            raise ServerLost("the process has gone")
+            raise ServerLost("the process has ended")
         return answer
 
     def owner(self, name: str) -> str:
-        """The owner of the node `name`: the process it lives in, as far as its tokens say."""
+        """Describe the process or session in which a node runs, from its tokens."""
         token = self.process_of(name)
         if token is not None:
             return f"{token}: {token.command}" if token.command else str(token)
@@ -177,18 +177,18 @@ class View:
         return f"session {', '.join(sorted(zids))}, not a graphflow process{beyond}"
 
     def process_of(self, name: str) -> ProcessToken | None:
-        """The process that the node `name` lives in; None if that is no process of graphflow's."""
+        """Return the process in which a node runs; None if it is not graphflow's."""
         processes = self.processes()
         return next((processes[e.zid] for e in self.cache.owners(name) if e.zid in processes), None)
 
     def profiles(self) -> list[NetToken]:
-        """The net profiles that are in force on this machine."""
+        """Return the net profiles in force on this machine."""
         return [found for text in self._client.tokens(net.watch_key(self.domain)) if (found := net.parse(text))]
 
     def kept_back(self, name: str, kind: Kind) -> str:
-        """Which net profile keeps a topic or service on the machines of those that offer it; empty if none does.
+        """Describe the net profile that does not pass a topic or service to this machine; empty if there is none.
 
-        Sessions of graphflow's that can be seen are on this machine, where everything passes.
+        Sessions of graphflow that can be seen are on this machine, within which everything passes.
         """
         offering = {e.zid for e in self.cache.endpoints(kind, name)}
         if not offering or not offering.isdisjoint(self.processes()):
@@ -196,16 +196,16 @@ class View:
         return net.refusal(name, self.profiles())
 
     def is_there(self, name: str) -> bool:
-        """Whether a node is more than a token, which anybody can announce.
+        """Whether a node exists, rather than only its liveliness token, which anybody can announce.
 
-        It is if somebody answers on one of the services that every node has, or keeps the question: a process that is
-        stopped does. Where nobody is, Zenoh ends the question at once.
+        It does if one of the services of every node answers, or leaves the query open, as a stopped process does.
+        Without a server, Zenoh ends the query at once.
         """
         from graphflow.msgs import registry
 
-        if not all(profile.passes(f"{name}/{service}") for profile in self.profiles() for service in ASKED):
-            return True  # the question may not reach it
-        for service, type_name in ASKED.items():
+        if not all(profile.passes(f"{name}/{service}") for profile in self.profiles() for service in NODE_SERVICES):
+            return True  # the query may not reach it
+        for service, type_name in NODE_SERVICES.items():
             request = registry.example(f"{type_name}_Request").to_bytes()
             for server in self.cache.endpoints(Kind.SERVICE, f"{name}/{service}"):
                 if server.type == type_name:
@@ -218,7 +218,7 @@ class View:
         return False
 
     def processes(self) -> dict[str, ProcessToken]:
-        """The graphflow processes in the domain, by session, as they were when the graph was read."""
+        """Return the graphflow processes in the domain by session, as of the last `refresh`."""
         tokens = map(process.parse, self._processes)
         return {token.zid: token for token in tokens if token is not None}
 
@@ -231,15 +231,15 @@ class View:
             from graphflow.msgs import registry
 
             why = registry.why_different(type_name)
-            return f"{name}: the server's {type_name} has a different definition from the one here{why}"
+            return f"{name}: the server's definition of {type_name} differs from the one here{why}"
         if kept_back := self.kept_back(name, Kind.SERVICE):
             return kept_back
-        other = ", or the net profile of the other machine keeps the call back" if self.profiles() else ""
+        other = ", or the net profile of the other machine does not pass the call" if self.profiles() else ""
         return f"{name}: the server went away before it answered{other}{_stopped()}"
 
 
 def _stopped() -> str:
-    """Processes that are forgotten by now because they are stopped, for the end of a sentence."""
+    """Describe stopped processes (SIGSTOP), which the router has forgotten by now, to append to an error."""
     return "".join(f"; {text}" for text in list(process.stopped().values())[:STOPPED_SHOWN])
 
 
@@ -249,10 +249,10 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
     Args:
         hint: How to give a node another name.
 
-    A node that is announced, and not there, takes no name: that is logged.
+    A node that is announced but does not exist takes no name; it is logged.
 
     Raises:
-        SupervisorError: Some names are taken; the text says by which processes.
+        SupervisorError: Some names are taken; the text lists the processes.
     """
     try:
         view = View(domain)
@@ -265,13 +265,13 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
         taken = [name for name in announced if view.is_there(name)]
         for name in sorted({*announced} - {*taken}):
             logger.warning(
-                "%s is announced in domain %s by %s, and nobody answers for it: it is started all the same",
+                "%s is announced in domain %s by %s, but does not answer: starting it nevertheless",
                 *(name, domain, view.owner(name)),
             )
         if taken:
             owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken[:TAKEN_SHOWN])
             more = f"; and {len(taken) - TAKEN_SHOWN} more" if len(taken) > TAKEN_SHOWN else ""
             raise SupervisorError(
-                f"already in domain {domain}: {owners}{more}. Stop what runs there, {hint}, or choose another domain: "
+                f"already in domain {domain}: {owners}{more}. Stop those nodes, {hint}, or choose another domain: "
                 "graphflow --domain N ..."
             )

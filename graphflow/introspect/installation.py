@@ -1,4 +1,4 @@
-"""The installation: versions, origin, and faults of it and of the environment, found without a graph."""
+"""The installation: its origin, and faults of versions and the environment that can be found without a graph."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from graphflow.wire.profile import PROFILES, VARIABLE
 DISTRIBUTION = "graphflow-zenoh"
 RMW = "rmw_zenoh_cpp"
 OLDEST_ZENOH = (1, 10)
-"""The first version of eclipse-zenoh that graphflow was tried with."""
+"""The oldest version of eclipse-zenoh with which graphflow was tested."""
 
 
 def requirement(extra: str = "") -> str:
-    """The words with which pip installs the graphflow that runs, quoted for a shell.
+    """Return pip's arguments that install the running graphflow, quoted for a shell.
 
-    It may be on no index: it is installed from where this one came, be it a folder, a file or a repository.
+    It may not be on an index, so the requirement names its origin: a folder, a file or a repository.
 
     Args:
-        extra: One of its extras, to be installed with it.
+        extra: An extra to install with it.
 
     Source: PEP 610, direct_url.json.
     """
@@ -45,15 +45,15 @@ def requirement(extra: str = "") -> str:
 
 
 def faults(env: Mapping[str, str], version: Callable[[str], str | None]) -> Iterator[str]:
-    """What keeps graphflow from working, or from being seen by the ROS 2 of this shell.
+    """Yield faults that keep graphflow from working, or from being visible to the ROS 2 of this shell.
 
     Args:
         env: The environment.
-        version: The version of an installed distribution; None where there is none.
+        version: Returns the version of an installed distribution; None if it is not installed.
     """
     if other := version("graphflow"):
         yield (
-            f"another package called graphflow is installed ({other}), whose modules may come in the place of these: "
+            f"another package called graphflow is installed ({other}), whose modules may be imported instead: "
             f"pip uninstall graphflow, then: pip install --force-reinstall {requirement()}"
         )
     zenoh = version("eclipse-zenoh")
@@ -64,46 +64,46 @@ def faults(env: Mapping[str, str], version: Callable[[str], str | None]) -> Iter
 
 
 def compiled_anew(module: ModuleType, *, writes: bool) -> Iterator[str]:
-    """Why each start compiles graphflow, which takes it several times as long.
+    """Explain why each start compiles graphflow, which makes it several times slower; nothing if it does not.
 
     Args:
-        module: A module that has been imported: Python has kept what it compiled, or could not.
-        writes: Whether Python may keep it.
+        module: An imported module, whose compiled form Python has cached if it could.
+        writes: Whether Python may cache it.
     """
     cached = module.__spec__.cached if module.__spec__ is not None else None
     if cached is None or os.path.exists(cached):
         return
     why = f"{os.path.dirname(cached)} cannot be written" if writes else "PYTHONDONTWRITEBYTECODE is set"
     yield (
-        f"each start compiles graphflow anew: {why}; compile it once, with the rights to write there: "
+        f"each start compiles graphflow again: {why}; compile it once, with write permission: "
         f"python -m compileall -q {shlex.quote(str(Path(__file__).parents[1]))}"
     )
 
 
 def _sourced(env: Mapping[str, str]) -> Iterator[str]:
-    """What keeps graphflow and the ROS 2 that is sourced in this shell apart."""
+    """Yield differences that separate graphflow from the ROS 2 sourced in this shell."""
     rmw, distro = env.get("RMW_IMPLEMENTATION", ""), env.get("ROS_DISTRO", "")
     if rmw != RMW:
         yield (
-            f"ROS 2 is sourced here, and its nodes will not be seen: they speak {rmw or 'DDS'}; "
+            f"ROS 2 is sourced here, but its nodes will not be visible: they use {rmw or 'DDS'}; "
             f"export RMW_IMPLEMENTATION={RMW}"
         )
     profile = env.get(VARIABLE) or PROFILES[0]
     if distro in PROFILES and distro != profile:
-        speaks = f"graphflow speaks as {profile}"
-        yield f"ROS 2 {distro} is sourced here, and {speaks}: export GRAPHFLOW_WIRE={distro}"
+        ours_is = f"graphflow uses {profile}'s definitions"
+        yield f"ROS 2 {distro} is sourced here, but {ours_is}: export GRAPHFLOW_WIRE={distro}"
     if distro == "humble":
-        yield "ROS 2 humble is sourced here, which has no type hashes: its nodes and graphflow's do not hear each other"
+        yield "ROS 2 humble is sourced here, which has no type hashes: its nodes and graphflow's cannot communicate"
     ours, theirs = (env.get(name) for name in DOMAIN_VARIABLES)
     if ours is not None and ours != (theirs or "0"):
-        yield f"GRAPHFLOW_DOMAIN is {ours}, and ROS 2's nodes are in domain {theirs or 0}: unset GRAPHFLOW_DOMAIN"
+        yield f"GRAPHFLOW_DOMAIN is {ours}, but ROS 2's nodes are in domain {theirs or 0}: unset GRAPHFLOW_DOMAIN"
     if rendezvous_endpoint() != DEFAULT_ENDPOINT and "ZENOH_CONFIG_OVERRIDE" not in env:
         yield (
-            f"ROS 2 is sourced here, whose nodes look at {DEFAULT_ENDPOINT}, and graphflow at {rendezvous_endpoint()}: "
+            f"ROS 2 is sourced here; its nodes connect to {DEFAULT_ENDPOINT}, graphflow's to {rendezvous_endpoint()}: "
             "unset GRAPHFLOW_RENDEZVOUS"
         )
 
 
 def _numbers(version: str) -> tuple[int, ...]:
-    """`1.10.2` as numbers; what follows them is left out."""
+    """Parse the first two numbers of a version: `1.10.2` is (1, 10)."""
     return tuple(int(part) for part in version.split(".")[:2] if part.isdecimal())

@@ -1,4 +1,4 @@
-"""Nodes with a life cycle: their states, and the transitions that they make on request."""
+"""Lifecycle nodes: read their states and trigger transitions."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ _TRANSITIONS = "lifecycle_msgs/srv/GetAvailableTransitions"
 
 
 def managed_nodes(cache: GraphCache) -> list[str]:
-    """The nodes with a life cycle, hidden ones too, by full name."""
+    """Return the full names of the lifecycle nodes, including hidden ones."""
     servers = cache.endpoints(Kind.SERVICE)
     return sorted({e.node_name for e in servers if e.type == _CHANGE and e.name == f"{e.node_name}/change_state"})
 
 
 def state(view: View, node: str, timeout: float) -> Any:
-    """The state of a node, a `lifecycle_msgs/msg/State`. Raises CallError: It does not answer."""
+    """Return the state of a node. Raises CallError: It does not answer."""
     from graphflow.msgs.lifecycle_msgs.srv import GetState
 
     return view.call(f"{node}/get_state", _STATE, GetState.Request(), timeout).current_state
 
 
 def transitions(view: View, node: str, timeout: float, *, everything: bool = False) -> Any:
-    """The transitions that a node can make now, each a `lifecycle_msgs/msg/TransitionDescription`.
+    """Return the transitions that a node can make from its current state.
 
     Args:
-        everything: Those of all states.
+        everything: Whether to return the transitions of all states.
 
     Raises:
         CallError: It does not answer.
@@ -42,7 +42,7 @@ def transitions(view: View, node: str, timeout: float, *, everything: bool = Fal
 
 
 def change(view: View, node: str, transition: Any, timeout: float) -> bool:
-    """Have a node make a transition; False if it fails, which the node's log explains.
+    """Trigger a transition of a node; return False if it fails, as the node's log explains.
 
     Args:
         transition: A `lifecycle_msgs/msg/Transition`.

@@ -1,4 +1,4 @@
-"""What the nodes of a domain count, and the rates that two looks at it give."""
+"""The counters of a domain's nodes, and the rates between two samples of them."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 REPLY_BOUND = 1 << 20
-"""Bytes that one process's answer may have."""
+"""Most bytes of one process's answer."""
 NODES_BOUND = 10_000
-"""Nodes and endpoints that are kept track of."""
+"""Most endpoints that are tracked."""
 _COUNTED = {"publisher": "published", "subscription": "received"}
 
 
@@ -24,22 +24,22 @@ class Flow(NamedTuple):
 
 @dataclass
 class Numbers:
-    """The last two looks at all processes of a domain."""
+    """The last two samples of all processes of a domain."""
 
     rates: dict[Flow, float] = field(default_factory=dict)
-    """Messages a second by endpoint."""
+    """Messages per second by endpoint."""
     dropped: dict[Flow, int] = field(default_factory=dict)
     """Messages that subscriptions have dropped since their start."""
     lags: dict[str, float] = field(default_factory=dict)
-    """Seconds that the event loop under each node took to come round."""
+    """Delay of the event loop of each node, in seconds."""
     _counts: dict[Flow, int] = field(default_factory=dict)
     _at: float = 0.0
 
     def take(self, replies: list[bytes], now: float) -> None:
-        """Take in a look at all processes.
+        """Add a sample of all processes.
 
         Args:
-            now: When it was, in seconds by any clock that only goes forward.
+            now: Its time, in seconds on a monotonic clock.
         """
         counts: dict[Flow, int] = {}
         self.lags, self.dropped = {}, {}
@@ -69,14 +69,14 @@ class Numbers:
                         if numbers.get("dropped"):
                             self.dropped[flow] = int(numbers["dropped"])
         except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
-            return  # a process of another version: its numbers are left out
+            return  # a process of another version: leave its numbers out
 
     def published(self, topic: str) -> float | None:
-        """Messages a second that graphflow's nodes publish on a topic; None if none of them does."""
+        """Return how many messages per second graphflow's nodes publish on a topic; None if none does."""
         found = [r for flow, r in self.rates.items() if flow.topic == topic and flow.kind == "publisher"]
         return sum(found) if found else None
 
     def fastest(self, node: str) -> float | None:
-        """The rate of a node's fastest publisher, its log and parameter events left out."""
+        """Return the rate of a node's fastest publisher, without its log and parameter events."""
         found = [r for flow, r in self.rates.items() if flow.node == node and flow.kind == "publisher"]
         return max(found) if found else None

@@ -1,4 +1,4 @@
-"""A node's parameters, read and set from outside through its services."""
+"""The parameters of a node, read and set through its services."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from graphflow.names import did_you_mean
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
 
-STARTING = 1.0  # seconds between a node's token and the tokens of its services, at most, on a busy machine
-_WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
+STARTING = 1.0  # most seconds between the tokens of a node and of its services, on a busy machine
+_BOOLEANS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
 class RemoteParameters:
@@ -23,7 +23,7 @@ class RemoteParameters:
         node: Its full name.
         timeout: Seconds that each call may take.
 
-    All methods raise CallError when the node does not answer or has no parameter services.
+    All methods raise CallError if the node does not answer or has no parameter services.
     """
 
     def __init__(self, view: View, node: str, timeout: float) -> None:
@@ -39,40 +39,40 @@ class RemoteParameters:
         return self._view.call(full, type_, message, self._timeout, plain=True)
 
     def names(self) -> list[str]:
-        """All names, sorted."""
+        """Return all names, sorted."""
         return sorted(self._call("list_parameters", "ListParameters").result.names)
 
     def get(self, names: Sequence[str]) -> list[ParameterValue]:
-        """The values, of type 0 where there is no such parameter."""
+        """Return the values, which have type 0 for parameters that do not exist."""
         found = list(self._call("get_parameters", "GetParameters", names=list(names)).values)
         if len(found) == len(names):
             return found
-        # A ROS 2 node returns nothing at all when it does not know one of the names: ask one by one.
+        # A ROS 2 node returns nothing at all if it does not know one of the names: query one by one.
         from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 
         answers = [self._call("get_parameters", "GetParameters", names=[name]).values for name in names]
         return [answer[0] if len(answer) else ParameterValue() for answer in answers]
 
     def describe(self, names: Sequence[str]) -> dict[str, ParameterDescriptor]:
-        """The declarations of those that exist, by name."""
+        """Return the descriptors of the parameters that exist, by name."""
         if not names:
             return {}
         found = self._call("describe_parameters", "DescribeParameters", names=list(names)).descriptors
         if not len(found):
             answers = [self._call("describe_parameters", "DescribeParameters", names=[n]).descriptors for n in names]
             found = [descriptor for answer in answers for descriptor in answer]
-        return {d.name: d for d in found if d.type or d.dynamic_typing}  # one that is declared and not set has no type
+        return {d.name: d for d in found if d.type or d.dynamic_typing}  # unset parameters have no type
 
     def set(self, values: dict[str, ParameterValue]) -> list[SetParametersResult]:
-        """Set parameters one by one; one result for each."""
+        """Set parameters one by one; return one result for each."""
         parameters = [{"name": name, "value": value} for name, value in values.items()]
         return list(self._call("set_parameters", "SetParameters", parameters=parameters).results)
 
     def known(self, name: str) -> ParameterDescriptor:
-        """The declaration of one parameter.
+        """Return the descriptor of one parameter.
 
         Raises:
-            ParameterError: It does not exist; the text names the nearest.
+            ParameterError: It does not exist; the text suggests the nearest.
         """
         described = self.describe([name])
         if name not in described:
@@ -80,12 +80,12 @@ class RemoteParameters:
         return described[name]
 
     def unknown(self, name: str) -> ParameterError:
-        """The error for a parameter that does not exist."""
+        """Return the error for a parameter that does not exist."""
         return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, self.names())}")
 
 
 def read_value(text: str, type_: int) -> Any:
-    """A value that a user has typed, as the declared type takes it: quoted or not, `on` for a bool, 2 for a double.
+    """Convert a typed value to the declared type: quoted or not, `on` for a bool, 2 for a double.
 
     Args:
         type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter of any type.
@@ -101,8 +101,8 @@ def read_value(text: str, type_: int) -> Any:
         except GraphflowError:
             return text
         return value if isinstance(value, str) else text
-    if type_ == 1 and text.lower() in _WORDS:
-        return _WORDS[text.lower()]
+    if type_ == 1 and text.lower() in _BOOLEANS:
+        return _BOOLEANS[text.lower()]
     try:
         value = parse_value(text)
     except GraphflowError as error:
@@ -111,7 +111,7 @@ def read_value(text: str, type_: int) -> Any:
 
 
 def as_declared(value: Any, type_: int) -> Any:
-    """A YAML value as a parameter of the type takes it: integers widened, numbers for bytes.
+    """Convert a YAML value to a parameter's type: integers to doubles, lists of numbers to bytes.
 
     Args:
         type_: A number of rcl_interfaces/msg/ParameterType.

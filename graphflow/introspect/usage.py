@@ -1,4 +1,4 @@
-"""The cost of processes of this machine, each together with those that it has started."""
+"""CPU and memory of this machine's processes, each including its descendants."""
 
 from __future__ import annotations
 
@@ -9,45 +9,45 @@ import psutil
 
 
 class Cost(NamedTuple):
-    """The cost of one process and of those below it, but for the ones that have costs of their own."""
+    """The usage of a process and its descendants, except those that are counted separately."""
 
     pid: int
     cpu: float
-    """Of one core, in percent, since the last look; 0 at the first."""
+    """Percent of one core since the previous measurement; 0 in the first."""
     memory: int
-    """Bytes in use (resident)."""
+    """Resident bytes."""
     threads: int
     seconds: float
-    """Time on the processor since its start."""
+    """Processor time since its start."""
     nodes: list[str]
-    """Full names of the nodes in it."""
+    """Full names of its nodes."""
     children: int
-    """Processes below it, whose costs are among these."""
+    """Number of descendants, which are included."""
 
 
 class Costs:
-    """Looks at processes again and again."""
+    """Repeated measurements of processes."""
 
     def __init__(self) -> None:
         self._known: dict[int, psutil.Process] = {}
 
     def look(self, owners: Mapping[int, list[str]], *, by_memory: bool = False) -> list[Cost]:
-        """The processes that live, the dearest first.
+        """Measure the processes that are alive, the busiest first.
 
         Args:
-            owners: Nodes in each process, by its id.
-            by_memory: Whether the dearest are those with the most memory; else with the most processor time.
+            owners: Nodes in each process, by process id.
+            by_memory: Whether to sort by memory, not by CPU.
         """
         children: dict[int, list[int]] = {}
         if owners:
             for process in psutil.process_iter(["ppid"]):
                 children.setdefault(process.info["ppid"], []).append(process.pid)
-        families = {pid: list(_family(pid, children, owners)) for pid in owners}
-        alive = {member for family in families.values() for member in family}
+        trees = {pid: list(_process_tree(pid, children, owners)) for pid in owners}
+        alive = {member for tree in trees.values() for member in tree}
         self._known = {pid: process for pid, process in self._known.items() if pid in alive}
         found = []
         for pid, nodes in owners.items():
-            costs = [cost for member in families[pid] if (cost := self._cost(member)) is not None]
+            costs = [cost for member in trees[pid] if (cost := self._cost(member)) is not None]
             if costs and costs[0].pid == pid:
                 cpu, seconds = sum(cost.cpu for cost in costs), sum(cost.seconds for cost in costs)
                 memory, threads = sum(cost.memory for cost in costs), sum(cost.threads for cost in costs)
@@ -55,7 +55,7 @@ class Costs:
         return sorted(found, key=lambda cost: (-(cost.memory if by_memory else cost.cpu), cost.pid))
 
     def _cost(self, pid: int) -> Cost | None:
-        """The cost of one process alone; None for one that is gone."""
+        """Measure one process alone; None if it has ended."""
         try:
             process = self._known.setdefault(pid, psutil.Process(pid))
             with process.oneshot():
@@ -67,9 +67,9 @@ class Costs:
         return Cost(pid, cpu, memory, threads, times.user + times.system, [], 0)
 
 
-def _family(pid: int, children: Mapping[int, list[int]], owners: Mapping[int, list[str]]) -> Iterator[int]:
-    """A process and those below it, but for the ones that are owners themselves."""
+def _process_tree(pid: int, children: Mapping[int, list[int]], owners: Mapping[int, list[str]]) -> Iterator[int]:
+    """Yield a process and its descendants, except below processes that are owners themselves."""
     yield pid
     for child in children.get(pid, ()):
         if child not in owners:
-            yield from _family(child, children, owners)
+            yield from _process_tree(child, children, owners)

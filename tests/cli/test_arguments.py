@@ -28,13 +28,13 @@ def test_options_as_arguments(option: str, words: list[str], argument: str | Non
 def test_an_argument_as_an_option(machine: Machine, verb: str) -> None:
     """Is told as it is written."""
     text = machine.look(verb, "talker_listener", "--rate", "2.0", code=2)
-    assert "No such option '--rate'. An argument of the graph is written rate:=2.0; up GRAPH --show-args" in text
+    assert "No such option '--rate'. An argument of the graph is written as rate:=2.0; up GRAPH --show-args" in text
 
 
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--params-file", "p.yaml"], "where a node is written in the graph file: params_file: FILE.yaml"),
+        (["--params-file", "p.yaml"], "A parameter file belongs to a node of the graph file: params_file: FILE.yaml"),
         (["--ros-args", "-p", "rate:=2.0"], "A graph file has params: and remap: for each node"),
     ],
 )

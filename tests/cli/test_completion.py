@@ -84,7 +84,7 @@ def test_install(machine: Machine, tmp_path: Path, shell: str, monkeypatch: pyte
 def test_a_shell_that_is_not_known(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
     """Must be named."""
     monkeypatch.setitem(machine.env, "SHELL", "/bin/dash")
-    told = "which shell is meant? graphflow completion install bash|zsh|fish"
+    told = "name the shell: graphflow completion install bash|zsh|fish"
     assert told in machine.look("completion", "install", code=2)
 
 

@@ -174,7 +174,7 @@ LIKE = [
     ("ros2 pkg prefix turtlesim", r"^/"),
     ("ros2 --version", r"graphflow, version \d"),
     ("ros2 run rqt_graph rqt_graph", r"/turtlesim"),
-    ("ros2 wtf", r"1 node, no fault; the lines above may be meant so"),
+    ("ros2 wtf", r"1 node, no fault; the lines above may be intended"),
 ]
 
 

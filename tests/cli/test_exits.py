@@ -67,4 +67,4 @@ def test_a_node_that_is_not_there(standing: Machine, words: str) -> None:
     """The running graph is not as the command would have it, which is no wrong usage; what there is is named."""
     line = words if "{}" in words else f"{words} {{}}"
     told = standing.look(*line.format("/talkerr").split(), code=exits.FAILED)
-    assert re.search(r"did you mean '/?talker'\?|there is |no node here has a life cycle", told)
+    assert re.search(r"did you mean '/?talker'\?|there is |there are no lifecycle nodes here", told)

@@ -26,9 +26,9 @@ def test_the_option_that_is_behind(words: str, option: str | None) -> None:
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        ("topic list --domain 7 -t", "--domain stands before the verb: graphflow --domain 7 topic list -t"),
-        ("run a --domain=7", "--domain stands before the verb: graphflow --domain=7 run a"),
-        ("topic list --domain", "--domain stands before the verb: graphflow --domain topic list"),
+        ("topic list --domain 7 -t", "--domain goes before the verb: graphflow --domain 7 topic list -t"),
+        ("run a --domain=7", "--domain goes before the verb: graphflow --domain=7 run a"),
+        ("topic list --domain", "--domain goes before the verb: graphflow --domain topic list"),
     ],
 )
 def test_the_line_to_type(words: str, text: str) -> None:

@@ -158,10 +158,10 @@ def test_what_is_missing_is_left_to_click() -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["{}", "extra"], "'extra' is one word too many: '{}' is a message by itself"),
-        (["{x:", "1}", "{y:", "2}"], "'{y:' is one word too many: '{x: 1}' is a message by itself"),
+        (["{}", "extra"], "'extra' is one word too many: '{}' is complete"),
+        (["{x:", "1}", "{y:", "2}"], "'{y:' is one word too many: '{x: 1}' is complete"),
         (["{x:", "[1"], "'{x: [1', character 7: not valid YAML"),
-        (["{x:2.0}"], "'{x:2.0}': write a space after each colon and quotes around all, for example '{x: 2.0}'"),
+        (["{x:2.0}"], "'{x:2.0}': write a space after each colon and quotes around it all, for example '{x: 2.0}'"),
         (["x:2.0", "y:1"], "'x:2.0 y:1': write a space after each colon"),
         (["{a: *b}"], "*b: aliases are not used here"),
     ],
@@ -285,7 +285,9 @@ def test_an_option_with_too_few_dashes_or_words() -> None:
 def test_quotes_that_are_sent(capsys: pytest.CaptureFixture[str]) -> None:
     """They may be meant, so they are told of; within a text they are as good as any character."""
     assert message_values(["{p: [{data: “hi”}]}"]) == {"p": [{"data": "“hi”"}]}
-    assert capsys.readouterr().err == "note: the quotes around “hi” are sent with it; those of YAML are ' and \"\n"
+    assert (
+        capsys.readouterr().err == "note: the quotes around “hi” become part of the text; YAML's quotes are ' and \"\n"
+    )
     message_values(["data: he said “hi” \u2013 twice"])
     assert capsys.readouterr().err == ""
 
@@ -301,7 +303,7 @@ def test_a_list_for_each_field() -> None:
 )
 def test_quotes_that_the_shell_takes_away(text: str, name: str) -> None:
     """`{name: ""}` within double quotes has no value; how it is written is told."""
-    message = f"{name} has no value, since a shell takes away quotes within others; write {name}: ''"
+    message = f"{name} has no value, since the shell removes double quotes within double quotes; write {name}: ''"
     with pytest.raises(UsageFault, match=re.escape(message)):
         message_values([text])
 

@@ -134,7 +134,7 @@ steps:
         (["graphs/rign.yaml"], "error: graphs/rign.yaml: there is no such file; did you mean 'graphs/ring.yaml'?"),
         (
             ["graphs"],
-            "error: graphs: no node in it, of graphflow or of rclpy; its graph files are checked one by one: ",
+            "error: graphs: no nodes, of graphflow or of rclpy; check its graph files one by one: ",
         ),
         (["graphs/key_typo.yaml", "rate"], "command line: 'rate': an argument is written name:=value"),
     ],

@@ -159,7 +159,7 @@ GRAPH = WaitGraph({"s": SERVER}, {"g": GroupView("g", "work", "/s")})
 )
 def test_a_condition_in_words(condition: Condition, text: str) -> None:
     """As `waits` says it."""
-    assert concurrency.words(condition, GRAPH) == text
+    assert concurrency.describe(condition, GRAPH) == text
 
 
 class Seen(View):

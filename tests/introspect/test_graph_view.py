@@ -11,7 +11,7 @@ import pytest
 
 from graphflow.errors import CallError, CallTimeout, RemoteError, ServerLost, ServiceUnavailable, SupervisorError
 from graphflow.introspect import graph_view as module
-from graphflow.introspect.graph_view import ASKED, View, refuse_taken_names
+from graphflow.introspect.graph_view import NODE_SERVICES, View, refuse_taken_names
 from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.transport.base import Answer
@@ -167,7 +167,7 @@ def test_a_call_that_fails(
     ("zid", "allow", "text"),
     [
         ("z9", ["/spawn"], f"{ADD} does not pass the net profile /lab.yaml, which allows /spawn; if its node is on"),
-        ("z9", ["/office/**"], "before it answered, or the net profile of the other machine keeps the call back"),
+        ("z9", ["/office/**"], "before it answered, or the net profile of the other machine does not pass the call"),
         ("z1", ["/spawn"], "the server went away before it answered, or"),
     ],
 )
@@ -185,7 +185,7 @@ def test_a_net_profile_is_told(view: View, client: Client, zid: str, allow: list
     ("other", "text"),
     [
         (server(type_="std_srvs/srv/Trigger"), f"{ADD} is of type std_srvs/srv/Trigger, not {TYPE}"),
-        (server(hash_="RIHS01_0"), f"{ADD}: the server's {TYPE} has a different definition from the one here"),
+        (server(hash_="RIHS01_0"), f"{ADD}: the server's definition of {TYPE} differs from the one here"),
     ],
 )
 def test_why_there_was_no_answer(view: View, client: Client, other: Entity, text: str) -> None:
@@ -206,7 +206,7 @@ def test_a_token_that_somebody_forges(view: View, client: Client) -> None:
         view.call(ADD, TYPE, AddTwoInts.Request())
     client.entities.remove(server())
     view.refresh()
-    with pytest.raises(ServerLost, match=f"the server's {TYPE} has a different definition"):
+    with pytest.raises(ServerLost, match=f"the server's definition of {TYPE} differs"):
         view.call(ADD, TYPE, AddTwoInts.Request())
 
 
@@ -216,7 +216,7 @@ def test_asking_a_process(view: View, client: Client) -> None:
     assert view.ask("@graphflow/7/groups/z1", b"?", 1.0).payload == b"yes"
     assert client.asked == [("@graphflow/7/groups/z1", b"?")]
     client.answer = None
-    with pytest.raises(ServerLost, match="the process has gone"):
+    with pytest.raises(ServerLost, match="the process has ended"):
         view.ask("@graphflow/7/groups/z1", b"?", 1.0)
     assert view.reports("@graphflow/7/waits/*", 0.5) == [b"@graphflow/7/waits/*", b"0.5"]
 
@@ -231,7 +231,7 @@ def test_processes_and_owners(view: View) -> None:
 
 def parameters_of(node: Entity) -> Entity:
     """The service that every node has."""
-    type_ = ASKED["get_parameters"]
+    type_ = NODE_SERVICES["get_parameters"]
     return node._replace(eid=9, kind=Kind.SERVICE, name=f"{node.node_name}/get_parameters", type=type_, hash=HASH)
 
 
@@ -252,8 +252,7 @@ def test_names_that_are_taken(client: Client, answer: Answer | Exception) -> Non
     text = str(caught.value)
     assert text.startswith("already in domain 7: /office/clerk (process ")
     assert (
-        "; /ros (session z9, not a graphflow process). Stop what runs there, call it otherwise, or choose another"
-        in text
+        "; /ros (session z9, not a graphflow process). Stop those nodes, call it otherwise, or choose another" in text
     )
 
 
@@ -261,7 +260,7 @@ def test_names_that_are_only_announced(client: Client, caplog: pytest.LogCapture
     """A token that somebody has forged keeps no node from starting, whatever services it announces."""
     client.entities += [parameters_of(ROS)]
     refuse_taken_names(["/ros", "/office/clerk"], 7)
-    assert "/ros is announced in domain 7 by session z9, not a graphflow process, and nobody answers" in caplog.text
+    assert "/ros is announced in domain 7 by session z9, not a graphflow process, but does not answer" in caplog.text
     assert "/office/clerk is announced in domain 7 by process " in caplog.text
 
 

@@ -74,7 +74,7 @@ def test_a_node_that_hears_itself(rate: int, is_told: bool) -> None:
     parts = {f"{kind} {name}": key for kind, key in counted for name in ("/loop", "/tf")}
     before, now = (look(a={part: {key: n} for part, key in parts.items()}) for n in (10, 10 + rate))
     told = [fault.partition(":")[0] for fault in found(seen, before, now).faults]
-    assert told == (["/a hears what it says itself on /loop, 50 messages a second"] if is_told else [])
+    assert told == (["/a receives its own messages on /loop, 50 per second"] if is_told else [])
 
 
 @pytest.mark.parametrize(("dropped", "is_told"), [(990, True), (400, False)])
@@ -95,7 +95,7 @@ def test_a_few_lost_messages_are_nothing() -> None:
 def test_a_flood_in_a_log() -> None:
     """Lines that were gathered count, too."""
     before, now = look(a={"log": {"lines": 5, "gathered": 0}}), look(a={"log": {"lines": 25, "gathered": 300}})
-    assert found(Seen(), before, now).faults == ["/a logs 160 lines a second: say throttle=1.0 where it does"]
+    assert found(Seen(), before, now).faults == ["/a logs 160 lines per second: limit them with throttle=1.0"]
     assert found(Seen(), now, now).faults == []
 
 
@@ -105,7 +105,7 @@ def test_a_flood_that_is_told() -> None:
     only = Look(one, 0, 0, 5.0)
     assert not needs_second(cast(View, Seen()), only)
     assert examine(cast(View, Seen()), only, only).faults == [
-        "/a logs 160 lines a second: say throttle=1.0 where it does"
+        "/a logs 160 lines per second: limit them with throttle=1.0"
     ]
 
 
@@ -144,12 +144,12 @@ def test_where_nobody_speaks() -> None:
     )
     told = found(seen, [], [])
     assert told.faults == [
-        "/goto listens to /turtle1/posee, which nobody publishes; did you mean /turtle1/pose?",
-        "/goto calls /spwan, which nobody offers; did you mean /spawn?",
+        "/goto subscribes to /turtle1/posee, which no node publishes; did you mean /turtle1/pose?",
+        "/goto calls /spwan, which no node offers; did you mean /spawn?",
     ]
     assert told.hints == [
-        "/too and /two listen to /scan2, which nobody publishes; of that type there is /scan1",
-        "/sim listens to /turtle1/cmd_vel, which nobody publishes; of that type there is /turtle1/pose",
+        "/too and /two subscribe to /scan2, which no node publishes; available with that type: /scan1",
+        "/sim subscribes to /turtle1/cmd_vel, which no node publishes; available with that type: /turtle1/pose",
     ]
 
 

@@ -37,11 +37,11 @@ def test_nothing() -> None:
 @pytest.mark.parametrize(
     ("env", "told"),
     [
-        ({"RMW_IMPLEMENTATION": ""}, "they speak DDS; export RMW_IMPLEMENTATION=rmw_zenoh_cpp"),
+        ({"RMW_IMPLEMENTATION": ""}, "they use DDS; export RMW_IMPLEMENTATION=rmw_zenoh_cpp"),
         ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, "they speak rmw_cyclonedds_cpp; export"),
-        ({"ROS_DISTRO": "kilted"}, "graphflow speaks as jazzy: export GRAPHFLOW_WIRE=kilted"),
+        ({"ROS_DISTRO": "kilted"}, "graphflow uses jazzy's definitions: export GRAPHFLOW_WIRE=kilted"),
         ({"ROS_DISTRO": "humble"}, "humble is sourced here, which has no type hashes"),
-        ({"GRAPHFLOW_DOMAIN": "5"}, "GRAPHFLOW_DOMAIN is 5, and ROS 2's nodes are in domain 0"),
+        ({"GRAPHFLOW_DOMAIN": "5"}, "GRAPHFLOW_DOMAIN is 5, but ROS 2's nodes are in domain 0"),
         ({"GRAPHFLOW_DOMAIN": "5", "ROS_DOMAIN_ID": "4"}, "in domain 4: unset GRAPHFLOW_DOMAIN"),
     ],
 )
@@ -55,7 +55,7 @@ def test_a_rendezvous_that_ros_does_not_know(monkeypatch: pytest.MonkeyPatch) ->
     """Keeps the two apart."""
     monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/127.0.0.1:9999")
     [text] = found(ROS)
-    assert "whose nodes look at tcp/127.0.0.1:7447, and graphflow at tcp/127.0.0.1:9999" in text
+    assert "its nodes connect to tcp/127.0.0.1:7447, graphflow's to tcp/127.0.0.1:9999" in text
     assert found({}) == []
 
 

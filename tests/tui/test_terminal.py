@@ -205,7 +205,7 @@ def test_nodes_of_others(machine: Machine, terminal: Open) -> None:
     t.until("◆ not ours")
     t.until("no supervisor here")
     t.press("q")
-    t.until("its nodes run on]")
+    t.until("its nodes keep running]")
     node.end()
 
 

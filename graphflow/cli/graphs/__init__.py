@@ -1,1 +1,1 @@
-"""The verbs for graphs and the console, and what they show while a graph runs."""
+"""The verbs for graphs and the console, and their output while a graph runs."""

@@ -1,4 +1,4 @@
-"""`graphflow attach`, `ls` and `console`: the console, and the runs that it can be attached to."""
+"""`graphflow attach`, `ls` and `console`: list runs and attach the console to one."""
 
 from __future__ import annotations
 
@@ -26,32 +26,32 @@ from graphflow.times import ago
 from graphflow.workspace.project import shown
 
 COMMAND = (sys.executable, "-m", "graphflow")
-"""The words that start this program again."""
+"""The command that starts this program."""
 
 
 def open_console(
     run: GraphRun | None, domain: int, prefix: str | None = None, layout: dict[str, Any] | None = None
 ) -> Any:
-    """Open the console; returns how it was left, a `tui.main.Left`.
+    """Open the console and return how it was left, a `tui.main.Left`.
 
     Args:
-        layout: The windows to begin with; None for those kept with the run, the graph file's, or the usual ones.
+        layout: The initial windows; None for those saved with the run, the graph file's, or the default.
     """
-    # The one place where an entry point opens the other; nothing of the console is imported before.
+    # Textual is imported only here, once a console is really opened: it is most of the console's start-up time.
     tui = import_module("graphflow.tui.main")
     return tui.open_console(run, domain, command=COMMAND, verbs=verbs, prefix=prefix, layout=layout)
 
 
 def show(run: GraphRun | None, domain: int, prefix: str | None = None) -> int:
-    """Open the console and say how it was left; returns the exit code."""
+    """Open the console, print how it was left, and return the exit code."""
     left = open_console(run, domain, prefix)
     if left.run is None:
-        output.talk(f"[left domain {domain}: its nodes run on]")
+        output.talk(f"[left domain {domain}: its nodes keep running]")
         return exits.OK
-    return _say_goodbye(left.run, left.how, left.exit_code)
+    return _report_end(left.run, left.how, left.exit_code)
 
 
-def _say_goodbye(run: GraphRun, how: str, exit_code: int | None) -> int:
+def _report_end(run: GraphRun, how: str, exit_code: int | None) -> int:
     if exit_code is not None:
         output.talk(f"graph {run.graph} has ended; its logs are in {run.logs}")
         return exit_code
@@ -64,7 +64,7 @@ def _say_goodbye(run: GraphRun, how: str, exit_code: int | None) -> int:
     nodes = len(_rows(run)["nodes"])
     which = f" --graph {run.graph}" if len(rundir.running()) > 1 else ""
     if how == "failed":
-        output.error("the console failed, the graph runs on; please report what stands above")
+        output.error("the console failed, but the graph keeps running; please report the error above")
     output.talk(
         f"[detached from {run.graph}: {nodes} node{'s' if nodes != 1 else ''} keep{'s' if nodes == 1 else ''} running]"
         f"   graphflow attach{which}   |   graphflow down{which}"
@@ -80,14 +80,14 @@ def _rows(run: GraphRun) -> dict[str, Any]:
 
 @click.command()
 @click.argument("graph", required=False, metavar="[GRAPH]")
-@click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+@click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
 @click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a; else GRAPHFLOW_PREFIX, or ctrl+b.")
 @reach_options
 def attach(graph: str | None, name: str | None, prefix: str | None, connect: tuple[str, ...], net: str | None) -> int:
-    """Open the console on a running graph, the newest if there are several. Leaving it (ctrl+b d) stops nothing.
+    """Open the console on a running graph, the newest if there are several. Detaching (ctrl+b d) stops nothing.
 
-    Where no graph of yours runs, it shows the nodes that others have started in the domain, such as a robot's with
-    --connect; without control of their processes.
+    If no graph of yours is running, it shows the nodes that others have started in the domain, such as a robot's
+    with --connect, without control of their processes.
     """
     reach(connect, net)
     if not output.is_terminal():
@@ -102,14 +102,14 @@ def attach(graph: str | None, name: str | None, prefix: str | None, connect: tup
 
 
 def _choose(name: str | None) -> GraphRun:
-    """The run to attach to: where several run and none is named, the newest, as in tmux."""
+    """Choose the run to attach to: the newest if none is named, as in tmux."""
     runs = rundir.running()
     runs = [run for run in runs if run.is_here] or runs
     return max(runs, key=lambda run: run.began) if name is None and runs else choose(name)
 
 
 def _anybody(reaches_out: bool) -> bool:
-    """Whether nodes can be seen that no supervisor of ours has started."""
+    """Whether there may be nodes that no supervisor of ours has started."""
     from graphflow.introspect.graph_view import View
 
     try:
@@ -122,18 +122,18 @@ def _anybody(reaches_out: bool) -> bool:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ls(as_json: bool) -> int:
-    """List running graphs: their nodes, and the consoles attached to them."""
+    """List running graphs with their nodes and attached consoles."""
     rows = []
     for run in running_here(everything=True):
-        told = _rows(run)
-        states = Counter(node["state"] for node in told["nodes"])
+        answer = _rows(run)
+        states = Counter(node["state"] for node in answer["nodes"])
         rows.append(
             {
                 "graph": run.graph,
                 "domain": run.domain,
                 "nodes": dict(states),
                 "began": run.began,
-                "consoles": [c["name"] for c in told.get("consoles", [])],
+                "consoles": [c["name"] for c in answer.get("consoles", [])],
                 "file": run.file,
             }
         )
@@ -161,9 +161,9 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
 
 
 @click.command()
-@click.option("--web", is_flag=True, help="In a browser, on this machine only.")
+@click.option("--web", is_flag=True, help="Serve it to a browser on this machine.")
 @click.option("--port", type=click.IntRange(1, 65535), default=8147, show_default=True, help="Port for --web.")
-@click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+@click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
 @click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a.")
 def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
     """Open the console on a running graph, here or in a browser."""
@@ -180,7 +180,7 @@ def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
     go_to(run.domain, run.endpoint)
     output.talk(
         f"the console of {run.graph} is at http://127.0.0.1:{port}; from another machine: "
-        f"ssh -L {port}:127.0.0.1:{port} THIS_MACHINE\nCtrl-C ends the page; the graph runs on"
+        f"ssh -L {port}:127.0.0.1:{port} THIS_MACHINE\nCtrl-C stops serving it; the graph keeps running"
     )
     import_module("graphflow.tui.web").serve(words, port)
     return exits.OK

@@ -1,4 +1,4 @@
-"""`graphflow demo`: walks through graphs that come with graphflow, step by step: in the console, or as text."""
+"""`graphflow demo`: walk through the example graphs step by step, in the console or as text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
 
 _AFTER_REPORT = 1.0
-"""Seconds that a broken graph stays on screen after its report has begun."""
+"""Seconds that a broken graph keeps running after its deadlock was reported."""
 _END_LIMIT = 20.0
 
 
@@ -36,13 +36,14 @@ def demo() -> None:
 @click.argument("steps", nargs=-1, metavar="[STEP]...")
 @click.option("-l", "--list", "only_list", is_flag=True, help="Only list the steps.")
 @click.option("--no-console", is_flag=True, help="Print everything instead of opening the console.")
-@click.option("--from", "first", metavar="STEP", help="Begin with STEP and go on to the last.")
-@click.option("-y", "--yes", is_flag=True, help="Print everything, and do not ask before each step.")
+@click.option("--from", "first", metavar="STEP", help="Begin with STEP and continue to the last.")
+@click.option("-y", "--yes", is_flag=True, help="Print everything without asking before each step.")
 def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, first: str | None, yes: bool) -> int:
-    """Show eleven deadlocks and races, each explained as it happens and then fixed by a change to its graph file.
+    """Show eleven deadlocks and races, each explained as it happens and then fixed by a change of its graph file.
 
-    In the console you end them yourself; it says what to press. Without a terminal, or with --no-console, what they
-    print is shown. They run in a domain and on a port of their own. Name STEPs to run only those.
+    In the console you end each deadlock yourself; it shows which keys to press. Without a terminal, or with
+    --no-console, the graphs' output is printed. They run in a domain and on a port of their own. Name STEPs to run
+    only those.
     """
     known = {step.name: step for step in DEADLOCKS}
     if only_list:
@@ -53,7 +54,7 @@ def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, first: s
             raise UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list shows all'}")
     if first:
         if steps:
-            raise UsageFault(f"either the steps to show, or --from; for one step: graphflow demo deadlock {first}")
+            raise UsageFault(f"give either STEPs or --from; for one step: graphflow demo deadlock {first}")
         steps = tuple(known)[list(known).index(first) :]
     from graphflow.transport.rendezvous import free_endpoint
 
@@ -84,7 +85,7 @@ def _show(step: Step, *, asks: bool) -> None:
 
 
 def _run(file: Path, seconds: float) -> Iterator[str]:
-    """The lines that a graph's nodes print until its time is up."""
+    """Run a graph for some seconds and yield the lines that it prints."""
     command = [sys.executable, "-m", "graphflow.cli.main", "up", str(file)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     assert process.stdout is not None

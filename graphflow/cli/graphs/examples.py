@@ -1,4 +1,4 @@
-"""The deadlocks and races that `graphflow demo` shows, in the order in which they are learned."""
+"""The deadlocks and races that `graphflow demo` shows, in the order of the lesson."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from graphflow.workspace.project import demos_root
 
 
 class Step(NamedTuple):
-    """One pair of graphs, `NAME_broken` and `NAME_fixed`."""
+    """A pair of graphs, `NAME_broken` and `NAME_fixed`."""
 
     name: str
     seconds: float
-    """How long the fixed graph is shown, and the broken one when nothing is found."""
+    """Running time of the fixed graph, and of the broken one if no deadlock is found."""
 
 
 DEADLOCKS = (
@@ -32,11 +32,11 @@ DEADLOCKS = (
 
 
 def graph_file(name: str, kind: str) -> Path:
-    """The graph file of a step, `broken` or `fixed`."""
+    """Return the graph file of a step; `kind` is `broken` or `fixed`."""
     return demos_root() / "graphs" / "deadlock" / f"{name}_{kind}.yaml"
 
 
 def heading(file: Path) -> str:
-    """What a graph file says of itself in its first line, or the second if the first is for editors."""
+    """Return a graph file's heading: its first line, or the second if the first is for editors."""
     lines = file.read_text(encoding="utf-8").splitlines()
     return lines[lines[0].startswith("# yaml-language-server:")].lstrip("# ")

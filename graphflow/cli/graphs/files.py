@@ -1,4 +1,4 @@
-"""`graphflow plan`, `check`, `explain` and `schema`: graph files without running them."""
+"""`graphflow plan`, `check`, `explain` and `schema`: inspect graph files without running them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 _SHOWN = 12
-"""Files of a folder that are named."""
+"""Most files of a folder that an error lists."""
 
 
 def find_graph(text: str) -> Path:
-    """The file that `up NAME` means: a path, or the name of a graph of the project, an installed package or graphflow.
+    """Find a graph file by its path, or by the name of a graph of the project, an installed package or graphflow.
 
     Raises:
-        UsageFault: `text` is neither.
+        UsageFault: There is none.
     """
     path = Path(text)
     if path.is_file():
@@ -42,7 +42,7 @@ def find_graph(text: str) -> Path:
 
     own = project_root(Path.cwd()) / "graphs" / f"{text.removesuffix('.yaml')}.yaml"
     if own.is_file():
-        output.talk(f"{text}: using that of the project, {shown(own)}")
+        output.talk(f"{text}: using the project's, {shown(own)}")
         return Path(shown(own))
     name, bundled, others = text.removesuffix(".yaml"), bundled_graphs(), installed.graphs()
     found = others.get(name) or ([bundled[name]] if name in bundled else [])
@@ -63,16 +63,16 @@ def find_graph(text: str) -> Path:
     if path.is_dir() and (inside := sorted(map(str, [*path.glob("*.yaml")] or path.rglob("*.yaml")))):
         raise UsageFault(f"{text}: is a folder; name one of its files: {', '.join(inside[:_SHOWN])}")
     hint = did_you_mean(text, [*near, *bundled, *others])
-    if not hint and (stem := nearest(path.stem, near.values())) is not None:  # which the ending made too short
+    if not hint and (stem := nearest(path.stem, near.values())) is not None:  # without the suffix
         hint = f"; did you mean {next(file for file in near if near[file] == stem)!r}?"
     raise UsageFault(f"{text}: {what}{hint}")
 
 
 def _refuse_node(name: str) -> None:
-    """Say what to do with the name of a node, where a graph is wanted.
+    """Refuse the name of a node where a graph is expected.
 
     Raises:
-        UsageFault: It is one, of the project or with graphflow.
+        UsageFault: It names a node of the project or of graphflow; the text has the command that runs it.
     """
     from graphflow.workspace.executables import project_nodes
     from graphflow.workspace.project import demos_root, project_root
@@ -80,14 +80,14 @@ def _refuse_node(name: str) -> None:
     root = project_root(Path.cwd())
     files = [folder / "nodes" / f"{name}.py" for folder in (root, demos_root())]
     if name in project_nodes(root) or any(file.is_file() for file in files):
-        raise UsageFault(f"{name!r} is a node and no graph: graphflow run {name}")
+        raise UsageFault(f"{name!r} is a node, not a graph: graphflow run {name}")
 
 
 def _refuse_source(file: Path) -> None:
-    """Say what to do with a Python file that describes nodes, where a graph is wanted.
+    """Refuse a Python file with nodes where a graph is expected.
 
     Raises:
-        UsageFault: It has nodes.
+        UsageFault: It has nodes; the text has the command that runs one.
     """
     from graphflow.workspace.node_classes import node_classes_in
     from graphflow.workspace.packages import uses_ros
@@ -100,12 +100,8 @@ def _refuse_source(file: Path) -> None:
     _, module = module_of(file)
     several = f"; it has {', '.join(classes)}" if len(classes) > 1 else ""
     run = f"graphflow run {f'{module}:{classes[0]}' if several else file}"
-    named = (
-        f"; a graph file names it: nodes: {{/{classes[0].lower()}: {{class: {module}:{classes[0]}}}}}"
-        if classes
-        else ""
-    )
-    raise UsageFault(f"{file} is a node and no graph file{several}; run it with: {run}{named}")
+    entry = f"; in a graph file: nodes: {{/{classes[0].lower()}: {{class: {module}:{classes[0]}}}}}" if classes else ""
+    raise UsageFault(f"{file} is a node, not a graph file{several}; run it with: {run}{entry}")
 
 
 _graph = click.argument("graph", metavar="GRAPH.yaml")
@@ -118,11 +114,11 @@ _json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @_graph
 @_args
 @_json
-@click.option("--diff", "other", metavar="OTHER.yaml", help="Show what would be different in another file.")
+@click.option("--diff", "other", metavar="OTHER.yaml", help="Show the differences to another graph file.")
 def plan(graph: str, args: tuple[str, ...], as_json: bool, other: str | None) -> None:
-    """Show exactly what a graph file would run and where each setting comes from. Imports nothing.
+    """Show exactly what a graph file would run and where each setting comes from, without importing anything.
 
-    A launch file in Python is run for that, in a process of its own.
+    A Python launch file is executed for this, in a process of its own.
     """
     path = find_graph(graph)
     from graphflow.graph.resolve import load
@@ -138,7 +134,7 @@ def plan(graph: str, args: tuple[str, ...], as_json: bool, other: str | None) ->
 
 
 def _difference(one: Plan, other: Plan) -> Iterator[str]:
-    """Two plans as a unified diff, without the places of settings."""
+    """Compare two plans as a unified diff, without the places of settings."""
     from difflib import unified_diff
 
     ours, theirs = ([line.partition("  # ")[0] for line in list(plan.lines())[1:]] for plan in (one, other))
@@ -146,7 +142,7 @@ def _difference(one: Plan, other: Plan) -> Iterator[str]:
 
 
 def _graph_meant(text: str) -> Path | None:
-    """The graph file that is to be checked; None for source. A graph's name counts more than a folder's.
+    """Find the graph file to check; None if `text` is source. The name of a graph takes precedence over a folder's.
 
     Raises:
         UsageFault: It is neither.
@@ -162,7 +158,7 @@ def _graph_meant(text: str) -> Path | None:
         module = text.partition(":")[0]
         file = Path(module if module.endswith(".py") else f"{module.replace('.', '/')}.py")
         if file.is_file():
-            raise UsageFault(f"{text}: source is checked by its file: graphflow check {file}") from None
+            raise UsageFault(f"{text}: to check source, name its file: graphflow check {file}") from None
         raise
 
 
@@ -171,12 +167,12 @@ def _graph_meant(text: str) -> Path | None:
 @_args
 @_json
 def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
-    """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
+    """Report every mistake in a graph file and in what it refers to. Node classes are imported; nothing is started.
 
-    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
-    remarks: names that nothing in the graph answers to, and slips in the source that Python runs without a word. Of a
-    Python file or a folder, node classes are imported, and the nodes that are written for rclpy only read. A launch
-    file in Python is run, in a process of its own.
+    Deadlocks visible in the source are reported: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
+    names that nothing in the graph provides, and mistakes in the source that Python does not report. Given a Python
+    file or a folder, node classes are imported, and nodes written for rclpy are only read. A Python launch file is
+    executed in a process of its own.
     """
     path = _graph_meant(graph)
     if path is None:
@@ -207,9 +203,9 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
         output.talk(str(text))
     possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
     unresolved = [way for way in ways if way.grade == "unresolved"]
-    told = [
-        _count(things, what)
-        for things, what in (
+    counts = [
+        _count(things, noun)
+        for things, noun in (
             (certain, "deadlock"),
             (possible, "possible deadlock"),
             (unresolved, "unresolved call"),
@@ -217,26 +213,26 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
         )
         if things
     ]
-    more = f"no mistakes, {', '.join(told)}" if told else "no problems"
+    more = f"no mistakes, {', '.join(counts)}" if counts else "no problems"
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
     return exits.FAILED if certain else exits.OK
 
 
 _DESCRIBING = b"def generate_launch_description", b"LaunchService"
-"""Marks of a Python file that describes a launch: the function that returns it, or the service that starts it."""
+"""Names that occur in a Python launch file: its function, or the class that runs a description."""
 
 
 def is_launch_file(file: Path) -> bool:
-    """Whether a Python file is a launch file of ROS's."""
+    """Whether a Python file is a ROS launch file."""
     named = file.name.endswith((".launch.py", "_launch.py"))
     return file.is_file() and (named or any(word in found_bytes(file) for word in _DESCRIBING))
 
 
 def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces, list[str]]:
-    """A graph, what its classes declare, and the slips in their source.
+    """Load and check a graph; return its plan, its classes' interfaces and the slips in their source.
 
     Raises:
-        GraphFileError: Every mistake that was found.
+        GraphFileError: With every mistake found.
     """
     from graphflow.errors import GraphFileError
     from graphflow.graph.checks.check import check as check_plan
@@ -257,7 +253,7 @@ def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces, list[st
 
 
 def output_problems(problems: Sequence[Problem]) -> None:
-    """Say what is wrong with a graph file."""
+    """Print the problems of a graph file and their number."""
     for problem in problems:
         output.talk(str(problem))
     output.talk(_count(problems, "problem"))
@@ -277,16 +273,16 @@ def _place(place: Place) -> dict[str, Any]:
 @_args
 @_json
 def explain(graph: str, name: str | None, args: tuple[str, ...], as_json: bool) -> None:
-    """Explain how a name of a graph comes about: who uses it, by which namespace and rule.
+    """Explain how a name in a graph is resolved: who uses it, and which namespace and remap rule applied.
 
-    Without NAME, all names that the classes show.
+    Without NAME, all names that the node classes declare.
     """
     from graphflow.graph import explain as explaining
 
     if not Path(graph).exists() and (graph.startswith("/") or (name is not None and Path(name).is_file())):
         file = name if name is not None and ":=" not in name else "GRAPH.yaml"
-        runs = "" if name is not None else f"; of what runs: graphflow node info {graph} or topic info {graph}"
-        raise UsageFault(f"the graph file stands first: graphflow explain {file} {graph}{runs}")
+        runs = "" if name is not None else f"; for a running graph: graphflow node info {graph} or topic info {graph}"
+        raise UsageFault(f"the graph file comes first: graphflow explain {file} {graph}{runs}")
     if name is not None and ":=" in name:
         args, name = (name, *args), None
     resolved, found, _ = _checked(find_graph(graph), args)
@@ -305,7 +301,7 @@ def explain(graph: str, name: str | None, args: tuple[str, ...], as_json: bool) 
 
 @click.command()
 def schema() -> None:
-    """Print the JSON Schema of graph files, with which an editor completes and checks them as you type.
+    """Print the JSON Schema of graph files, by which editors complete and check them as you type.
 
     Save it, and begin a graph file with:  # yaml-language-server: $schema=graph.schema.json
     """

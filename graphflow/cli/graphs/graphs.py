@@ -1,4 +1,4 @@
-"""`graphflow up`, `down`, `ps` and `logs`: running graphs."""
+"""`graphflow up`, `down`, `ps` and `logs`: start, stop and list graphs, and show their logs."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from graphflow.supervisor.rundir import GraphRun
     from graphflow.supervisor.starts import Start
 
-_graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
-_everywhere = click.option("--all", "everything", is_flag=True, help="Of every domain.")
+_graph = click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
+_everywhere = click.option("--all", "everything", is_flag=True, help="Include every domain.")
 
 LEVELS = ("debug", "info", "warn", "error", "fatal")
 DETAIL = 60
-"""Characters of what is wrong with a node that `ps` shows; its log has the rest."""
+"""Most characters of a node's error that `ps` shows; its log has the rest."""
 PS_LIMIT = 1.0
-"""Seconds that a supervisor has to say how its nodes are."""
+"""Seconds that a supervisor has to report the states of its nodes."""
 
 
 @click.command(cls=GraphCommand)
@@ -40,12 +40,10 @@ PS_LIMIT = 1.0
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 @click.option("-d", "--detach", is_flag=True, help="Leave it running in the background.")
 @click.option("--no-console", is_flag=True, help="Show logs instead of the console; Ctrl-C then stops the graph.")
-@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
+@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments without starting it.")
 @click.option("--private", is_flag=True, help="Use a port and a domain of its own.")
 @click.option("--races", is_flag=True, help="Report updates of node attributes that are lost between handlers.")
-@click.option(
-    "--only", multiple=True, metavar="NODE", help="Start this node, and what it comes after; may be repeated."
-)
+@click.option("--only", multiple=True, metavar="NODE", help="Start this node and those it waits for; may be repeated.")
 @click.option("--replace", is_flag=True, help="Stop the graph first, if it is running.")
 @click.option("--watch", is_flag=True, help="Restart nodes when their source changes.")
 @click.option(
@@ -53,7 +51,7 @@ PS_LIMIT = 1.0
 )
 @click.option("--domain", type=click.IntRange(0), help="Domain id; overrides the file's.")
 @click.option("--wire", type=click.Choice(PROFILES), help="ROS 2 distribution whose message definitions to use.")
-@click.option("--json", "as_json", is_flag=True, help="Print what happens as JSON, a line each; without the console.")
+@click.option("--json", "as_json", is_flag=True, help="Print events as lines of JSON, without the console.")
 @reach_options
 def up(
     graph: str,
@@ -91,7 +89,7 @@ def up(
         domain = domain_id()
     if replace:
         _take_down_running(path)
-    # Nothing heavy may be imported before the fork: the children share what this process has.
+    # Nothing heavy may be imported before the fork: the children inherit this process's memory.
     from graphflow.supervisor.launching.launch import launch
 
     uses_console = not (detach or no_console or as_json) and output.is_terminal()
@@ -111,12 +109,12 @@ def up(
 
 
 def _take_down_running(path: Path) -> None:
-    """Stop what runs of a graph file, in this domain."""
+    """Stop the running graph of a file, in this domain."""
     from graphflow.cli.graphs.streaming import take_down
     from graphflow.supervisor import rundir
     from graphflow.supervisor.starts import wait_started
 
-    wait_started(_tell_start, path)
+    wait_started(_report_start, path)
     for run in rundir.running():
         if run.is_here and run.file == str(path.resolve()):
             take_down(run, now=False)
@@ -124,7 +122,7 @@ def _take_down_running(path: Path) -> None:
 
 def _open_console(run: dict[str, Any], end: Callable[[], str]) -> int:
     from graphflow.cli.graphs.console import show
-    from graphflow.cli.graphs.streaming import GONE_LIMIT, tell_loss
+    from graphflow.cli.graphs.streaming import GONE_LIMIT, report_loss
     from graphflow.supervisor.rundir import GraphRun
 
     shown = GraphRun(**run)
@@ -133,7 +131,7 @@ def _open_console(run: dict[str, Any], end: Callable[[], str]) -> int:
     except SupervisorError:
         if not shown.wait_gone(GONE_LIMIT):
             raise
-        return tell_loss(run, end)
+        return report_loss(run, end)
 
 
 def _go_private(domain: int | None) -> int:
@@ -179,11 +177,11 @@ def _show_args(path: Path) -> int:
 @_graph
 @_everywhere
 @click.option("--now", is_flag=True, help="Kill at once, without time for cleanup.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for each graph.")
+@click.option("--json", "as_json", is_flag=True, help="Print a line of JSON for each graph.")
 def down(graph: str | None, name: str | None, everything: bool, now: bool, as_json: bool) -> int:
-    """Stop a running graph; returns when all its processes have ended.
+    """Stop a running graph and wait until all its processes have ended.
 
-    Without a name or --all it is the one of this domain.
+    Without a name or --all, stop the graph of this domain.
     """
     if graph is not None and graph.endswith((".yaml", ".yml")):
         graph = Path(graph).stem
@@ -194,21 +192,21 @@ def down(graph: str | None, name: str | None, everything: bool, now: bool, as_js
 
 
 def _to_stop(name: str | None, *, everything: bool) -> list[GraphRun]:
-    """The graphs that are meant; those that are being started are waited for if they may be among them."""
+    """Choose the graphs to stop; wait for graphs that are being started, which may be among them."""
     from graphflow.supervisor.control.choosing import choose, running_here
     from graphflow.supervisor.starts import wait_started
 
-    has_waited = everything and wait_started(_tell_start)
+    has_waited = everything and wait_started(_report_start)
     while True:
         try:
             return running_here(everything=True) if everything else [choose(name)]
         except SupervisorError as error:
-            if error.exit_code != exits.NOT_RUNNING or has_waited or not wait_started(_tell_start):
+            if error.exit_code != exits.NOT_RUNNING or has_waited or not wait_started(_report_start):
                 raise
             has_waited = True
 
 
-def _tell_start(start: Start) -> None:
+def _report_start(start: Start) -> None:
     output.talk(f"waiting for {start}")
 
 
@@ -217,7 +215,7 @@ def _tell_start(start: Start) -> None:
 @_everywhere
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ps(name: str | None, everything: bool, as_json: bool) -> int:
-    """List the nodes of running graphs: state, process, uptime. Of this domain, unless --all is given."""
+    """List the nodes of running graphs in this domain: state, process and uptime."""
     from graphflow.supervisor.control.choosing import choose, running_here
     from graphflow.supervisor.control.client import ControlClient
 
@@ -242,7 +240,7 @@ def ps(name: str | None, everything: bool, as_json: bool) -> int:
             output.talk(f"warning: {run.graph}: {run.guard_again}")
     for run in silent:
         output.error(
-            f"the supervisor of {run.graph} (process {run.pid}) does not answer; if it is stopped: kill -CONT {run.pid}"
+            f"the supervisor of {run.graph} (process {run.pid}) does not answer; if stopped: kill -CONT {run.pid}"
         )
     return exits.TIMEOUT if silent else exits.OK
 
@@ -267,13 +265,13 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
 
 @click.command()
 @click.argument("nodes", nargs=-1, metavar="[NODE]...")
-@click.option("-f", "--follow", is_flag=True, help="Keep printing as more is written. Ctrl-C stops it.")
+@click.option("-f", "--follow", is_flag=True, help="Keep printing new lines, until Ctrl-C.")
 @click.option("-n", "--lines", type=click.IntRange(0), help="Only the last N lines of each node.")
-@click.option("--node", "more", multiple=True, metavar="NODE", help="The same as NODE.")
-@click.option("--level", type=click.Choice(LEVELS), help="Only messages of this level or a more serious one.")
+@click.option("--node", "more", multiple=True, metavar="NODE", help="Same as NODE.")
+@click.option("--level", type=click.Choice(LEVELS), help="Only messages of this level or higher.")
 @click.option("--since", metavar="TIME", help="Only messages of the last 30s, 5m or 2h, or since 14:05[:30].")
 @_graph
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for each line.")
+@click.option("--json", "as_json", is_flag=True, help="Print each line as a line of JSON.")
 def logs(
     nodes: tuple[str, ...],
     follow: bool,
@@ -284,7 +282,7 @@ def logs(
     name: str | None,
     as_json: bool,
 ) -> int:
-    """Show what the nodes of a graph have written, even after it has ended."""
+    """Show the logs of a graph's nodes, even after it has ended."""
     from graphflow.cli.graphs.loglines import Chosen
     from graphflow.cli.graphs.streaming import LogReader, how_ended
     from graphflow.names import did_you_mean
@@ -318,5 +316,5 @@ def logs(
         alive = any(str(folder) == r.logs for r in rundir.running())
     reader.show()
     if not reader.count and lines != 0:
-        output.talk(f"nothing was written{' of that level or time' if chosen else ''}; the logs are in {folder}")
+        output.talk(f"no lines{' of that level or time' if chosen else ''}; the logs are in {folder}")
     return exits.OK

@@ -1,4 +1,4 @@
-"""Lines of logs, chosen by level and time: `[WARN] [1795223522.100807190] [talker]: text`."""
+"""Filter log lines by level and time: `[WARN] [1795223522.100807190] [talker]: text`."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ _UNITS = {None: 1, "s": 1, "m": 60, "h": 3600, "d": 86400}
 
 
 class Chosen:
-    """Which lines are wanted. A line without a head, as of a traceback, goes with the message before it.
+    """A filter of lines. A line without a head, such as one of a traceback, belongs to the message before it.
 
     Args:
-        level: The least serious level; None for any.
-        since: A time as `time_of` reads it; None for any.
+        level: The lowest level; None for any.
+        since: The earliest time, as `time_of` reads it; None for any.
 
     Raises:
-        UsageFault: `since` is no time.
+        UsageFault: `since` is not a time.
     """
 
     def __init__(self, level: str | None, since: str | None) -> None:
         self._least = _ORDER.index(level.upper()) if level else 0
         self._since = time_of(since, time.time()) if since else 0.0
-        self._goes_on: dict[Path, bool] = {}
+        self._continues: dict[Path, bool] = {}
 
     def of(self, file: Path, lines: list[str]) -> list[str]:
-        """Those lines that are wanted, of the next ones in a file."""
+        """Filter the next lines of a file."""
         found = []
-        is_wanted = self._goes_on.get(file, self._least == 0 and self._since == 0.0)
+        is_wanted = self._continues.get(file, self._least == 0 and self._since == 0.0)
         for line in lines:
             head = _HEAD.match(line)
             if head:
@@ -44,12 +44,12 @@ class Chosen:
                 is_wanted = True
             if is_wanted:
                 found.append(line)
-        self._goes_on[file] = is_wanted
+        self._continues[file] = is_wanted
         return found
 
 
 def record(node: str, line: str) -> dict[str, Any]:
-    """A line of a log for programs: its level, time, logger and text; of one without a head only the text."""
+    """Parse a log line into its level, time, logger and text; only the text if it has no head."""
     head = _HEAD.match(line)
     if head is None:
         return {"event": "log", "node": node, "level": None, "stamp_ns": None, "logger": None, "text": line}
@@ -61,7 +61,7 @@ def record(node: str, line: str) -> dict[str, Any]:
 
 
 def time_of(text: str, now: float) -> float:
-    """Seconds since 1970 of `5m` (ago), or of `14:05` today, or yesterday if that is yet to come.
+    """Convert `5m` (ago), or `14:05` today or yesterday, whichever was last, to seconds since 1970.
 
     Raises:
         UsageFault: `text` is neither.
@@ -75,4 +75,4 @@ def time_of(text: str, now: float) -> float:
         at = (today.tm_year, today.tm_mon, today.tm_mday, int(clock[1]), int(clock[2]), int(clock[3] or 0), 0, 0, -1)
         found = time.mktime(at)
         return found if found <= now else found - 86400
-    raise UsageFault(f"--since {text}: write 30s, 5m or 2h for so long ago, or a time of the day such as 14:05")
+    raise UsageFault(f"--since {text}: write a duration such as 30s, 5m or 2h, or a time of day such as 14:05")

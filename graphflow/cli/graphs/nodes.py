@@ -1,4 +1,4 @@
-"""`graphflow start`, `stop`, `restart`, `status` and `wait`: single nodes of a running graph."""
+"""`graphflow start`, `stop`, `restart`, `status` and `wait`: control single nodes of a running graph."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from graphflow.system import host_name
 from graphflow.times import ago
 
 LIMIT = START_LIMIT + 2 * STOP_LIMIT
-"""Seconds that a node may take to end and to be ready again."""
+"""Seconds that a node may take to end and become ready again."""
 LAST_LINES = 20
 """Lines of a node's log that `status` shows."""
-LOOK_EVERY = 0.05
+POLL = 0.05
 OVER = ("failed", "given_up", "ended")
-"""States in which a node stays."""
+"""States that a node leaves only by command."""
 
-_graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+_graph = click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
 _nodes = click.argument("nodes", nargs=-1, required=True, metavar="NODE...")
 
 
@@ -37,9 +37,9 @@ _nodes = click.argument("nodes", nargs=-1, required=True, metavar="NODE...")
 @_nodes
 @_graph
 def start(nodes: tuple[str, ...], name: str | None) -> int:
-    """Start nodes that have ended or failed. Returns when they are ready."""
+    """Start nodes that have ended or failed, and wait until they are ready."""
     for file in (node for node in nodes if node.endswith((".yaml", ".yml"))):
-        raise UsageFault(f"a graph is started by: graphflow up {file}")
+        raise UsageFault(f"{file} is a graph file; start it with: graphflow up {file}")
     return max(_ask("start", node, name) for node in nodes)
 
 
@@ -47,7 +47,7 @@ def start(nodes: tuple[str, ...], name: str | None) -> int:
 @_nodes
 @_graph
 def restart(nodes: tuple[str, ...], name: str | None) -> int:
-    """Restart nodes, whether they run or have ended. Returns when they are ready."""
+    """Restart nodes, whether they run or have ended, and wait until they are ready."""
     return max(restart_node(node, name) for node in nodes)
 
 
@@ -55,7 +55,7 @@ def restart(nodes: tuple[str, ...], name: str | None) -> int:
 @_nodes
 @_graph
 def stop(nodes: tuple[str, ...], name: str | None) -> int:
-    """Stop nodes. The others run on; `graphflow start` starts them again."""
+    """Stop nodes; the others keep running. `graphflow start` starts them again."""
     return max(_ask("stop", node, name) for node in nodes)
 
 
@@ -64,9 +64,9 @@ def stop(nodes: tuple[str, ...], name: str | None) -> int:
 @_graph
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def status(node: str, name: str | None, as_json: bool) -> int:
-    """Show how a node is, how it last ended, and the end of its log.
+    """Show a node's state, how it last ended, and the end of its log.
 
-    Exit code 0: it is ready, or will be; 1: it has failed.
+    Exit code 0: it has not failed; 1: it has.
     """
     run = choose(name)
     row = _row(run.socket, _full(node))
@@ -81,32 +81,32 @@ def status(node: str, name: str | None, as_json: bool) -> int:
     facts = {
         "": row["detail"],
         "class": row["class"],
-        "shares the process": row["process"],
-        "started again": {0: "", 1: "once"}.get(row["restarts"], f"{row['restarts']} times"),
-        "its last end": row["last_end"],
+        "shared process": row["process"],
+        "restarted": {0: "", 1: "once"}.get(row["restarts"], f"{row['restarts']} times"),
+        "last end": row["last_end"],
         "log": row["log"],
     }
     output.lines(f"  {what}: {fact}" if what else f"  {fact}" for what, fact in facts.items() if fact)
     if last:
-        output.data(f"  its last {len(last)} lines:" if len(last) > 1 else "  its last line:")
+        output.data(f"  last {len(last)} lines:" if len(last) > 1 else "  last line:")
         output.lines(f"    {line}" for line in last)
     return exits.FAILED if is_bad else exits.OK
 
 
 @click.command()
 @click.argument("nodes", nargs=-1, metavar="[NODE]...")
-@click.option("--ready", is_flag=True, help="Until they are ready, which is what is waited for without it, too.")
-@click.option("--ended", is_flag=True, help="Until they have ended.")
+@click.option("--ready", is_flag=True, help="Wait until they are ready; the default.")
+@click.option("--ended", is_flag=True, help="Wait until they have ended.")
 @click.option("--timeout", type=click.FloatRange(0), default=60.0, show_default=True, help="Seconds to wait.")
 @_graph
-@click.option("--json", "as_json", is_flag=True, help="Print how the nodes are then as JSON, as `ps` does.")
+@click.option("--json", "as_json", is_flag=True, help="Print the final states of the nodes as JSON, as `ps` does.")
 def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name: str | None, as_json: bool) -> int:
-    """Wait until nodes are ready, or all nodes of a graph that is being started; it may not even have begun to.
+    """Wait until nodes, or all nodes of a graph, are ready. The graph may not even have been started yet.
 
-    Exit code 0: they are; 1: one has failed; 4: not within --timeout.
+    Exit code 0: they are; 1: one has failed; 4: --timeout has passed.
     """
     if ready and ended:
-        raise UsageFault("--ready and --ended: one of them")
+        raise UsageFault("give either --ready or --ended")
     rows, code, why = _waited(nodes, name, timeout, ended=ended)
     if as_json:
         output.as_json(rows)
@@ -118,7 +118,7 @@ def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name:
 def _waited(
     nodes: tuple[str, ...], graph: str | None, timeout: float, *, ended: bool
 ) -> tuple[list[dict[str, Any]], int, str]:
-    """Wait for nodes; returns their rows, the exit code and, if they are not as wanted, why."""
+    """Wait for nodes; return their rows, the exit code and, unless it is 0, the reason."""
     deadline = time.monotonic() + timeout
     while True:
         rows = _rows_if_any(graph)
@@ -135,7 +135,7 @@ def _waited(
         if time.monotonic() > deadline:
             left = ", ".join(f"{row['node']} is {row['state']}" for row in wanted if row["state"] not in good)
             return wanted, exits.TIMEOUT, f"after {timeout:g} s {left or _not_there()}"
-        time.sleep(LOOK_EVERY)
+        time.sleep(POLL)
 
 
 def _not_there() -> str:
@@ -143,11 +143,11 @@ def _not_there() -> str:
 
 
 def _rows_if_any(graph: str | None) -> list[dict[str, Any]] | None:
-    """The rows of all nodes; None while no graph is running."""
+    """Return the rows of all nodes; None while no graph is running."""
     try:
         return _rows(choose(graph).socket)
     except SupervisorError as error:
-        if error.exit_code in (exits.NOT_RUNNING, exits.FAILED):  # it is not there yet, or has just gone
+        if error.exit_code in (exits.NOT_RUNNING, exits.FAILED):  # it has not started yet, or has just ended
             return None
         raise
 
@@ -187,10 +187,10 @@ def _last_lines(log: Path) -> list[str]:
 
 
 def restart_node(node: str, graph: str | None, *, threads: list[str] | None = None) -> int:
-    """Start a node again and wait until it is ready; returns the exit code.
+    """Restart a node, wait until it is ready, and return the exit code.
 
     Args:
-        threads: Handlers that run in threads from then on.
+        threads: Handlers to run in threads from then on.
     """
     return _ask("restart", node, graph, **({"threads": threads} if threads else {}))
 
@@ -213,7 +213,7 @@ def _ask(what: str, node: str, graph: str | None, **more: Any) -> int:
     except (SupervisorError, UsageFault):
         if what != "stop" or _rows_if_any(run.graph):
             raise
-        output.data(f"{node} has ended; it was the last that ran, and graph {run.graph} has ended with it")
+        output.data(f"{node} has ended; it was the last one running, so graph {run.graph} has ended, too")
         return exits.OK
     if what == "stop":
         output.data(f"{node} has ended")
@@ -221,12 +221,12 @@ def _ask(what: str, node: str, graph: str | None, **more: Any) -> int:
     if row["state"] != "ready":
         output.error(f"{node} did not start: {row['detail']}\n  its log: {row['log']}")
         return exits.FAILED
-    output.data(f"{node} runs again, process {row['pid']}")
+    output.data(f"{node} is running again, process {row['pid']}")
     return exits.OK
 
 
 def by_itself(node: str) -> str:
-    """Say where a node runs that no graph here has, and how it is ended; empty if the network shows none."""
+    """Describe where a node outside all graphs runs and how to end it; empty if the network shows no such node."""
     try:
         if any(row["node"] == node for run in rundir.running() if run.is_here for row in _rows(run.socket)):
             return ""
@@ -234,14 +234,14 @@ def by_itself(node: str) -> str:
             if node not in view.cache.nodes():
                 return ""
             owner, process = view.owner(node), view.process_of(node)
-    except SupervisorError:  # nothing runs at all, or what does is ending
+    except SupervisorError:  # nothing is running, or it is just ending
         return ""
     end = f", or by: kill {process.pid}" if process is not None and process.host == host_name() else ""
-    return f"{node} runs by itself, in no graph of `up`, in {owner}; end it there by Ctrl-C{end}"
+    return f"{node} was not started by `up`; it runs in {owner}; end it there with Ctrl-C{end}"
 
 
 def _await(socket: str, node: str, wanted: str) -> dict[str, Any]:
-    """The row of a node once it is as wanted, or stays as it is."""
+    """Wait until a node is in the wanted state or in one that it does not leave; return its row."""
     deadline = time.monotonic() + LIMIT
     while True:
         row = _row(socket, node)
@@ -249,4 +249,4 @@ def _await(socket: str, node: str, wanted: str) -> dict[str, Any]:
             return row
         if time.monotonic() > deadline:
             raise SupervisorError(f"{node} is still {row['state']} after {LIMIT:g} s", exits.TIMEOUT)
-        time.sleep(LOOK_EVERY)
+        time.sleep(POLL)

@@ -1,4 +1,4 @@
-"""`graphflow router`: the rendezvous as a program of its own, as ROS 2's courses start it."""
+"""`graphflow router`: the rendezvous as a program of its own, as `rmw_zenohd` is."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from graphflow.domain import rendezvous_endpoint
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
-LOOK_EVERY = 0.05
-"""Seconds between two looks whether the rendezvous has been reached."""
+POLL = 0.05
+"""Seconds between two checks whether the rendezvous has been reached."""
 
 
 @click.command()
 @reach_options
 def router(connect: tuple[str, ...], net: str | None) -> int:
-    """Run a Zenoh router, the rendezvous of this machine. Ctrl-C ends it.
+    """Run a Zenoh router as the rendezvous of this machine, until Ctrl-C.
 
-    None is needed: the first process of a graph is the rendezvous, and another takes over when it ends. This one
-    only stays, and with --connect or --net keeps the machine linked to others.
+    None is needed: the first process of a graph is the rendezvous, and another takes over when it ends. A router
+    outlives the graphs, and with --connect or --net keeps the machine linked to others.
     """
     from graphflow.cli.temporary_node import visit
 
@@ -36,10 +36,10 @@ def router(connect: tuple[str, ...], net: str | None) -> int:
             output.data(f"Started Zenoh router with id {node.context.router_id}")
             output.talk(f"ROS 2 and graphflow find each other at {endpoint}. Ctrl-C ends it")
         else:
-            while not (zid := node.context.router_id):  # it is being connected to
-                await asyncio.sleep(LOOK_EVERY)
-            output.data(f"There is a Zenoh router at {endpoint} already, with id {zid}")
-            output.talk("This one waits to take over when it ends. Ctrl-C ends it")
+            while not (zid := node.context.router_id):  # the connection is still being made
+                await asyncio.sleep(POLL)
+            output.data(f"There already is a Zenoh router at {endpoint}, with id {zid}")
+            output.talk("This one takes over when that ends. Ctrl-C ends this one")
         await asyncio.get_running_loop().create_future()
         return 0
 

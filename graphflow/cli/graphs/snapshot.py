@@ -1,4 +1,4 @@
-"""`graphflow snapshot`: what turtlesim has drawn, as a picture."""
+"""`graphflow snapshot`: save turtlesim's drawing as a picture."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ LIMIT = 10.0
 
 @click.command()
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path), default="turtlesim.svg")
-@click.option("--node", help="The simulator, where there are several.")
+@click.option("--node", help="The simulator, if there are several.")
 def snapshot(file: Path, node: str | None) -> int:
-    """Write what turtlesim has drawn into FILE, an SVG picture. [turtlesim.svg]"""
+    """Save turtlesim's drawing as an SVG picture in FILE. [turtlesim.svg]"""
     from graphflow.msgs import registry
 
     if file.suffix != ".svg":
-        raise UsageFault(f"{file}: the picture is an SVG; give it a name such as {file.with_suffix('.svg')}")
+        raise UsageFault(f"{file}: the picture is an SVG file; name it {file.with_suffix('.svg')}")
     with View(domain_id()) as view:
         wanted = view.node(node) if node else None
         found = [
@@ -38,7 +38,7 @@ def snapshot(file: Path, node: str | None) -> int:
             raise CallError(f"{what}; start turtlesim: graphflow up turtlesim")
         if len(found) > 1:
             names = ", ".join(e.node_name for e in found)
-            raise UsageFault(f"several nodes draw: {names}; say which with --node")
+            raise UsageFault(f"several nodes draw: {names}; choose one with --node")
         response = view.call(found[0].name, SERVICE, registry.interface_class(f"{SERVICE}_Request")(), LIMIT)
     if not response.success:
         raise CallError(f"{found[0].node_name} did not draw: {response.message}")

@@ -1,4 +1,4 @@
-"""`graphflow check FILE.py|FOLDER`: nodes in source, without a graph file."""
+"""`graphflow check FILE.py|FOLDER`: check the source of nodes without a graph file."""
 
 from __future__ import annotations
 
@@ -24,53 +24,53 @@ from graphflow.workspace.project import add_interfaces, module_of, shown
 
 
 def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
-    """Report mistakes of node classes and deadlocks that their source shows, of files and of all below folders.
+    """Report mistakes and deadlocks in the node classes of files, and of all files below folders.
 
-    Classes of graphflow's are imported; what is written for rclpy is only read.
+    Classes written for graphflow are imported; those for rclpy are only read.
 
     Raises:
-        UsageFault: There is no such file, or no node in any.
+        UsageFault: A file does not exist, or none has a node.
     """
-    seen = _Seen()
+    found = _Findings()
     for path in paths:
         if not path.exists():
             raise UsageFault(f"there is no file {path}")
         for file in files_in(path):
             if (fault := _unreadable(file)) is not None:
-                seen.problems.append(fault)
+                found.problems.append(fault)
             elif uses_ros(file):
-                seen.is_rclpy = True
-                seen.ways += findings_in(file)
-                seen.unfollowed += unfollowed_in(file)
+                found.is_rclpy = True
+                found.ways += findings_in(file)
+                found.unfollowed += unfollowed_in(file)
             elif classes := node_classes_in(file):
-                seen.nodes += len(classes)
+                found.nodes += len(classes)
                 wrong, ways, slips = _checked(file, classes)
-                seen.problems += wrong
-                seen.slips += slips
-                seen.ways += ways
-    if not (seen.nodes or seen.is_rclpy or seen.problems):
-        raise UsageFault(f"{' '.join(map(str, paths))}: no node in it, of graphflow or of rclpy{_graphs_in(paths)}")
-    _tell(paths, seen, as_json=as_json)
-    if seen.problems:
+                found.problems += wrong
+                found.slips += slips
+                found.ways += ways
+    if not (found.nodes or found.is_rclpy or found.problems):
+        raise UsageFault(f"{' '.join(map(str, paths))}: no nodes, of graphflow or of rclpy{_graphs_in(paths)}")
+    _report(paths, found, as_json=as_json)
+    if found.problems:
         return exits.USAGE
-    return exits.FAILED if any(way.grade == "CERTAIN" for way in seen.ways) else exits.OK
+    return exits.FAILED if any(way.grade == "CERTAIN" for way in found.ways) else exits.OK
 
 
 @dataclass
-class _Seen:
+class _Findings:
     """Findings in the source of nodes."""
 
     problems: list[Problem] = field(default_factory=list)
     ways: list[Finding] = field(default_factory=list)
     """Deadlocks."""
     slips: list[str] = field(default_factory=list)
-    """What Python runs without a word, and was not meant."""
+    """Probable mistakes that Python does not report."""
     unfollowed: list[Place] = field(default_factory=list)
-    """Loops in rclpy callbacks that poll what their file does not show being set."""
+    """Loops in rclpy callbacks that poll a value whose assignment is not in their file."""
     nodes: int = 0
-    """Classes of graphflow's."""
+    """Number of classes written for graphflow."""
     is_rclpy: bool = False
-    """Whether some of it is written for rclpy."""
+    """Whether some source is written for rclpy."""
 
 
 def _unreadable(file: Path) -> Problem | None:
@@ -84,7 +84,7 @@ def _unreadable(file: Path) -> Problem | None:
 
 
 def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[Finding], list[str]]:
-    """Mistakes in the classes of a file, which are imported, deadlocks that a graph of them could have, and slips."""
+    """Import the classes of a file; return their mistakes, the deadlocks of a graph of them, and slips."""
     root, module = module_of(file)
     add_interfaces(root)
     lines = {f"{module}:{name}": line for name, line in classes.items()}
@@ -97,45 +97,45 @@ def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[F
         nodes.append(PlannedNode(f"/{name}", class_path, place, place))
     plan = Plan(module, shown(file), str(root), tuple(nodes))
     alone = [check(Plan(module, plan.file, plan.root, (node,)), interfaces) for node in nodes]
-    # Calls to other nodes are known in a graph only.
+    # Calls of other nodes can only be resolved within a graph.
     ways = [way for way in deadlock_check.findings(plan, interfaces) if way.grade != "unresolved"]
-    # A module that cannot be imported is so for each of its classes.
+    # A failing import is reported for each class of the module: keep one.
     problems = {problem.message: problem for found in reversed(alone) for problem in found}
     return list(problems.values()), ways, slips_in(data)
 
 
-def _tell(paths: Sequence[Path], seen: _Seen, *, as_json: bool) -> None:
+def _report(paths: Sequence[Path], found: _Findings, *, as_json: bool) -> None:
     if as_json:
-        deadlocks = [{"grade": way.grade, "text": str(way), **place_of(way.place)} for way in seen.ways]
-        told = [{"message": problem.message, **place_of(problem.place)} for problem in seen.problems]
-        unfollowed = [place_of(place) for place in seen.unfollowed]
-        output.as_json({"problems": told, "remarks": seen.slips, "deadlocks": deadlocks, "unfollowed": unfollowed})
+        deadlocks = [{"grade": way.grade, "text": str(way), **place_of(way.place)} for way in found.ways]
+        problems = [{"message": problem.message, **place_of(problem.place)} for problem in found.problems]
+        unfollowed = [place_of(place) for place in found.unfollowed]
+        output.as_json({"problems": problems, "remarks": found.slips, "deadlocks": deadlocks, "unfollowed": unfollowed})
         return
-    for problem in seen.problems:
+    for problem in found.problems:
         output.talk(str(problem))
-    output.lines(seen.slips)
+    output.lines(found.slips)
     output.lines(
-        f"{place}: not analysed: a callback polls what this file does not show being set" for place in seen.unfollowed
+        f"{place}: not analysed: a callback polls a value that is not set in this file" for place in found.unfollowed
     )
-    output.lines(str(way) for way in seen.ways)
-    what = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
-    output.data(f"{what}: {', '.join(_counts(seen))}")
+    output.lines(str(way) for way in found.ways)
+    where = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
+    output.data(f"{where}: {', '.join(_counts(found))}")
 
 
-def _counts(seen: _Seen) -> Iterator[str]:
-    if seen.nodes:
-        yield f"{seen.nodes} node class{'es' * (seen.nodes != 1)}"
-    if seen.problems:
-        yield _count(seen.problems, "problem")
-    if seen.ways:
-        yield f"{_count(seen.ways, 'deadlock')} in the source"
-    if not seen.problems and not seen.ways:
-        of_nodes = "no mistakes" if seen.slips else "no problems"
-        yield of_nodes if seen.nodes else "no deadlocks to be seen in the source"
-    if seen.slips:
-        yield _count(seen.slips, "remark")
-    if seen.unfollowed:
-        yield f"{_count(seen.unfollowed, 'loop')} not analysed"
+def _counts(found: _Findings) -> Iterator[str]:
+    if found.nodes:
+        yield f"{found.nodes} node class{'es' * (found.nodes != 1)}"
+    if found.problems:
+        yield _count(found.problems, "problem")
+    if found.ways:
+        yield f"{_count(found.ways, 'deadlock')} in the source"
+    if not found.problems and not found.ways:
+        of_nodes = "no mistakes" if found.slips else "no problems"
+        yield of_nodes if found.nodes else "no deadlocks visible in the source"
+    if found.slips:
+        yield _count(found.slips, "remark")
+    if found.unfollowed:
+        yield f"{_count(found.unfollowed, 'loop')} not analysed"
 
 
 def _count(things: Sequence[object], word: str) -> str:
@@ -143,10 +143,10 @@ def _count(things: Sequence[object], word: str) -> str:
 
 
 def place_of(place: Place) -> dict[str, str | int]:
-    """A place as JSON."""
+    """Convert a place to JSON."""
     return {"file": place.file, "line": place.line, "column": place.column}
 
 
 def _graphs_in(paths: Sequence[Path]) -> str:
     near = sorted(str(file) for path in paths if path.is_dir() for file in path.glob("*.yaml"))
-    return f"; its graph files are checked one by one: {', '.join(near[:5])}" if near else ""
+    return f"; check its graph files one by one: {', '.join(near[:5])}" if near else ""

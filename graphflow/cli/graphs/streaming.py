@@ -1,4 +1,4 @@
-"""What `up` shows while a graph comes up, runs and goes down; and log files, followed."""
+"""Output of `up` while a graph comes up, runs and goes down, with the nodes' log files."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ from graphflow.system import is_portable, terminal_name
 _POLL = 0.1
 """Seconds between reads of the log files."""
 GONE_LIMIT = 5.0
-"""Seconds that a supervisor may take to end once its graph has."""
+"""Seconds that a supervisor may take to end after its graph."""
 _DOWN_LIMIT = 60.0
-"""Seconds between two ends of processes when a graph goes down."""
+"""Seconds that may pass between the ends of two processes while a graph goes down."""
 _SILENCE_LIMIT = 2.0
 """Seconds that a supervisor may take to answer a request."""
 _SOCKET_LIMIT = 3.0
-"""Seconds that a supervisor may take to see that its socket was removed, and to make it again."""
+"""Seconds that a supervisor may take to notice that its socket was removed and to recreate it."""
 _ANSWERS = ("stopping", "exited", "end", "error")
-"""Events by which a supervisor answers a request to stop; others may have been under way when it was sent."""
-_TOLD = ("up", "step", "said", "note", "exited", "stopping", "error", "end")
-"""Events of the supervisor's that `up --json` prints."""
+"""Events that answer a request to stop; others may have been sent before it arrived."""
+_PUBLISHED = ("up", "step", "said", "note", "exited", "stopping", "error", "end")
+"""Events of the supervisor that `up --json` prints."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
 class LogReader:
-    """Prints what is appended to log files, each line with the name of its node.
+    """Printer of the lines appended to log files, each with the name of its node.
 
     Args:
-        width: Of the names.
-        chosen: Which lines; None for all.
-        as_json: A line of JSON for each, for programs.
+        width: Width of the column of names.
+        chosen: Filter of lines; None for all.
+        as_json: Whether to print each as a line of JSON.
     """
 
     def __init__(
@@ -57,14 +57,14 @@ class LogReader:
         self._colours = {path: _COLOURS[i % len(_COLOURS)] for i, path in enumerate(self._files)}
         self._is_terminal = sys.stdout.isatty() and "NO_COLOR" not in os.environ
         self.count = 0
-        """Lines printed."""
+        """Number of lines printed."""
 
     def show(self, last: int | None = None) -> None:
-        """Print what is new; only the `last` lines of each file if given."""
+        """Print new lines; at most the `last` of each file, if given."""
         for path, (offset, partial) in list(self._files.items()):
             try:
                 with path.open("rb") as file:
-                    if file.seek(0, 2) < offset:  # a new one was begun; the rest is in the one put aside
+                    if file.seek(0, 2) < offset:  # the log was rotated: the rest of the old one is in `.log.1`
                         partial += _rest(path.with_name(f"{path.name}.1"), offset)
                         offset = 0
                     file.seek(offset)
@@ -93,7 +93,7 @@ class LogReader:
 
 
 def _rest(path: Path, offset: int) -> bytes:
-    """What a file has from some place on; nothing if there is none."""
+    """Read a file from an offset on; empty if there is no file."""
     try:
         with path.open("rb") as file:
             file.seek(offset)
@@ -105,16 +105,16 @@ def _rest(path: Path, offset: int) -> bytes:
 def stream(
     run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: Callable[[], str], as_json: bool = False
 ) -> int:
-    """Follow a graph from its start, to its end or until it is up; returns the exit code of `up`.
+    """Follow a graph from its start to its end, or until it is up; return the exit code of `up`.
 
     Args:
-        end: Waits for the guardian, and says what ended it and the supervisor.
-        as_json: Print what happens and what is logged as lines of JSON, too.
+        end: Waits for the guardian; returns a description of how it and the supervisor ended.
+        as_json: Whether to print events and logs as lines of JSON, too.
     """
     interrupts: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda got, _: interrupts.append(got))
-    # This comes first: a graph that fails at once waits for a follower, tells it everything, and is gone.
+    # Connect first: a graph that fails at once waits only for its first follower before it ends.
     try:
         nodes = _list_nodes(run["socket"])
         with ControlClient(run["socket"]) as client:
@@ -125,7 +125,7 @@ def stream(
             raise
         followed = None
     if followed is None:
-        return tell_loss(run, end)
+        return report_loss(run, end)
     if not detach:
         GraphRun(**run).wait_gone(GONE_LIMIT)
     return followed
@@ -154,17 +154,17 @@ class _Stream:
         self._as_json = as_json
         self._run, self._classes, self._client, self._detach = run, classes, client, detach
         self._interrupts = interrupts
-        """Signals that asked to stop, in order of arrival."""
+        """Signals to stop, in order of arrival."""
         self._stop_sent = 0
         self._unanswered_since: float | None = None
-        """When the oldest request to stop was sent that nothing has answered; None without one."""
-        self._has_told_silence = False
+        """Time of the oldest unanswered request to stop; None if there is none."""
+        self._has_reported_silence = False
         self._nodes = nodes
         self._logs: LogReader | None = None
         self._is_up = False
 
     def run(self) -> int | None:
-        """Returns the exit code of `up`; None if the supervisor has gone without a word."""
+        """Return the exit code of `up`; None if the supervisor ended without reporting the end."""
         files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
         self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0), as_json=self._as_json)
         while True:
@@ -186,10 +186,10 @@ class _Stream:
                 reason = "Ctrl-C" if self._interrupts[-1] == signal.SIGINT else "SIGTERM"
                 self._client.send(do="down", now=self._stop_sent > 1, reason=reason)
                 self._unanswered_since = self._unanswered_since or time.monotonic()
-            self._break_silence()
+            self._check_silence()
 
-    def _break_silence(self) -> None:
-        """If the supervisor does not answer: say so, and once asked twice end the graph without it."""
+    def _check_silence(self) -> None:
+        """Report a supervisor that does not answer; after a second request to stop, end the graph without it."""
         since = self._unanswered_since
         if since is None or time.monotonic() - since < _SILENCE_LIMIT:
             return
@@ -197,14 +197,14 @@ class _Stream:
         if self._stop_sent > 1:
             self._unanswered_since = None
             end_silent(run)
-        elif not self._has_told_silence:
-            self._has_told_silence = True
+        elif not self._has_reported_silence:
+            self._has_reported_silence = True
             output.talk(f"{silent(run)}; Ctrl-C again ends the graph without it")
 
     def _show(self, event: dict[str, Any]) -> int | None:
-        """Show one event; returns an exit code when it is the last."""
+        """Show one event; return the exit code if it is the last."""
         what = event["event"]
-        if self._as_json and what in _TOLD:
+        if self._as_json and what in _PUBLISHED:
             more = {"graph": self._run["graph"], "domain": self._run["domain"], "logs": self._run["logs"]}
             output.as_json({**event, **(more | {"nodes": self._nodes} if what == "up" else {})})
         if what == "step":
@@ -222,10 +222,10 @@ class _Stream:
         elif what == "stopping":
             if self._logs is not None and not self._detach:
                 self._logs.show()
-            again = "; Ctrl-C again kills" if event["reason"] == "Ctrl-C" else ""
+            again = "; Ctrl-C again kills it" if event["reason"] == "Ctrl-C" else ""
             output.talk(f"stopping ({event['reason']}){again}")
         elif what == "exited" and event["unexpected"]:
-            self._tell_death(event)
+            self._report_death(event)
         elif what == "error":
             output.error(event["message"])
         elif what == "end":
@@ -236,14 +236,14 @@ class _Stream:
             return int(event["exit_code"]) or (exits.FAILED if has_failed else exits.OK)
         return None
 
-    def _tell_death(self, event: dict[str, Any]) -> None:
+    def _report_death(self, event: dict[str, Any]) -> None:
         if self._logs is not None and not self._detach:
             self._logs.show()
         names = ", ".join(event["nodes"])
         reason = f": {event['error']}" if event["error"] else ""
         follows = ""
         if event.get("again") is not None:
-            follows = f"; it is started again in {event['again']:.1f} s"
+            follows = f"; it is restarted in {event['again']:.1f} s"
         elif event.get("given_up"):
             follows = f"; given up: {event['given_up']}"
         output.error(
@@ -259,20 +259,20 @@ class _Stream:
         for node in self._nodes:
             place = self._classes.get(node["class"], "")
             waits = pending.get(node["node"])
-            label = node["node"] if node["is_named"] else node["node"].removeprefix("/")  # of a process
-            told = f"waits for {waits}" if waits else _shown(place)
-            output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {told}")
+            label = node["node"] if node["is_named"] else node["node"].removeprefix("/")  # or a process
+            note = f"waits for {waits}" if waits else _shown(place)
+            output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {note}")
         output.talk("")
         output.talk("In another terminal:")
         name = next((node["node"] for node in self._nodes if node["is_named"]), "")
         of_node = {
-            f"graphflow node info {name}": "what a node does",
-            f"graphflow param list {name}": "what can be set",
+            f"graphflow node info {name}": "a node's topics, services and actions",
+            f"graphflow param list {name}": "its parameters",
         }
         hints = {
-            "graphflow topic list": "what the nodes say to each other",
-            **(of_node if name else {"graphflow node list": "which nodes there are"}),
-            "graphflow ps": "how the nodes are doing",
+            "graphflow topic list": "all topics",
+            **(of_node if name else {"graphflow node list": "all nodes"}),
+            "graphflow ps": "the states of the nodes",
         }
         if run["domain"] != domain_id():
             hints = {f"export GRAPHFLOW_DOMAIN={run['domain']}": "first: the file has its own domain", **hints}
@@ -286,17 +286,17 @@ class _Stream:
         output.talk("")
 
 
-def tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
-    """Tell of a supervisor that was killed, once nothing is left of its graph; returns the exit code of `up`."""
+def report_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
+    """Report that the supervisor was killed, once its graph has ended; return the exit code of `up`."""
     lost = GraphRun(**run).renewed()
     has_gone = lost.wait_gone(GONE_LIMIT)
-    why = last_words(lost) or (end() if has_gone else silent(lost))
+    why = guardian_report(lost) or (end() if has_gone else silent(lost))
     output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
     return exits.FAILED
 
 
-def last_words(run: GraphRun) -> str:
-    """The report that the guardian has written of a supervisor's death; empty if it could not."""
+def guardian_report(run: GraphRun) -> str:
+    """Return the guardian's report on the supervisor's end from the log; empty if there is none."""
     begin = f"the supervisor, process {run.pid}, was ended"
     for line in reversed(_supervisor_log(Path(run.logs))):
         if line.startswith(begin):
@@ -305,17 +305,17 @@ def last_words(run: GraphRun) -> str:
 
 
 def how_ended(logs: Path) -> str:
-    """The cause of the end of a graph, from its folder of logs; empty if it ended by itself, or none was written."""
+    """Return the cause of a graph's end from its logs; empty if it ended by itself or none was written."""
     for _, run in left_over():
         if run.logs == str(logs):
             return f"the supervisor, process {run.pid}, was killed{', and its guardian' if run.guardian else ''}"
     for line in reversed(_supervisor_log(logs)):
         if line.startswith("the supervisor, process "):
             return line
-        told = line.partition(" INFO ")[2]
-        if told.startswith(('{"event": "error"', '{"event": "stopping"')):
-            with suppress(ValueError):  # a full disk has cut it off
-                event: dict[str, Any] = json.loads(told)
+        entry = line.partition(" INFO ")[2]
+        if entry.startswith(('{"event": "error"', '{"event": "stopping"')):
+            with suppress(ValueError):  # a full disk has truncated it
+                event: dict[str, Any] = json.loads(entry)
                 return str(event["message"] if event["event"] == "error" else f"it was stopped ({event['reason']})")
     return ""
 
@@ -335,7 +335,7 @@ def _shown(place: str) -> str:
 
 
 def take_down(run: GraphRun, *, now: bool, as_json: bool = False) -> int:
-    """Stop a graph and say what ends; returns the exit code. Its consoles are told which terminal has stopped it."""
+    """Stop a graph, print which nodes end, and return the exit code. Its consoles show which terminal stopped it."""
     output.talk(f"stopping graph {run.graph} in domain {run.domain}")
     if not _answers(run):
         end_silent(run)
@@ -359,7 +359,7 @@ def take_down(run: GraphRun, *, now: bool, as_json: bool = False) -> int:
 
 
 def _answers(run: GraphRun) -> bool:
-    """Whether the supervisor answers requests, once it has made its socket again if that was removed."""
+    """Whether the supervisor answers requests; if its socket was removed, wait until it is recreated."""
     deadline = time.monotonic() + _SOCKET_LIMIT
     while not is_portable() and run.is_alive and not Path(run.socket).exists() and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -372,18 +372,18 @@ def _answers(run: GraphRun) -> bool:
 
 
 def silent(run: GraphRun) -> str:
-    """What is the matter with a supervisor that does not answer."""
+    """Describe the state of a supervisor that does not answer."""
     how = "is stopped" if state_of(run.pid) == "T" else "does not answer"
     return f"the supervisor, process {run.pid}, {how}"
 
 
 def end_silent(run: GraphRun) -> None:
-    """End a graph whose supervisor does not answer: it is killed, and its guardian ends the rest."""
+    """Kill a supervisor that does not answer; its guardian then ends the graph's processes."""
     import psutil
 
-    if not run.is_alive:  # it has just gone
+    if not run.is_alive:  # it has just ended
         return
-    output.talk(f"{silent(run)}; it is killed, and its nodes are ended")
+    output.talk(f"{silent(run)}; killing it and ending its nodes")
     with suppress(psutil.Error):
         psutil.Process(run.pid).kill()
         if run.guardian:

@@ -1,4 +1,4 @@
-"""`graphflow top`: what the processes of the running graph cost, and what flows through their nodes."""
+"""`graphflow top`: CPU and memory of the running graph's processes, and message rates of their nodes."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ HEAD = ("PID", "CPU", "MEM", "THREADS", "LAG", "OUT/S", "IN/S", "DROPPED", "NODE
 
 @click.command()
 @click.option(
-    "-d", "--delay", type=click.FloatRange(0.1), default=1.0, show_default=True, help="Seconds between looks."
+    "-d", "--delay", type=click.FloatRange(0.1), default=1.0, show_default=True, help="Seconds between updates."
 )
-@click.option("-M", "--by-memory", is_flag=True, help="The largest first, not the busiest.")
-@click.option("--once", is_flag=True, help="Print one look, and end; so it is without a terminal.")
-@click.option("--json", "as_json", is_flag=True, help="Print one look as JSON.")
+@click.option("-M", "--by-memory", is_flag=True, help="Sort by memory, not by CPU.")
+@click.option("--once", is_flag=True, help="Print once and end; the default without a terminal.")
+@click.option("--json", "as_json", is_flag=True, help="Print once, as JSON.")
 def top(delay: float, by_memory: bool, once: bool, as_json: bool) -> None:
-    """Show what the processes of the running graph cost, the dearest first. Ctrl-C ends it.
+    """Show CPU, memory and message rates of the running graph's processes, the busiest first, until Ctrl-C.
 
     \b
-    PID      8123+2 has started two others, whose costs are among its own
-    LAG      milliseconds that the event loop needed to come round
-    OUT, IN  messages a second that nodes publish, and that reach their subscriptions
-    DROPPED  messages that subscriptions were too slow for, since their start
+    PID      8123+2 has two child processes, which are included
+    LAG      delay of the event loop, in milliseconds
+    OUT, IN  messages per second that nodes publish, and that reach their subscriptions
+    DROPPED  messages that slow subscriptions have dropped since their start
     """  # noqa: D301 - click wants the character
     costs, numbers = Costs(), Numbers()
     with View(domain_id()) as view:
-        _look(view, costs, numbers, by_memory=by_memory)
+        _measure(view, costs, numbers, by_memory=by_memory)
         while True:
             time.sleep(delay)
             view.refresh()
-            found = _look(view, costs, numbers, by_memory=by_memory)
+            found = _measure(view, costs, numbers, by_memory=by_memory)
             if as_json:
                 output.as_json([{**cost._asdict(), **_flows(cost, numbers)} for cost in found])
             elif once or not output.is_terminal():
@@ -58,7 +58,7 @@ def top(delay: float, by_memory: bool, once: bool, as_json: bool) -> None:
             return
 
 
-def _look(view: View, costs: Costs, numbers: Numbers, *, by_memory: bool) -> list[Cost]:
+def _measure(view: View, costs: Costs, numbers: Numbers, *, by_memory: bool) -> list[Cost]:
     numbers.take(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), time.monotonic())
     pids = {token.zid: token.pid for token in view.processes().values() if token.host == host_name()}
     owners: dict[int, list[str]] = {}
@@ -70,7 +70,7 @@ def _look(view: View, costs: Costs, numbers: Numbers, *, by_memory: bool) -> lis
 
 
 def _flows(cost: Cost, numbers: Numbers) -> Mapping[str, float | None]:
-    """What flows through the nodes of a process; None where no process has told."""
+    """Sum up lag and message rates of a process's nodes; the lag is None if the process has not reported it."""
     lags = [numbers.lags[node] for node in cost.nodes if node in numbers.lags]
 
     def rate(kind: str) -> float:

@@ -1,4 +1,4 @@
-"""`graphflow demo` in the console: each example runs until its user has seen what is wrong, ended it, and gone on."""
+"""`graphflow demo` in the console: each example runs until the user ends its deadlock and continues."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _END_LIMIT = 20.0
 
 
 def tour(steps: Sequence[Step]) -> int:
-    """Go through examples, in a copy of their project that may be changed; returns the exit code."""
+    """Show examples, in a copy of their project that the user may change; return the exit code."""
     with TemporaryDirectory(prefix="graphflow-tour-") as folder:
         root = _copy(Path(folder))
         for i, step in enumerate(steps, 1):
@@ -35,7 +35,7 @@ def tour(steps: Sequence[Step]) -> int:
                 left = _visit(root, step, "fixed", where)
             if left != "next":
                 break
-    on = f"; go on another time: graphflow demo deadlock --from {step.name}" if left != "next" else ""
+    on = f"; to continue later: graphflow demo deadlock --from {step.name}" if left != "next" else ""
     output.talk(f"the tour is over, and its graph is down{on}")
     return exits.FAILED if left == "failed" else exits.OK
 
@@ -48,7 +48,7 @@ def _copy(folder: Path) -> Path:
 
 
 def _visit(root: Path, step: Step, kind: str, where: str) -> str:
-    """Run one graph with the console on it; returns how the console was left."""
+    """Run one graph with the console on it; return how the console was left."""
     file = root / "graphs" / "deadlock" / graph_file(step.name, kind).name
     text = file.read_text(encoding="utf-8")
     options: dict[str, Any] = {"title": heading(file), "step": where, "seconds": step.seconds}
@@ -61,17 +61,17 @@ def _visit(root: Path, step: Step, kind: str, where: str) -> str:
 
 @contextmanager
 def _up(file: Path) -> Iterator[GraphRun]:
-    """A graph that runs as long as it is looked at, and no longer than this process."""
+    """Run a graph inside the block, and no longer than this process lives."""
     env = {**os.environ, "GRAPHFLOW_ENDS_WITH": str(os.getpid())}
-    with TemporaryFile("w+") as said:
+    with TemporaryFile("w+") as errors:
         words = [*COMMAND, "up", "--no-console", str(file)]
-        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said, env=env)
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, env=env)
         try:
             deadline = time.monotonic() + _START_LIMIT
             while not (found := [run for run in running() if run.file == str(file)]):
                 if process.poll() is not None or time.monotonic() > deadline:
-                    said.seek(0)
-                    raise SupervisorError(f"{file.name} did not start:\n{said.read()}")
+                    errors.seek(0)
+                    raise SupervisorError(f"{file.name} did not start:\n{errors.read()}")
                 time.sleep(0.02)
             yield found[0]
         finally:
@@ -84,7 +84,7 @@ def _up(file: Path) -> Iterator[GraphRun]:
 
 
 def _windows(options: dict[str, Any], has_turtle: bool) -> dict[str, Any]:
-    """One window: the guide, and beside it what moves, or does not."""
+    """Lay out one window: the guide, and beside it the turtle and the log."""
     beside = [{"view": name} for name in (["turtle"] if has_turtle else []) + ["log"]]
     panes = [{"view": "tour", "options": options, "size": 58}, {"split": "rows", "of": beside, "size": 42}]
     return {"windows": [{"name": "tour", "root": {"split": "columns", "of": panes}}]}

@@ -1,4 +1,4 @@
-"""`graphflow view`: the running graph in Foxglove, Lichtblick and PlotJuggler."""
+"""`graphflow view`: serve the running graph to Foxglove, Lichtblick and PlotJuggler."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 NODE = "foxglove_bridge"
 PORT = 8765
-"""Where viewers look by default."""
+"""The port to which viewers connect by default."""
 
 
 @click.command(short_help="Serve the running graph to Foxglove, Lichtblick and PlotJuggler.")
@@ -26,15 +26,15 @@ PORT = 8765
     "-p", "--port", type=click.IntRange(0, 65535), default=PORT, show_default=True, help="Port of the server."
 )
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address of the server; 0.0.0.0 for all.")
-@click.option("--read-only", is_flag=True, help="Viewers look, and neither publish, nor call, nor set.")
-@click.option("--allow-commands", is_flag=True, help="Viewers on other machines may publish, call and set, too.")
+@click.option("--read-only", is_flag=True, help="Do not let viewers publish, call or set anything.")
+@click.option("--allow-commands", is_flag=True, help="Let viewers on other machines publish, call and set, too.")
 @click.option("--allow-page", "pages", multiple=True, help="Origin of a web page that may connect: https://HOST.")
 @click.option("--node-name", default=NODE, show_default=True, help="Name of the serving node.")
 def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tuple[str, ...], node_name: str) -> int:
-    """Serve the running graph to Foxglove, Lichtblick and PlotJuggler. Ctrl-C ends it.
+    """Serve the running graph to Foxglove, Lichtblick and PlotJuggler, until Ctrl-C.
 
-    Topics, services, parameters and who is connected with whom, over Foxglove's WebSocket protocol. Other machines
-    are served with --host 0.0.0.0; they only look, unless --allow-commands is given.
+    Topics, services, parameters and connections are served over Foxglove's WebSocket protocol. --host 0.0.0.0
+    other machines, too; they can only watch, unless --allow-commands is given.
     """
     if find_spec("websockets") is None:
         from graphflow.introspect.installation import requirement
@@ -53,7 +53,7 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
         bridge = Bridge(node, name, is_read_only=is_read_only, pages=frozenset(pages))
         try:
             found = await bridge.open(host, port)
-            output.data(f"Serving viewers on ws://{_shown(host)}:{found}{'; they only look' if is_read_only else ''}")
+            output.data(f"Serving viewers on ws://{_shown(host)}:{found}{', read-only' if is_read_only else ''}")
             output.talk("In Foxglove or Lichtblick: Open connection, Foxglove WebSocket. Ctrl-C ends it")
             await asyncio.get_running_loop().create_future()
         finally:
@@ -64,7 +64,7 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
 
 
 def _shown(host: str) -> str:
-    """A host as it stands in an address that viewers can open."""
+    """Format a host for an address that viewers can open."""
     try:
         address = ipaddress.ip_address(host)
     except ValueError:

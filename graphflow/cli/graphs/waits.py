@@ -1,4 +1,4 @@
-"""`graphflow waits` and `groups`: who holds what, and who waits for whom."""
+"""`graphflow waits` and `groups`: show which handlers hold slots and wait, and change groups."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ def waits(as_json: bool) -> None:
 
 
 class _Groups(Verbs):
-    """`groups NODE` alongside `groups move ...` and its like."""
+    """`groups NODE` alongside the verbs, such as `groups move`."""
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        # A node stands alone: what has more words after it is a verb, perhaps misspelt.
+        # A node is the only argument: a word with others after it is a verb, perhaps misspelt.
         is_node = args and args[0] not in self.commands and not args[0].startswith("-")
         if is_node and ("/" in args[0] or all(word.startswith("-") for word in args[1:])):
             args = ["show", *args]
@@ -97,7 +97,7 @@ def show(node: str, as_json: bool) -> None:
 
 def _groups_of(read: found.ConcurrencyReport, node: str) -> list[dict[str, Any]]:
     if node not in read.nodes:
-        raise UsageFault(f"{node} is not a graphflow node, or on another machine, so its groups are unknown")
+        raise UsageFault(f"{node} is not a graphflow node, or is on another machine, so its groups are unknown")
     return read.nodes[node]
 
 
@@ -112,9 +112,9 @@ def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
             more = "" if group["when_full"] == "wait" else f", {group['when_full']}"
             output.data(f"  {group['name']}  ({limit}{more}{', in threads' if group['thread'] else ''})")
         elif group["handlers"]:
-            output.data("  in no group  (each queues behind itself only)")
+            output.data("  in no group  (each waits only for its own runs)")
         for handler in group["handlers"]:
-            counts = [] if handler["runs"] is None else [f"{handler['runs']} runs"]  # rclpy's are not counted
+            counts = [] if handler["runs"] is None else [f"{handler['runs']} runs"]  # not counted in rclpy
             counts += [f"{handler[word]} {word}" for word in ("running", "waiting", "errors") if handler[word]]
             output.data(f"    {handler['handler']}  {handler['kind']}  {', '.join(counts)}".rstrip())
 
@@ -132,9 +132,9 @@ _as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @_timeout
 @_as_json
 def move(node: str, handlers: tuple[str, ...], group: str, timeout: float, as_json: bool) -> None:
-    """Move handlers of a running node into another group, made if missing; `none` for no group.
+    """Move handlers of a running node into another group, created if missing; `none` for no group.
 
-    Prints the lines of a graph file that make the move permanent.
+    Print the lines of a graph file that make the move permanent.
     """
     _change(node, [{"handler": handler, "group": group} for handler in handlers], timeout, as_json=as_json)
 
@@ -146,12 +146,12 @@ def move(node: str, handlers: tuple[str, ...], group: str, timeout: float, as_js
 @_timeout
 @_as_json
 def limit(node: str, group: str, number: str, timeout: float, as_json: bool) -> None:
-    """Let so many handlers of a group of a running node run at a time; `none` for any number.
+    """Set how many handlers of a running node's group may run at a time; `none` for any number.
 
-    Prints the lines of a graph file that make the change permanent.
+    Print the lines of a graph file that make the change permanent.
     """
     if number != "none" and not (number.isascii() and number.isdecimal() and int(number[:9]) > 0):
-        raise UsageFault(f"{number!r} is not a limit; write a number from 1 on, or none")
+        raise UsageFault(f"{number!r} is not a limit; write a number of at least 1, or none")
     wanted = {"group": group, "limit": None if number == "none" else int(number[:9])}
     _change(node, [wanted], timeout, as_json=as_json)
 
@@ -159,11 +159,11 @@ def limit(node: str, group: str, number: str, timeout: float, as_json: bool) -> 
 @groups.command()
 @click.argument("node")
 @click.argument("handlers", metavar="HANDLER...", nargs=-1, required=True)
-@click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+@click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
 def thread(node: str, handlers: tuple[str, ...], name: str | None) -> int:
-    """Start a node again with these handlers in threads, where they can block without blocking the event loop.
+    """Restart a node with these handlers in threads, where they may block without blocking the event loop.
 
-    Only `def` handlers run in threads. So it stays until the graph stops.
+    Only `def` handlers can run in threads. The change lasts until the graph stops.
     """
     from graphflow.cli.graphs.nodes import restart_node
 
@@ -185,12 +185,12 @@ def _change(node: str, requests: list[dict[str, Any]], timeout: float, *, as_jso
     with View(domain_id()) as view:
         full = view.node(node)
         try:
-            told = found.change_groups(view, full, [{"node": full, **request} for request in requests], timeout)
+            answer = found.change_groups(view, full, [{"node": full, **request} for request in requests], timeout)
         except RemoteError as error:
             raise UsageFault(error.message) from None
     if as_json:
-        output.as_json({"node": full, **told})
+        output.as_json({"node": full, **answer})
         return
-    _show(full, told["groups"], as_json=False)
-    output.data(f"\nTo keep it so, {told['where']}")
-    output.lines(told["yaml"])
+    _show(full, answer["groups"], as_json=False)
+    output.data(f"\nTo keep it so, {answer['where']}")
+    output.lines(answer["yaml"])

@@ -1,1 +1,1 @@
-"""Messages on the command line: typed, sent, shown, measured, plotted, recorded and played."""
+"""Messages on the command line: publish, print, measure, plot, record and play them."""

@@ -1,4 +1,4 @@
-"""Conditions on messages that are typed on the command line, as in `--filter 'm.data > 3'`."""
+"""Conditions on messages, given on the command line: `--filter 'm.data > 3'`."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from graphflow.errors import UsageFault
 
 
 def compiled(expression: str) -> Callable[[Any], bool]:
-    """A condition on a message `m`, in Python: what is typed here runs here, as in ROS 2.
+    """Compile a condition on a message `m`, a Python expression that is evaluated as in ROS 2.
 
     Raises:
-        UsageFault: It is no expression.
+        UsageFault: It is not an expression; or, when called, it fails.
     """
     try:
         code = compile(expression, "--filter", "eval")
     except (SyntaxError, ValueError) as error:
-        raise UsageFault(f"--filter {expression!r} is no expression: {error}; write for example 'm.data > 3'") from None
+        raise UsageFault(f"--filter {expression!r} is not an expression: {error}; example: 'm.data > 3'") from None
 
     def holds(message: Any) -> bool:
         try:
-            return bool(eval(code, {"m": message}))  # noqa: S307 - the user's own, on the user's own command line
+            return bool(eval(code, {"m": message}))  # noqa: S307 - typed by the user who runs it
         except NameError as error:
             field = f"; write m.{error.name}" if error.name in dir(message) else "; the message is m, as in m.data > 3"
             raise UsageFault(f"--filter {expression!r}: {error}{field}") from None
-        except Exception as error:
+        except Exception as error:  # the user's expression may raise anything
             raise UsageFault(f"--filter {expression!r}: {type(error).__name__}: {error}") from None
 
     return holds

@@ -13,12 +13,12 @@ from graphflow.cli.messages.profiles import qos_options, take_qos
 from graphflow.errors import UsageFault
 from graphflow.qos import BEST_AVAILABLE, Qos
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 
 @dataclass
 class EchoOptions:
-    """The options of `topic echo`, by the names click gives them."""
+    """The options of `topic echo`, under click's names."""
 
     once: bool = False
     timeout: float | None = None
@@ -40,26 +40,26 @@ class EchoOptions:
 
 
 def echo_options(command: F) -> F:
-    """Add `--once`, `--field` and the rest to a command."""
+    """Add `--once`, `--field` and the other options to a command."""
     option, flag = click.option, partial(click.option, is_flag=True)
     options = [
         flag("--once", help="Exit after the first message."),
         option("--timeout", type=click.FloatRange(0, min_open=True), help="Seconds to wait for the first message."),
         option("--field", help="Show only this part, such as linear.x or ranges[0]."),
         option("--filter", "condition", default="", help="Only messages m for which this holds: 'm.data > 3'."),
-        flag("--flow-style", help="Each field on one line."),
-        flag("--csv", help="Values separated by commas."),
-        flag("--raw", help="The bytes of the message."),
+        flag("--flow-style", help="Print each field on one line."),
+        flag("--csv", help="Print comma-separated values."),
+        flag("--raw", help="Print the bytes of the message."),
         flag("--no-arr", help="Leave out the elements of arrays."),
         flag("--no-str", help="Leave out the text of strings."),
         flag("-f", "--full-length", help="Show long arrays and strings in full."),
-        option("-l", "--truncate-length", type=click.IntRange(1), default=128, help="Length to keep. [128]"),
+        option("-l", "--truncate-length", type=click.IntRange(1), default=128, help="Longest array or string. [128]"),
         flag("-i", "--include-message-info", help="Also show sequence number, time and sender."),
-        flag("--no-lost-messages", help="Do not report messages lost on the way."),
+        flag("--no-lost-messages", help="Do not report lost messages."),
         flag("-c", "--clear", help="Clear the screen before each message."),
         option("-n", "--node-name", help="Name of the listening node."),
         qos_options,
-        flag("--json", "as_json", help="One JSON object per line."),
+        flag("--json", "as_json", help="Print one JSON object per line."),
     ]
     for add in reversed(options):
         command = add(command)
@@ -67,7 +67,7 @@ def echo_options(command: F) -> F:
 
 
 def taken(options: dict[str, Any]) -> EchoOptions:
-    """What click has made of the options; unless told otherwise, the QoS fits all current publishers."""
+    """Collect the options from click's; by default, the QoS is compatible with all current publishers."""
     if (options["node_name"] or "").isdigit():
         raise UsageFault("-n is the name of the listening node; to end after the first message: --once")
     options["qos"] = take_qos(options, replace(BEST_AVAILABLE, depth=100))

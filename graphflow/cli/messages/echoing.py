@@ -1,4 +1,4 @@
-"""What `topic echo` does once it knows what to listen for."""
+"""The work of `topic echo`: subscribe to a topic of a known type and print its messages."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Kind
 
 _EVENTS = {0: "REQUEST_SENT", 1: "REQUEST_RECEIVED", 2: "RESPONSE_SENT", 3: "RESPONSE_RECEIVED"}
-"""What a service with introspection tells of: service_msgs/msg/ServiceEventInfo."""
+"""Events of a service with introspection: service_msgs/msg/ServiceEventInfo."""
 DISCOVERY = 0.2
 """Seconds to wait for the topic's publishers to be discovered."""
 
 
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
-    """Print messages until done or stopped; returns the exit code."""
+    """Print messages until done or stopped; return the exit code."""
     path = field_path(options.field, type_name) if options.field else []
     wanted = compiled(options.condition) if options.condition else None
 
@@ -47,8 +47,8 @@ async def _echo(
     path: Path,
     wanted: Callable[[Any], bool] | None,
 ) -> int:
-    await _known(node, topic)
-    on_event = None if options.no_lost_messages else _tell_loss
+    await _discover(node, topic)
+    on_event = None if options.no_lost_messages else _report_loss
     subscription: _Raw | TopicSubscription[Any]
     if options.raw:
         subscription = _Raw(node, type_name, topic, options.qos, wanted)
@@ -73,36 +73,36 @@ async def _echo(
 
 
 class _Raw:
-    """Messages as they came, to be iterated as those of a subscription are; those that find `qos.depth` are left out.
+    """A subscription to undecoded messages, of which at most `qos.depth` are queued; further ones are dropped.
 
     Args:
-        wanted: Which messages are wanted; None for all.
+        wanted: Filter of messages; None for all.
     """
 
     def __init__(self, node: Node, type_name: str, topic: str, qos: Qos, wanted: Callable[[Any], bool] | None) -> None:
-        self._came: asyncio.Queue[tuple[bytes, MessageInfo]] = asyncio.Queue(qos.depth)
+        self._queue: asyncio.Queue[tuple[bytes, MessageInfo]] = asyncio.Queue(qos.depth)
         self._decode = None if wanted is None else registry.codec(type_name).decode
         self._wanted = wanted
         raw.subscribe(node, type_name, topic, self._arrived, qos)
 
     def _arrived(self, payload: bytes, info: MessageInfo) -> None:
-        if not self._came.full():
-            self._came.put_nowait((payload, info))
+        if not self._queue.full():
+            self._queue.put_nowait((payload, info))
 
     async def next_with_info(self) -> tuple[bytes, MessageInfo]:
         while True:
-            payload, info = await self._came.get()
+            payload, info = await self._queue.get()
             if self._wanted is None or self._decode is None or self._wanted(self._decode(payload)):
                 return payload, info
 
 
-def _tell_loss(event: QosEvent) -> None:
+def _report_loss(event: QosEvent) -> None:
     if event.kind == "message_lost":
         output.talk(f"A message was lost!!!\n\ttotal count change:{event.change}\n\ttotal count: {event.total}---")
 
 
-async def _known(node: Node, topic: str) -> None:
-    """Give the graph a moment to report the topic's publishers, whose QoS decides ours."""
+async def _discover(node: Node, topic: str) -> None:
+    """Wait a moment for the topic's publishers to be discovered, since their QoS determines ours."""
     try:
         async with node.clock.timeout(DISCOVERY):
             await node.context.wait_for(lambda: bool(node.context.cache.endpoints(Kind.PUBLISHER, topic)))
@@ -111,7 +111,7 @@ async def _known(node: Node, topic: str) -> None:
 
 
 def render(message: Any, info: MessageInfo, options: EchoOptions, path: Path) -> str:
-    """One message as text."""
+    """Format one message as text."""
     if options.raw:
         return f"{message!r}\n---"
     try:

@@ -1,4 +1,4 @@
-"""What `topic hz`, `topic bw` and `topic delay` do."""
+"""The work of `topic hz`, `topic bw` and `topic delay`: measure arriving messages."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Kind
 
 EVERY = 1.0
-"""Seconds between two lines."""
-LOOK_EVERY = 0.05
-"""Seconds between two looks whether there is something to print."""
-HEARD = replace(BEST_AVAILABLE, durability=Durability.VOLATILE, depth=2000)
-"""What is listened with: nothing that was sent before, and no burst is missed."""
+"""Seconds between two lines of output."""
+POLL = 0.05
+"""Seconds between two checks for new topics and output."""
+QOS = replace(BEST_AVAILABLE, durability=Durability.VOLATILE, depth=2000)
+"""QoS of the subscriptions: no messages from before, and a depth that takes bursts."""
 SILENT = 2.0
-"""Seconds after which it is said that nobody publishes, or that nothing comes."""
+"""Seconds without messages after which a warning is printed."""
 
 
 Take = Callable[[bytes, int, int], object]
-"""Takes in a message that came at a moment of the monotonic clock, and of the clock of stamps, in nanoseconds."""
+"""Function that takes a payload and its times of arrival: on the monotonic clock and on the node's, in nanoseconds."""
 
 
 def hz(topics: list[str], window: int, expression: str, *, as_json: bool) -> int:
-    """Tell how often messages come; returns the exit code."""
+    """Print how often messages arrive; return the exit code."""
     condition = compiled(expression) if expression else None
     rates = {topic: Arrivals(window) for topic in topics}
 
@@ -47,17 +47,17 @@ def hz(topics: list[str], window: int, expression: str, *, as_json: bool) -> int
         decode = registry.codec(type_name).decode
         return lambda payload, now_ns, _: condition(decode(payload)) and add(now_ns)
 
-    def tell(_: int) -> None:
+    def report(_: int) -> None:
         if as_json:
-            _tell_numbers({topic: one.numbers() for topic, one in rates.items()})
+            _print_numbers({topic: one.numbers() for topic, one in rates.items()})
         else:
-            _tell_text(table(rates) if len(topics) > 1 else rates[topics[0]].text())
+            _print_text(table(rates) if len(topics) > 1 else rates[topics[0]].text())
 
-    return visit(lambda node: _measure(node, topics, meter, tell))
+    return visit(lambda node: _measure(node, topics, meter, report))
 
 
 def bw(topics: list[str], window: int, *, as_json: bool) -> int:
-    """Tell how many bytes come; returns the exit code."""
+    """Print how many bytes arrive; return the exit code."""
     weights = {topic: Weights(window) for topic in topics}
     if not as_json:
         output.lines(f"Subscribed to [{topic}]" for topic in topics)
@@ -66,24 +66,24 @@ def bw(topics: list[str], window: int, *, as_json: bool) -> int:
         add = weights[topic].add
         return lambda payload, now_ns, _: add(now_ns, len(payload))
 
-    def tell(now_ns: int) -> None:
+    def report(now_ns: int) -> None:
         if as_json:
-            _tell_numbers({topic: one.numbers(now_ns) for topic, one in weights.items()})
+            _print_numbers({topic: one.numbers(now_ns) for topic, one in weights.items()})
             return
         texts = {topic: words for topic, one in weights.items() if (words := one.text(now_ns))}
-        _tell_text("\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items()))
+        _print_text("\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items()))
 
-    return visit(lambda node: _measure(node, topics, meter, tell))
+    return visit(lambda node: _measure(node, topics, meter, report))
 
 
 def delay(topic: str, window: int, *, as_json: bool) -> int:
-    """Tell how old messages are when they come; returns the exit code."""
+    """Print how old messages are on arrival; return the exit code."""
     delays = Delays(window)
 
     def meter(_: str, type_name: str) -> Take:
         fields = {f.name: f.type.base for f in registry.message_schema(type_name).fields}
         if fields.get("header") != "std_msgs/msg/Header":
-            raise UsageFault(f"{type_name} has no header, and so no stamp to tell a delay by")
+            raise UsageFault(f"{type_name} has no header, so no stamp from which a delay could be measured")
         decode = registry.codec(type_name).decode
 
         def take(payload: bytes, _: int, time_ns: int) -> None:
@@ -92,26 +92,26 @@ def delay(topic: str, window: int, *, as_json: bool) -> int:
 
         return take
 
-    def tell(_: int) -> None:
-        _tell_numbers({topic: delays.numbers()}) if as_json else _tell_text(delays.text())
+    def report(_: int) -> None:
+        _print_numbers({topic: delays.numbers()}) if as_json else _print_text(delays.text())
 
-    return visit(lambda node: _measure(node, [topic], meter, tell))
-
-
-def _tell_text(words: str) -> None:
-    if words:  # of a single message there is nothing to tell yet
-        output.data(words)
+    return visit(lambda node: _measure(node, [topic], meter, report))
 
 
-def _tell_numbers(found: Mapping[str, Mapping[str, float] | None]) -> None:
-    """A line of JSON for each topic of which there is something to tell."""
+def _print_text(text: str) -> None:
+    if text:  # empty after a single message, which has no rate
+        output.data(text)
+
+
+def _print_numbers(found: Mapping[str, Mapping[str, float] | None]) -> None:
+    """Print a line of JSON for each topic with measurements."""
     for topic, numbers in found.items():
         if numbers is not None:
             output.as_json({"topic": topic, **numbers})
 
 
 async def _measure(
-    node: Node, topics: list[str], meter: Callable[[str, str], Take], tell: Callable[[int], None]
+    node: Node, topics: list[str], meter: Callable[[str, str], Take], report: Callable[[int], None]
 ) -> int:
     """Listen to topics, as soon as each is there, and tell of them every second."""
     clock, cache = node.clock, node.context.cache
@@ -129,7 +129,7 @@ async def _measure(
             except (UsageFault, DecodeError) as error:
                 failed.append(UsageFault(str(error)))
 
-        raw.subscribe(node, type_name, topic, arrived, HEARD, type_hash=type_hash)
+        raw.subscribe(node, type_name, topic, arrived, QOS, type_hash=type_hash)
 
     waiting, told = set(topics), 0
     next_ns = (heard_ns := clock.monotonic_ns()) + to_ns(EVERY)
@@ -139,13 +139,13 @@ async def _measure(
             for publisher in cache.endpoints(Kind.PUBLISHER, topic)[:1]:
                 waiting.discard(topic)
                 listen(topic, publisher.type, publisher.hash)
-        await clock.sleep(LOOK_EVERY)
+        await clock.sleep(POLL)
         now_ns = clock.monotonic_ns()
         if now_ns >= next_ns:
             next_ns += to_ns(EVERY)
             if count > told:
                 told, heard_ns, is_silence_told = count, now_ns, False
-                tell(now_ns)
+                report(now_ns)
         if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
             is_silence_told = True
             for topic in sorted(waiting):

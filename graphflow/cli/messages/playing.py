@@ -1,4 +1,4 @@
-"""What `bag play` does once it knows what to play."""
+"""The work of `bag play`: play a bag with keys, services and a progress line."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ from graphflow.msgs.rosbag2_interfaces.srv import (
 from graphflow.runtime.node import Node
 
 STAY = 0.2
-"""Seconds that the publishers stay after the last message, until it has gone out."""
+"""Seconds that the publishers stay after the last message, so that it is delivered."""
 SHOWN_EVERY = 0.2
 
 
 def run(path: Path, options: PlayOptions, name: str, *, keys: bool = True, burst: int | None = None) -> int:
-    """Play until done or stopped; returns the exit code.
+    """Play until done or stopped; return the exit code.
 
     Args:
-        burst: Only so many messages, all at once; 0 for all of them.
+        burst: Number of messages to publish at once, 0 for all; None to play in time.
     """
     bag = Bag(path)
     if not bag.contents.is_whole:
@@ -58,16 +58,16 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
         output.talk(f"note: {bag.path}: {line}")
     _serve(node, player)
 
-    def key(word: str) -> None:
-        if word == " ":
+    def handle(key: str) -> None:
+        if key == " ":
             player.is_paused = not player.is_paused
-        elif word in (RIGHT, "s", "S"):
+        elif key in (RIGHT, "s", "S"):
             player.step()
-        elif word in (UP, DOWN):
-            player.rate = min(max(player.rate * (1.1 if word == UP else 1 / 1.1), MIN_RATE), MAX_RATE)
+        elif key in (UP, DOWN):
+            player.rate = min(max(player.rate * (1.1 if key == UP else 1 / 1.1), MIN_RATE), MAX_RATE)
 
     began = time.monotonic()
-    with pressed(key) if keys else contextlib.nullcontext(False) as has_keys:
+    with pressed(handle) if keys else contextlib.nullcontext(False) as has_keys:
         hint = " SPACE pauses, RIGHT steps, UP and DOWN change the rate, Ctrl-C ends it." if has_keys else ""
         output.talk(f"playing {topics_of(len(player.topics))} of {bag.path}.{hint}")
         shown = asyncio.ensure_future(_show(player, bag)) if sys.stderr.isatty() else None
@@ -83,7 +83,7 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
 
 
 async def _show(player: Player, bag: Bag) -> None:
-    """Where in the bag it is, in one line that is written over and over."""
+    """Show the position in the bag as a progress line."""
     whole = bag.contents
     span = (whole.end_ns - whole.start_ns) / 1e9
     while True:
@@ -94,7 +94,7 @@ async def _show(player: Player, bag: Bag) -> None:
 
 
 def _serve(node: Node, player: Player) -> None:
-    """Offer the services of ROS 2's player."""
+    """Provide the services of ROS 2's player."""
 
     def paused(value: bool | None, answer: Any) -> Any:
         player.is_paused = not player.is_paused if value is None else value

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import click
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 
 def plot_options(command: F) -> F:
-    """Add what says where the picture goes."""
+    """Add the options for the output of a plot to a command."""
     file = click.Path(dir_okay=False)
     for add in (
-        click.option("--csv", "as_csv", is_flag=True, help="The numbers themselves: seconds, name, value."),
-        click.option("--png", type=file, help="Into a PNG file."),
-        click.option("--svg", type=file, help="Into an SVG file."),
+        click.option("--csv", "as_csv", is_flag=True, help="Print the numbers: seconds, name, value."),
+        click.option("--png", type=file, help="Write a PNG file."),
+        click.option("--svg", type=file, help="Write an SVG file."),
     ):
         command = add(command)
     return command

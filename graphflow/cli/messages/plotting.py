@@ -1,4 +1,4 @@
-"""What `topic plot` and `bag plot` do."""
+"""The work of `topic plot` and `bag plot`: draw numbers of messages as curves."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ from graphflow.runtime.node import Node
 EVERY = 0.2
 """Seconds between two pictures on a terminal."""
 HEIGHT = 24
-"""Rows of a picture that goes to a file or a pipe."""
+"""Rows of a picture that is printed once."""
 DOTS = 150
 """Dots per inch of a PNG file."""
 
 
 @dataclass(frozen=True)
 class PlotOptions:
-    """The options of both verbs, by the names click gives them."""
+    """The options of both verbs, under click's names."""
 
     seconds: float = 30.0
-    """What a terminal shows."""
+    """Seconds shown on a terminal."""
     duration: float | None = None
     svg: str | None = None
     png: str | None = None
     as_csv: bool = False
 
     def check(self) -> None:
-        """Find out early what would fail in the end.
+        """Check early what would otherwise fail only at the end.
 
         Raises:
-            UsageFault: What draws files is not installed, or there is no such folder.
+            UsageFault: Matplotlib is not installed, or a file's folder does not exist.
         """
         for file in filter(None, (self.svg, self.png)):
             if not Path(file).parent.is_dir():
@@ -61,20 +61,20 @@ class PlotOptions:
 
     @property
     def is_live(self) -> bool:
-        """Whether the picture moves on a terminal."""
+        """Whether the picture is updated on a terminal."""
         return not (self.svg or self.png or self.as_csv) and sys.stdout.isatty()
 
 
 def wanted(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]]:
-    """The topics that are meant, and of each the fields; none for all numbers.
+    """Parse words into topics and the fields of each; no fields stand for all numbers.
 
     Args:
         words: `/pose`, `/pose.x,theta`, `/pose/x` or `/pose/linear/x`, as rqt_plot and PlotJuggler write fields.
-        topics: Those that are there.
+        topics: The existing topics.
     """
     found: dict[str, list[str]] = {}
     for word in words:
-        name, fields = _parted(word)
+        name, fields = _split(word)
         full = expand(name, "/", "cli")
         listed = [field for field in fields.split(",") if field]
         if full not in topics and not listed:
@@ -85,8 +85,8 @@ def wanted(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]
     return found
 
 
-def _parted(word: str) -> tuple[str, str]:
-    """What stands before the first dot, and behind it; an element, `ranges[0]`, belongs to what is behind."""
+def _split(word: str) -> tuple[str, str]:
+    """Split a word at its first dot; without a dot, `ranges[0]` is split off at the last slash."""
     name, dot, fields = word.partition(".")
     if not dot and "[" in name:
         name, _, fields = name.rpartition("/")
@@ -94,7 +94,7 @@ def _parted(word: str) -> tuple[str, str]:
 
 
 def curves_of(meant: Mapping[str, list[str]], types: Mapping[str, str]) -> dict[str, list[Curve]]:
-    """The curves to draw, by topic.
+    """Return the curves to draw, by topic.
 
     Raises:
         UsageFault: A topic has no such field, or no numbers.
@@ -110,13 +110,13 @@ def curves_of(meant: Mapping[str, list[str]], types: Mapping[str, str]) -> dict[
 
 
 def live(meant: Mapping[str, list[str]], types: Mapping[str, str], options: PlotOptions) -> int:
-    """Draw topics as their messages come; returns the exit code."""
+    """Draw topics as their messages arrive; return the exit code."""
     curves = curves_of(meant, types)
     return visit(lambda node: _listen(node, curves, types, options))
 
 
 def recorded(path: Path, words: Sequence[str], start: float, end: float | None, options: PlotOptions) -> int:
-    """Draw topics of a bag over the seconds since its beginning; returns the exit code."""
+    """Draw topics of a bag over the seconds since its beginning; return the exit code."""
     bag = Bag(path)
     topics = bag.contents.topics
     meant = wanted(words, topics)
@@ -128,9 +128,9 @@ def recorded(path: Path, words: Sequence[str], start: float, end: float | None, 
     zero = bag.contents.start_ns
     start_ns = zero + int(start * 1e9)
     end_ns = None if end is None else zero + int(end * 1e9)
-    for said in typed.read(path, meant, start_ns=start_ns, end_ns=end_ns):
-        for curve in curves[said.topic]:
-            curve.add((said.time_ns - zero) / 1e9, said.message)
+    for record in typed.read(path, meant, start_ns=start_ns, end_ns=end_ns):
+        for curve in curves[record.topic]:
+            curve.add((record.time_ns - zero) / 1e9, record.message)
     return _finished(curves, options)
 
 
@@ -156,7 +156,7 @@ async def _listen(node: Node, curves: Mapping[str, list[Curve]], types: Mapping[
                 await node.clock.sleep(EVERY)
                 if options.is_live:
                     _show(curves, node.clock.monotonic_ns() / 1e9 - zero, options.seconds)
-    except (TimeoutError, asyncio.CancelledError):  # the time is over, or Ctrl-C
+    except (TimeoutError, asyncio.CancelledError):  # --duration has passed, or Ctrl-C
         return exits.OK if options.is_live else _finished(curves, options)
 
 
@@ -170,7 +170,7 @@ def _show(curves: Mapping[str, list[Curve]], now: float, seconds: float) -> None
 
 
 def _finished(curves: Mapping[str, list[Curve]], options: PlotOptions) -> int:
-    """Give out the picture of all that came."""
+    """Output the finished picture, or the numbers; return the exit code."""
     every = _all(curves)
     title = next(iter(curves)) if len(curves) == 1 else ""
     if all(curve.is_empty for curve in every):
@@ -192,12 +192,12 @@ def _finished(curves: Mapping[str, list[Curve]], options: PlotOptions) -> int:
 
 
 def _nothing(curves: Mapping[str, list[Curve]]) -> str:
-    """Why there is no picture."""
+    """Explain why there is no picture."""
     came = {topic: len(some[0].values) for topic, some in curves.items() if some[0].values}
     if not came:
-        return f"no message of {', '.join(curves)} has come"
+        return f"no message of {', '.join(curves)} has arrived"
     return "; ".join(
-        f"{count} messages of {topic} came, and none had {' or '.join(curve.label for curve in curves[topic])}"
+        f"{count} messages of {topic} arrived, but none had {' or '.join(curve.label for curve in curves[topic])}"
         for topic, count in came.items()
     )
 

@@ -12,7 +12,7 @@ import click
 from graphflow.qos import PROFILES, Durability, History, Liveliness, Qos, Reliability
 from graphflow.times import to_ns
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 _ENUMS: dict[str, type[IntEnum]] = {
     "history": History,
@@ -23,16 +23,16 @@ _ENUMS: dict[str, type[IntEnum]] = {
 
 
 def qos_options(command: F) -> F:
-    """Add `--qos-profile`, `--qos-depth` and the rest to a command."""
+    """Add `--qos-profile`, `--qos-depth` and the other QoS options to a command."""
     options = [
         click.option("--qos-profile", type=click.Choice(list(PROFILES)), help="Start from this profile."),
-        click.option("--qos-depth", type=click.IntRange(1), help="Messages kept."),
+        click.option("--qos-depth", type=click.IntRange(1), help="Number of messages kept."),
         *(
-            click.option(f"--qos-{name}", type=click.Choice([m.name.lower() for m in enum]), help=f"The {name}.")
+            click.option(f"--qos-{name}", type=click.Choice([m.name.lower() for m in enum]), help=f"The {name} policy.")
             for name, enum in _ENUMS.items()
         ),
         click.option(
-            "--qos-liveliness-lease-duration-seconds", type=click.FloatRange(0, min_open=True), help="The lease."
+            "--qos-liveliness-lease-duration-seconds", type=click.FloatRange(0, min_open=True), help="Liveliness lease."
         ),
     ]
     for option in reversed(options):
@@ -41,7 +41,7 @@ def qos_options(command: F) -> F:
 
 
 def take_qos(options: dict[str, Any], default: Qos) -> Qos:
-    """Take the QoS options out of a command's; what they leave open is as in `default`."""
+    """Remove the QoS options from a command's and return their QoS; policies not given are those of `default`."""
     profile = options.pop("qos_profile")
     given: dict[str, Any] = {"depth": options.pop("qos_depth")}
     for name, enum in _ENUMS.items():

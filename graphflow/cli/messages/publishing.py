@@ -1,4 +1,4 @@
-"""What `topic pub` does once it has a message."""
+"""The work of `topic pub`: publish messages once, repeatedly or as a series."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
 
 REACH_LIMIT = 2.0
-"""Seconds that the way to an announced subscription may take."""
+"""Seconds that the route to an announced subscription may take to be set up."""
 
 UNHEARD_AFTER = 1.5
-"""Seconds after which it is said that nobody hears what is published."""
+"""Seconds without a subscription after which a warning is printed."""
 
 
 @dataclass
 class PubOptions:
-    """The options of `topic pub`, by the names click gives them."""
+    """The options of `topic pub`, under click's names."""
 
     rate: float = 1.0
     once: bool = False
@@ -39,19 +39,19 @@ class PubOptions:
     node_name: str | None = None
     qos: Qos = DEFAULT
     is_series: bool = False
-    """Whether each message is sent once, one after the other; otherwise there is one, which is sent again and again."""
+    """Whether each message is published once, in order; otherwise a single message is published repeatedly."""
 
 
 class Draft(NamedTuple):
-    """A message to be sent."""
+    """A message to be published."""
 
     message: Message
     stamps: Sequence[Path] = ()
-    """Fields that get the time at which it is sent."""
+    """Fields that are set to the time of publication."""
 
 
 def run(topic: str, drafts: Sequence[Draft], options: PubOptions) -> int:
-    """Publish until done or stopped; returns the exit code."""
+    """Publish until done or stopped; return the exit code."""
 
     async def work(node: Node) -> int:
         return await _publish(node, topic, drafts, options)
@@ -73,11 +73,11 @@ async def _publish(node: Node, topic: str, drafts: Sequence[Draft], options: Pub
         await _wait_until_reached(node, publisher)
     output.data("publisher: beginning loop")
     began_ns = node.clock.monotonic_ns()
-    is_told = False
+    has_warned = False
     async for n in node.clock.every(hz=options.rate):
-        if not is_told and not publisher.is_wanted and node.clock.monotonic_ns() - began_ns > to_ns(UNHEARD_AFTER):
-            is_told = True
-            output.talk(f"no node hears {topic} so far{await _near(node, topic)}")
+        if not has_warned and not publisher.is_wanted and node.clock.monotonic_ns() - began_ns > to_ns(UNHEARD_AFTER):
+            has_warned = True
+            output.talk(f"no node subscribes to {topic} so far{await _near(node, topic)}")
         message, stamps = drafts[n % len(drafts)]
         stamp(message, stamps, node.clock.time_ns())
         if options.print_every and n % options.print_every == 0:
@@ -100,21 +100,21 @@ async def _wait_for_subscriptions(node: Node, topic: str, needed: int, limit: fl
         return await _within(node, enough, limit)
     if await _within(node, enough, UNHEARD_AFTER):
         return True
-    there = len(node.context.cache.endpoints(Kind.SUBSCRIPTION, topic))
-    heard = f"{there} of {needed} nodes listen to" if there else "no node listens to"
+    count = len(node.context.cache.endpoints(Kind.SUBSCRIPTION, topic))
+    state = f"{count} of {needed} nodes subscribe to" if count else "no node subscribes to"
     near = await _near(node, topic)
-    output.talk(f"{heard} {topic} so far; Ctrl-C ends the waiting, and -w 0 publishes without it{near}")
+    output.talk(f"{state} {topic} so far; Ctrl-C ends the wait, and -w 0 publishes without it{near}")
     return await _within(node, enough, float(10**9) if limit is None else limit - UNHEARD_AFTER)
 
 
 async def _near(node: Node, topic: str) -> str:
-    """The topic that is probably meant, of those that somebody listens to; else the domain that is."""
-    listened = {e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)} - {topic}
-    return did_you_mean(topic, (), hidden=listened) or await alone_here(node.context, node.full_name)
+    """Suggest the topic with subscriptions, or else the domain, that was probably meant."""
+    others = {e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)} - {topic}
+    return did_you_mean(topic, (), hidden=others) or await alone_here(node.context, node.full_name)
 
 
 async def _within(node: Node, holds: Callable[[], bool], limit: float) -> bool:
-    """Wait until something holds of the graph; returns whether it did in time."""
+    """Wait until a condition on the graph holds; return whether it did in time."""
     try:
         async with node.clock.timeout(limit):
             await node.context.wait_for(holds)
@@ -124,7 +124,7 @@ async def _within(node: Node, holds: Callable[[], bool], limit: float) -> bool:
 
 
 async def _wait_until_reached(node: Node, publisher: TopicPublisher[Any]) -> None:
-    """Wait, not for long, until what is published reaches somebody: a subscription is announced before the way is."""
+    """Wait briefly for the route to a subscription: Zenoh announces the subscription before it sets up the route."""
     until_ns = node.clock.monotonic_ns() + to_ns(REACH_LIMIT)
     while not publisher.is_wanted and node.clock.monotonic_ns() < until_ns:
         await node.clock.sleep(0.01)

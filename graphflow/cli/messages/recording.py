@@ -1,4 +1,4 @@
-"""What `bag record` does once it knows what to record."""
+"""The work of `bag record`: record a choice of topics with keys, services and a progress line."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ from graphflow.names import check_node_name, expand
 from graphflow.qos import Qos
 from graphflow.runtime.node import Node
 
-TOLD_EVERY = 1.0
-"""Seconds between two looks at how it goes, at a terminal."""
+SHOWN_EVERY = 1.0
+"""Seconds between two updates of the progress line."""
 REPEATED = 1000
-"""Messages of a topic that are repeated at most."""
+"""Most messages of a topic that are repeated in each file."""
 SLOWEST, FASTEST = 1e-6, 1e6
-"""Messages a second that a topic can be recorded at."""
+"""Bounds of a topic's recording rate, in Hz."""
 SILENT = 2.0
-"""Seconds after which it is told that topics have not appeared."""
+"""Seconds after which missing topics are reported."""
 
 
 @dataclass
 class RecordOptions:
-    """The options of `bag record`, by the names click gives them."""
+    """The options of `bag record`, under click's names."""
 
     folder: Path | None = None
     storage: str = "mcap"
@@ -64,7 +64,7 @@ class RecordOptions:
 
 
 def run(choice: Choice, options: RecordOptions) -> int:
-    """Record until stopped; returns the exit code."""
+    """Record until stopped; return the exit code."""
     check_node_name(options.node_name)
     qos = {} if options.qos_path is None else read_overrides(options.qos_path)
     custom = dict(_pair(word) for word in options.custom_data)
@@ -98,7 +98,7 @@ def _pair(word: str) -> tuple[str, str]:
 
 
 def _by_topic(option: str, words: tuple[str, ...]) -> dict[str, int]:
-    """Numbers by full name, of TOPIC=NUMBER, or 1 for TOPIC."""
+    """Parse TOPIC=NUMBER, or TOPIC for 1, into numbers by full name."""
     found = {}
     for word in " ".join(words).split():
         name, _, number = word.partition("=")
@@ -109,7 +109,7 @@ def _by_topic(option: str, words: tuple[str, ...]) -> dict[str, int]:
 
 
 def _rates(words: tuple[str, ...]) -> dict[str, float]:
-    """Messages a second by full name, of TOPIC=HZ."""
+    """Parse TOPIC=HZ into rates by full name."""
     found = {}
     for word in " ".join(words).split():
         name, sign, number = word.partition("=")
@@ -142,27 +142,27 @@ async def _record(
         leaves=not options.ignore_leaf_topics,
         rates=rates,
         snapshot=options.snapshot_mode,
-        told=lambda text: _tell(node, text),
+        told=lambda text: _report(node, text),
     )
     recorder.is_paused = options.start_paused
     _serve(node, recorder)
-    _tell(node, "Listening for topics...")
+    _report(node, "Listening for topics...")
     code = exits.OK
 
     def key(pressed_key: str) -> None:
         if pressed_key == " ":
             recorder.is_paused = not recorder.is_paused
-            _tell(node, "Paused" if recorder.is_paused else "Resumed")
+            _report(node, "Paused" if recorder.is_paused else "Resumed")
         elif pressed_key in "sS" and recorder.take_snapshot():
-            _tell(node, "Snapshot taken")
+            _report(node, "Snapshot taken")
 
     began = time.monotonic()
     with contextlib.nullcontext(False) if options.disable_keyboard_controls else pressed(key) as has_keys:
         if has_keys:
             keys = "SPACE pauses, S takes a snapshot" if options.snapshot_mode else "SPACE pauses"
-            _tell(node, f"Recording into {writer.folder}. {keys}, Ctrl-C ends it")
+            _report(node, f"Recording into {writer.folder}. {keys}, Ctrl-C ends it")
         else:
-            _tell(node, f"Recording into {writer.folder}")
+            _report(node, f"Recording into {writer.folder}")
         shown = asyncio.ensure_future(_show(recorder, began)) if sys.stderr.isatty() else None
         warned = asyncio.ensure_future(_warn_later(node, recorder))
         try:
@@ -189,14 +189,14 @@ def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -
     written = (
         f"{whole.message_count:,} messages of {topics_of(recorder.topics)} in {seconds:.1f} s, {size(writer.size)}"
     )
-    _tell(node, f"Recording stopped: {written} in {writer.folder}")
+    _report(node, f"Recording stopped: {written} in {writer.folder}")
     if recorder.dropped:
         output.talk(f"WARNING: {recorder.dropped:,} messages were dropped: they came faster than they could be written")
     if recorder.lost:
-        output.talk(f"WARNING: {recorder.lost:,} messages never arrived, by the numbers of their publishers")
+        output.talk(f"WARNING: {recorder.lost:,} messages never arrived, by the sequence numbers of their publishers")
     _warn_of_missing(node, recorder)
     if not recorder.topics:
-        output.talk("no topic was there to be recorded; `graphflow topic list` shows those that are")
+        output.talk("no topic appeared to be recorded; `graphflow topic list` shows all topics")
 
 
 async def _warn_later(node: Node, recorder: Recorder) -> None:
@@ -207,17 +207,17 @@ async def _warn_later(node: Node, recorder: Recorder) -> None:
 
 
 def _warn_of_missing(node: Node, recorder: Recorder) -> None:
-    """Tell of topics that were named and have not appeared."""
+    """Warn about topics that were named but have not appeared."""
     for name in recorder.missing:
         service, cache = name.removesuffix(EVENTS), node.context.cache
         output.talk(f"WARNING: {cache.unpublished(name) if service == name else cache.without_events(service)}")
 
 
 async def _show(recorder: Recorder, began: float) -> None:
-    """How it goes, in one line that is written over and over."""
+    """Show the state of the recording as a progress line."""
     last, at = 0, began
     while True:
-        await asyncio.sleep(TOLD_EVERY)
+        await asyncio.sleep(SHOWN_EVERY)
         now = time.monotonic()
         rate, last, at = (recorder.recorded - last) / (now - at), recorder.recorded, now
         lost = f", {recorder.dropped + recorder.lost:,} lost" if recorder.dropped + recorder.lost else ""
@@ -226,7 +226,7 @@ async def _show(recorder: Recorder, began: float) -> None:
 
 
 def _serve(node: Node, recorder: Recorder) -> None:
-    """Offer the services of ROS 2's recorder."""
+    """Provide the services of ROS 2's recorder."""
 
     def pause(_: Any) -> Any:
         recorder.is_paused = True
@@ -247,7 +247,7 @@ def _serve(node: Node, recorder: Recorder) -> None:
     node.create_service(Snapshot, "~/snapshot", lambda _: Snapshot.Response(success=recorder.take_snapshot()))
 
 
-def _tell(node: Node, text: str) -> None:
-    """A line as ROS 2's recorder writes it."""
+def _report(node: Node, text: str) -> None:
+    """Print a line in the format of ROS 2's recorder."""
     output.progress("")
     output.talk(f"[INFO] [{node.clock.time_ns() / 1e9:.9f}] [{node.name}]: {text}")

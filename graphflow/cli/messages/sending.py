@@ -1,4 +1,4 @@
-"""What `action send_goal` does once it has a goal."""
+"""The work of `action send_goal`: send a goal and follow it to its end."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ STRAGGLERS = 0.1
 """Seconds in which feedback may still arrive after the goal has ended."""
 
 
-class _Words(NamedTuple):
-    """How it is told what becomes of a goal."""
+class _Reporter(NamedTuple):
+    """Output of a goal's progress, as text or as JSON."""
 
     as_json: bool
 
-    def tell(self, text: str, event: str = "", **more: Any) -> None:
-        """Print a text or, for programs, an event; a text without one is not for them."""
+    def report(self, text: str, event: str = "", **more: Any) -> None:
+        """Print the text or, as JSON, the event; a text without an event is left out of JSON."""
         if not self.as_json:
             output.data(text)
         elif event:
@@ -33,61 +33,61 @@ class _Words(NamedTuple):
 
 
 def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float, as_json: bool = False) -> int:
-    """Send a goal and follow it to its end; returns the exit code."""
-    words = _Words(as_json)
+    """Send a goal and follow it to its end; return the exit code."""
+    reporter = _Reporter(as_json)
 
     async def work(node: Node) -> int:
         client = node.create_action_client(type_, name)
-        words.tell("Waiting for an action server to become available...")
+        reporter.report("Waiting for an action server to become available...")
         try:
             await client.expect_ready(timeout)
         except ServiceUnavailable as error:
             output.error(str(error))
             return exits.TIMEOUT
-        words.tell(f"Sending goal:\n{_shown(goal)}")
+        reporter.report(f"Sending goal:\n{_shown(goal)}")
         try:
-            return await _follow(client.send(goal, timeout=timeout), show_feedback, words)
+            return await _follow(client.send(goal, timeout=timeout), show_feedback, reporter)
         except GoalRejected as error:
-            words.tell("Goal was rejected.", "rejected")
+            reporter.report("Goal was rejected.", "rejected")
             output.talk(str(error))
             return exits.FAILED
 
     return visit(work)
 
 
-async def _follow(sending: Any, show_feedback: bool, words: _Words) -> int:
+async def _follow(sending: Any, show_feedback: bool, reporter: _Reporter) -> int:
     sent: ClientGoalHandle[Any, Any, Any] | None = None
     try:
         async with sending as sent:
             assert sent is not None
-            words.tell(f"Goal accepted with ID: {sent.goal_id.hex()}\n", "accepted", goal_id=sent.goal_id.hex())
+            reporter.report(f"Goal accepted with ID: {sent.goal_id.hex()}\n", "accepted", goal_id=sent.goal_id.hex())
             try:
                 if show_feedback:
-                    await _show_feedback(sent, words)
-                    # The result takes another path through the network than feedback and may overtake the last of it.
+                    await _show_feedback(sent, reporter)
+                    # The result takes another route than feedback and may overtake the last of it.
                     await asyncio.sleep(STRAGGLERS)
-                    await _show_feedback(sent, words)
-                return await _result(sent, words)
+                    await _show_feedback(sent, reporter)
+                return await _result(sent, reporter)
             except CancelledError:
-                words.tell("Canceling goal...", "canceling")
+                reporter.report("Canceling goal...", "canceling")
                 raise
     except CancelledError:
         if sent is not None:
             is_canceled = sent.status.name == "CANCELED"
-            words.tell(
+            reporter.report(
                 "Goal canceled." if is_canceled else f"Goal is {sent.status.name}.", "end", status=sent.status.name
             )
             return exits.OK if is_canceled else exits.FAILED
-        words.tell("Goal withdrawn before it was accepted.", "withdrawn")
+        reporter.report("Goal withdrawn before it was accepted.", "withdrawn")
         raise
 
 
-async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> None:
+async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter) -> None:
     async for feedback in sent.feedback():
-        words.tell(f"Feedback:\n{_shown(feedback)}", "feedback", feedback=plain(feedback))
+        reporter.report(f"Feedback:\n{_shown(feedback)}", "feedback", feedback=plain(feedback))
 
 
-async def _result(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> int:
+async def _result(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter) -> int:
     code = exits.FAILED
     try:
         result = await sent.result()
@@ -98,8 +98,8 @@ async def _result(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> int:
     except GoalLost as error:
         output.error(str(error))
         return exits.FAILED
-    words.tell(f"Result:\n{_shown(result)}", "result", result=plain(result))
-    words.tell(f"Goal finished with status: {sent.status.name}", "end", status=sent.status.name)
+    reporter.report(f"Result:\n{_shown(result)}", "result", result=plain(result))
+    reporter.report(f"Goal finished with status: {sent.status.name}", "end", status=sent.status.name)
     return code
 
 

@@ -1,4 +1,4 @@
-"""`header: auto` and `stamp: now` in messages that are typed, as ROS 2 takes them: the time at which each is sent."""
+"""`header: auto` and `stamp: now` in messages on the command line: the time of publication, as in ROS 2."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ Path = tuple[str, ...]
 
 
 def taken(type_name: str, values: Any) -> tuple[Any, list[Path]]:
-    """The values without these words, and the fields that they stood for.
+    """Remove `auto` and `now` from the values of a message; return the rest and the fields to stamp.
 
     Args:
         type_name: The message's type.
-        values: What was typed, as YAML.
+        values: The parsed YAML.
     """
     if not isinstance(values, dict):
         return values, []
@@ -37,7 +37,7 @@ def taken(type_name: str, values: Any) -> tuple[Any, list[Path]]:
 
 
 def stamp(message: Any, paths: Iterable[Path], time_ns: int) -> None:
-    """Put a time into these fields of a message."""
+    """Set fields of a message to a time."""
     for path in paths:
         field = message
         for name in path:

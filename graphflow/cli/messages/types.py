@@ -1,4 +1,4 @@
-"""Types on the command line: the project's own are known, and may differ from those in the graph."""
+"""Types on the command line: find the project's own, and compare given types with those of the graph."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from graphflow.names import did_you_mean
 
 
 def use_project() -> None:
-    """Make the interfaces of the project around the working directory known."""
+    """Register the interfaces of the project around the working directory."""
     from pathlib import Path
 
     from graphflow.workspace.project import add_interfaces, project_root
@@ -20,7 +20,7 @@ def use_project() -> None:
 
 
 def names_of_type(names: Mapping[str, list[str]], type_name: str, *, only_count: bool) -> list[str]:
-    """What `find` prints: the names that have a type, or how many.
+    """Return the names that have a type, or their number, as the verbs `find` print them.
 
     Args:
         names: Names with their types.
@@ -41,17 +41,17 @@ def names_of_type(names: Mapping[str, list[str]], type_name: str, *, only_count:
 def type_of_word(
     word: str, name: str, known: Collection[str], others: Collection[str] = (), command: str = "", rest: str = ""
 ) -> str:
-    """The full name of the type that a word of the command line is.
+    """Return the full name of the type that a word of the command line gives.
 
     Args:
-        word: It stands where the type of `name` does.
+        word: The word in the place of the type of `name`.
         known: The types that nodes announce for the name.
-        others: Other names of the graph, which the word may have been meant as.
-        command: As in `service call`, for the line to type.
-        rest: The values as they were meant, if the word is one of them.
+        others: Other names of the graph, one of which may have been meant.
+        command: Such as `service call`, for the suggested command.
+        rest: The values as they were probably meant, if the word is one of them.
 
     Raises:
-        UsageFault: It is no type; the text says what it was taken for.
+        UsageFault: It is not a type; the text suggests the right command.
     """
     from graphflow.msgs import registry
 
@@ -60,39 +60,39 @@ def type_of_word(
     except GraphflowError as error:
         other = f"/{word.lstrip('/')}"
         if word.startswith("/") or other in others:
-            why = f"{other} needs a command of its own, as in another terminal"
+            why = f"{other} needs a command of its own, in another terminal"
         elif known:
-            why = f"that is {' and '.join(known)}"
+            why = f"its type is {' and '.join(known)}"
             if command and len(known) == 1 and "/" not in word:
                 why += f": graphflow {command} {name} {next(iter(known))} {rest or '...'}"
         else:
             why = str(error)
-        raise UsageFault(f"{word!r} was taken for the type of {name}; {why}") from None
+        raise UsageFault(f"{word!r} was read as the type of {name}; {why}") from None
 
 
 def check_kind(type_name: str, kind: str) -> None:
-    """See that a type is a message, a service or an action, as a command takes it.
+    """Check that a type is of the kind that a command takes: a message, a service or an action.
 
     Args:
         kind: `msg`, `srv` or `action`.
 
     Raises:
-        UsageFault: It is another; the text names the command for it.
+        UsageFault: It is of another kind; the text names the command for that.
     """
     from graphflow.msgs.registry import CALLED
 
     _, actual, name = type_name.split("/")
-    if actual == kind or "_" in name:  # a part of another, as Spawn_Request or RotateAbsolute_SendGoal
+    if actual == kind or "_" in name:  # a derived type, such as Spawn_Request or RotateAbsolute_SendGoal
         return
     verb = {"msg": "topic pub", "srv": "service call", "action": "action send_goal"}[actual]
     raise UsageFault(f"{type_name} is {CALLED[actual]}, not {CALLED[kind]}; graphflow {verb} takes such types")
 
 
 def refuse_turned(name: str, type_name: str | None, command: str) -> None:
-    """See that the name comes first, and then its type.
+    """Check that the name comes first and the type after it.
 
     Args:
-        command: As in `topic pub`, for the line to type.
+        command: Such as `topic pub`, for the suggested command.
 
     Raises:
         UsageFault: They are the other way round, or the values come first.
@@ -105,20 +105,20 @@ def refuse_turned(name: str, type_name: str | None, command: str) -> None:
 
 
 def agree(given: str, known: Collection[str], name: str) -> str:
-    """The type to use: one of the graph's, also when the given one has the same definition under another name.
+    """Return the type to use: the graph's, also if the given one has the same definition under another name.
 
     Args:
         known: The types that nodes announce for the name.
 
     Raises:
-        UsageFault: It has none that would do.
+        UsageFault: None of them agrees with the given type.
     """
     if given in known:
         return given
     from graphflow.msgs import registry
 
     for actual in known:
-        # turtlesim and turtlesim_msgs hold the same types under two names.
+        # turtlesim and turtlesim_msgs define the same types under two names.
         same = given.split("/")[1:] == actual.split("/")[1:]
         if same and registry.definition(given) == registry.definition(actual):
             output.talk(f"note: {name} is of type {actual}; using that")

@@ -1,1 +1,1 @@
-"""Projects and packages on the command line: made, and searched for the node that is meant."""
+"""Projects and packages on the command line: create them, and find the node to run in them."""

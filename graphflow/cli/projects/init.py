@@ -1,4 +1,4 @@
-"""`graphflow init NAME`: a starter project."""
+"""`graphflow init NAME`: write a starter project."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ dependencies = ["graphflow-zenoh"]
 [project.optional-dependencies]
 dev = ["pytest"]
 
-[project.entry-points."graphflow.nodes"] # what `graphflow run NAME` starts, here and where this is installed
+[project.entry-points."graphflow.nodes"] # nodes that `graphflow run NAME` starts, here and once installed
 greeter = "@name.greeter:Greeter"
 
 [build-system]
@@ -43,7 +43,7 @@ testpaths = ["tests"]
 pythonpath = ["."]
 
 [tool.mypy]
-mypy_path = "typings" # where `graphflow interface stubs` writes what editors read
+mypy_path = "typings" # where `graphflow interface stubs` writes stubs for editors
 """,
     "README.md": """\
 # @name
@@ -54,13 +54,13 @@ installs what it needs, once. Then:
 
     graphflow up graphs/@name.yaml       run it, until Ctrl-C
     graphflow run greeter                run the one node
-    graphflow topic echo /greeting       in a second terminal: what it says
+    graphflow topic echo /greeting       in a second terminal: show its messages
     graphflow param set /greeter rate 5  change it while it runs
     python -m pytest                     test it, with no network and no waiting
 
-`@name/` has the nodes, `graphs/` says which of them run together, `interfaces/` has message and service types of your
-own: save a file there and import it. A node that `pyproject.toml` names in `graphflow.nodes` is run by its name, also
-where the wheel of this project is installed: `graphflow run greeter`, `graphflow up @name`.
+`@name/` has the nodes, `graphs/` defines which of them run together, `interfaces/` has your own message and service
+types: save a file there and import it. A node that `pyproject.toml` lists in `graphflow.nodes` can be run by name, also
+after installing this project's wheel: `graphflow run greeter`, `graphflow up @name`.
 """,
     "interfaces/@name_interfaces/msg/Greeting.msg": """\
 string text
@@ -68,7 +68,7 @@ uint32 count
 """,
     "@name/__init__.py": "",
     "@name/greeter.py": '''\
-"""A node: what it holds and what it does."""
+"""A node: its parameters, its publisher and its timer."""
 
 import graphflow
 from graphflow import Node, Param, Publisher, timer
@@ -76,10 +76,10 @@ from graphflow.msgs.@name_interfaces.msg import Greeting
 
 
 class Greeter(Node):
-    """Greets over and over."""
+    """Publishes a greeting at regular intervals."""
 
     rate = Param(1.0, unit="Hz", gt=0.0, doc="Greetings per second.")
-    text = Param("hello", doc="What it says.")
+    text = Param("hello", doc="Text of the greeting.")
     greeting = Publisher(Greeting, "greeting")
     count = 0
 
@@ -96,7 +96,7 @@ if __name__ == "__main__":
     "graphs/@name.yaml": """\
 # yaml-language-server: $schema=graph.schema.json
 args:
-  text: {default: hello, doc: What the greeter says.}
+  text: {default: hello, doc: Text of the greeting.}
 
 nodes:
   greeter:
@@ -120,7 +120,7 @@ async def test_it_greets_twice_a_second(graph: Graph) -> None:
 """,
     ".gitignore": "__pycache__/\n.venv/\n.pytest_cache/\n",
 }
-"""The files of a new project, with `@name` for its name."""
+"""The files of a new project; `@name` stands for its name."""
 
 
 @click.command()
@@ -128,7 +128,7 @@ async def test_it_greets_twice_a_second(graph: Graph) -> None:
 def init(name: str) -> None:
     """Write a starter project: the folder NAME with a node, a graph, a message type and a passing test.
 
-    `.` is the folder that you are in, if it is empty.
+    `.` is the current folder, if it is empty.
     """
     folder = Path(name)
     check_new(folder)
@@ -139,27 +139,27 @@ def init(name: str) -> None:
 
 
 def check_new(folder: Path) -> None:
-    """Check that a project may be made there.
+    """Check that a project can be created in a folder.
 
     Raises:
-        UsageFault: Its name is none, or it is there already.
+        UsageFault: The name is not one of a project, or the folder exists and is not empty.
     """
     word = folder.resolve().name
     is_full = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
     if is_full and folder == Path():
-        raise UsageFault("this folder is not empty; graphflow init NAME writes a project into a new one")
+        raise UsageFault("this folder is not empty; graphflow init NAME creates a new one")
     if not _NAME.fullmatch(word):
         rule = "a project's name has only lower-case letters, digits and single _, and begins with a letter"
         raise UsageFault(f"{word!r}: {rule}; did you mean {near_name(word)!r}?")
     if is_full:
         raise UsageFault(f"{folder} already exists; choose another name or remove it")
-    if what := hidden_module(word):
+    if owner := hidden_module(word):
         meant = near_name(word) if is_of_python(word) else f"my_{word}"
-        raise UsageFault(f"{word!r} is {what}, which yours would hide; did you mean {meant!r}?")
+        raise UsageFault(f"{word!r} is {owner}, which yours would hide; did you mean {meant!r}?")
 
 
 def written(folder: Path) -> Iterator[Path]:
-    """Write a project, and give each of its files."""
+    """Write a project and yield each of its files."""
     from graphflow.graph.schema import schema_text
     from graphflow.introspect.installation import requirement
 

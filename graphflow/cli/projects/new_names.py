@@ -1,4 +1,4 @@
-"""Names of a new package, and of those that it depends on, that would be a mistake."""
+"""Check the names of a new package and of its dependencies."""
 
 from __future__ import annotations
 
@@ -18,33 +18,33 @@ from graphflow.workspace.packages import Workspace, find_workspace
 _NAME = re.compile(r"[A-Za-z][\w-]*\Z")
 _USUAL = re.compile(r"[a-z][a-z\d_]*\Z")
 SLIP = 0.8
-"""How like a known package a dependency is that is told to be misspelt."""
+"""Similarity to a known package from which a name is reported as misspelt."""
 
 
 def is_of_python(word: str) -> bool:
-    """Whether Python takes a name for something else: for a word of its own, or for a module of its library."""
+    """Whether a name is a keyword of Python or a module of its standard library."""
     return iskeyword(word) or word in sys.stdlib_module_names
 
 
 def hidden_module(word: str) -> str:
-    """The module that a package of such a name would hide, or that would hide it; empty for none."""
+    """Describe the module that a package of this name would hide, or that would hide it; empty if there is none."""
     if is_of_python(word):
-        return "a name of Python's"
+        return "a module or keyword of Python's"
     found = find_spec(word)
-    if found is None or found.origin is None or Path.cwd() in Path(found.origin).parents[:2]:  # the user's own
+    if found is None or found.origin is None or Path.cwd() in Path(found.origin).parents[:2]:  # it is the user's own
         return ""
     return "an installed module"
 
 
 def near_name(word: str) -> str:
-    """A name that a package can have, made of one that it cannot."""
-    apart = re.sub(r"(?<=[a-z\d])(?=[A-Z])", "_", word.removesuffix(".py"))  # TurtleControl is turtle_control
+    """Turn an invalid name into a valid name of a package."""
+    apart = re.sub(r"(?<=[a-z\d])(?=[A-Z])", "_", word.removesuffix(".py"))  # TurtleControl becomes turtle_control
     near = re.sub(r"[\W_]+", "_", apart.lower(), flags=re.ASCII).strip("_")
     return near if near.isidentifier() and not is_of_python(near) else f"my_{near or 'lab'}"
 
 
 def known_dependency(word: str) -> bool:
-    """Whether a word is a package that others depend on: of ROS 2, with types, or of the workspace."""
+    """Whether a word is a known package: of ROS 2, of interfaces or of the workspace."""
     from graphflow.msgs import registry
 
     return (
@@ -55,52 +55,52 @@ def known_dependency(word: str) -> bool:
 
 
 def check_package(name: str, folder: Path) -> None:
-    """See that a new package has a name of its own.
+    """Check that the name of a new package is unique.
 
     Args:
-        folder: Where it is to be.
+        folder: Its future folder.
 
     Raises:
-        UsageFault: It is one of ROS 2's, which it would hide, or of another package of the workspace.
+        UsageFault: It is the name of a ROS 2 package, which it would hide, or of another package of the workspace.
     """
     if name in of_ros():
         raise UsageFault(f"{name!r} is a package of ROS 2, which yours would hide; choose another name")
     workspace = _around(folder)
     other = workspace.packages.get(name)
     if other is not None and other.folder != folder.resolve():
-        raise UsageFault(f"{other.folder} is the package {name!r} already; choose another name")
+        raise UsageFault(f"{other.folder} already is the package {name!r}; choose another name")
 
 
 def check_dependencies(names: Sequence[str], folder: Path) -> None:
-    """See that dependencies are names of packages, and say which are probably misspelt.
+    """Check that dependencies are names of packages, and warn about probable misspellings.
 
     Raises:
-        UsageFault: One is no name.
+        UsageFault: One cannot be the name of a package.
     """
     known = {*of_ros(), *_around(folder).packages}
     for name in names:
         if _NAME.match(name) is None:
             parts = [part for part in re.split(r"[,;\s]+", name) if part]
             way = f"; write spaces between them: --dependencies {' '.join(parts)}" if len(parts) > 1 else ""
-            raise UsageFault(f"{name!r} is no name of a package{way}")
+            raise UsageFault(f"{name!r} cannot be the name of a package{way}")
         near = nearest(name, known - {name}, cutoff=SLIP) if name not in known else None
         if near is not None and re.sub(r"\d", "", near) != re.sub(r"\d", "", name):  # nav2_msgs is not nav_msgs
             output.talk(f"note: the dependency {name!r} is not known here; did you mean {near!r}?")
 
 
-def tell_name(name: str) -> None:
-    """Say that the name of a new package is not written as those of ROS are, which its tools warn of (REP 144)."""
+def warn_of_name(name: str) -> None:
+    """Warn if the name of a new package breaks ROS's convention, about which ROS's tools would warn (REP 144)."""
     if _USUAL.match(name) is None:
-        output.talk(f"note: names of packages have lower-case letters, digits and _, as {near_name(name)!r} has")
+        output.talk(f"note: names of packages consist of lower-case letters, digits and _, such as {near_name(name)!r}")
 
 
-def tell_place(folder: Path) -> None:
-    """Say that a new package lies where it will not be found: beside the folder `src` that has the others."""
+def warn_of_place(folder: Path) -> None:
+    """Warn if a new package is beside the folder `src` of its workspace, where it would not be found."""
     workspace = _around(folder)
     if workspace.packages and (workspace.root / "src").is_dir() and folder.resolve().parent == workspace.root:
         output.talk(f"note: packages of this workspace are looked for in src/: mv {folder} {workspace.root / 'src'}")
 
 
 def _around(folder: Path) -> Workspace:
-    """The workspace that a new folder is in; the folder above it may be new, too."""
+    """Find the workspace that a new folder will be in; its parents may not exist yet, either."""
     return find_workspace(next(above for above in folder.resolve().parents if above.is_dir()))

@@ -1,4 +1,4 @@
-"""Which node class `graphflow run` means: MODULE:CLASS, a file, a module, a bundled node's name, or ROS's PKG EXE."""
+"""Find the node class for `graphflow run`: by MODULE:CLASS, file, module, name of a node, or ROS's PKG EXE."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ from graphflow.workspace.project import demos_root, project_root
 from graphflow.workspace.unfound import owners, why_no_package
 
 FOLDERS = 1000
-"""Folders in which a file is looked for that is not where it was said to be."""
+"""Most folders that are searched for a missing file."""
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
 
 def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
-    """The class that is meant, and the words that are left for the node.
+    """Return the class that is meant, and the remaining words, which are the node's.
 
     Raises:
-        UsageFault: There is none, or several; the text says which there are.
-        RunsWhenImported: The file is a program, which runs nodes by itself.
+        UsageFault: There is none, or there are several, which the text lists.
+        RunsWhenImported: The file is a program that runs its nodes itself.
     """
     _refuse_turned(what, words)
     if what.endswith((".yaml", ".yml")):
@@ -81,7 +81,7 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
 
 
 def _source_line(error: BaseException | None) -> str:
-    """The line that is no Python, with the caret below its fault, as Python shows it; empty for other errors."""
+    """Return the line of a syntax error with Python's caret below it; empty for other errors."""
     if not isinstance(error, SyntaxError):
         return ""
     lines = traceback.format_exception_only(error)[1:-1]
@@ -89,21 +89,21 @@ def _source_line(error: BaseException | None) -> str:
 
 
 def _refuse_turned(executable: str, words: Sequence[str]) -> None:
-    """See that an executable does not stand before its package.
+    """Check that an executable does not come before its package.
 
     Raises:
-        UsageFault: It does.
+        UsageFault: It does; the text has the right order.
     """
     if not words or words[0].startswith("-"):
         return
     package = find_workspace(Path.cwd()).packages.get(words[0])
     if executable in _executables_of(words[0]) or (package is not None and package.known_as(executable)):
-        what = f"{executable!r} is an executable of the package {words[0]!r}, which stands before it"
-        raise UsageFault(f"{what}: graphflow run {words[0]} {executable}")
+        fault = f"{executable!r} is an executable of the package {words[0]!r}, which comes first"
+        raise UsageFault(f"{fault}: graphflow run {words[0]} {executable}")
 
 
 def _dotted(what: str) -> type[Node]:
-    """The node of a module, which may be meant as an executable of a package."""
+    """Return the node of a module; suggest the executable of a package that may have been meant."""
     try:
         return _only(what)
     except NoModule:
@@ -117,14 +117,14 @@ def _dotted(what: str) -> type[Node]:
 
 
 def _executables_of(package: str) -> list[str]:
-    """The executables of a package that come with graphflow or are installed."""
+    """Return the executables of a package that come with graphflow or are installed."""
     own = package_of(package)
     names = [name for known, name in with_graphflow() if known == package]
     return names + (own.executables if own is not None else [])
 
 
 def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
-    """The node of a module in `nodes/` of the project, of an installed distribution, or of graphflow."""
+    """Find a node by name: in the project, in installed distributions, or in graphflow."""
     own = project_nodes(root)
     if what in own:
         return import_class(own[what])
@@ -141,7 +141,7 @@ def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
 
 
 def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
-    """The error text where there is neither a node nor a package of that name."""
+    """Return the error text for a name that is neither a node's nor a package's."""
     workspace = find_workspace(Path.cwd())
     packages = workspace.packages
     if what in packages and not packages[what].executables:
@@ -158,27 +158,27 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         return why_none
     package, slash, name = what.partition("/")
     if slash and (name in _executables_of(package) or (package in packages and packages[package].known_as(name))):
-        return f"{what!r} is no node; write a space: graphflow run {package} {name}"
+        return f"{what!r} is not a node; write a space: graphflow run {package} {name}"
     if slash and Path(f"{what}.py").is_file():
         return f"there is no node {what!r}; did you mean '{what}.py'?"
-    has = owners(what, workspace)
-    if has:
-        return f"{what!r} is an executable of {' and of '.join(has)}: graphflow run {has[0]} {what}"
+    having = owners(what, workspace)
+    if having:
+        return f"{what!r} is an executable of {' and of '.join(having)}: graphflow run {having[0]} {what}"
     known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")} | {
         *project_nodes(root)
     }
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
         near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
         meant = f"; did you mean {near!r}?" if near is not None else ""
-        there = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
-        return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or there}"
+        known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
+        return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here}"
     known |= {*(package for package, _ in with_graphflow()), *packages, *installed()}
     known |= {name for one in installed().values() for name in one.nodes}
     return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
 
 
 def _module_of(file: Path, root: Path) -> str:
-    """The name by which a file is imported from its project."""
+    """Return the name by which a file is imported from its project."""
     if not file.is_file():
         raise UsageFault(f"{file}: there is no such file{_instead_of(file)}")
     name = ".".join(file.resolve().relative_to(root).with_suffix("").parts)
@@ -189,13 +189,13 @@ def _module_of(file: Path, root: Path) -> str:
 
 
 def _is_loaded_from_elsewhere(name: str, file: Path) -> bool:
-    """Whether a name is that of a module which graphflow has imported, so that it stands for no file of a project."""
+    """Whether graphflow has imported another module of this name, which would hide the file."""
     loaded = getattr(sys.modules.get(name), "__file__", None) if "." not in name else None
     return loaded is not None and Path(loaded).resolve() != file.resolve()
 
 
 def _instead_of(file: Path) -> str:
-    """The file that may have been meant: of its name further down, or with graphflow, or of a near name."""
+    """Suggest another file: of the same name in a folder below or with graphflow, or of a similar name."""
     above = file.parent if file.parent.is_dir() else Path()
     for at, folders, names in islice(os.walk(above), FOLDERS):
         folders[:] = sorted(folder for folder in folders if not folder.startswith((".", "venv")))
@@ -209,7 +209,7 @@ def _instead_of(file: Path) -> str:
 
 
 def _only(module: str) -> type[Node]:
-    """The one node class of a module."""
+    """Return the only node class of a module."""
     found = node_classes(import_module_of(module))
     if not found:
         raise UsageFault(f"{module} has no node class: a class that derives from graphflow.Node")

@@ -1,4 +1,4 @@
-"""The texts of a new ROS 2 package that CMake builds: `CMakeLists.txt`, and a first program and library in C++."""
+"""Templates of a new ROS 2 package built by CMake: `CMakeLists.txt`, and a first program and library in C++."""
 
 from __future__ import annotations
 
@@ -78,14 +78,14 @@ install(EXPORT export_@name
 
 
 def _filled(text: str, **values: str) -> str:
-    """A text with values for its words that begin with `@`: the longest first, as one may begin like another."""
+    """Replace the placeholders `@NAME` in a text; the longest first, since one may be the beginning of another."""
     for word in sorted(values, key=len, reverse=True):
         text = text.replace(f"@{word}", values[word])
     return text
 
 
 def ament(name: str, dependencies: Sequence[str], node: str | None, library: str | None) -> str:
-    """The `CMakeLists.txt` of a package of the build type ament_cmake."""
+    """Return the `CMakeLists.txt` of a package of the build type ament_cmake."""
     found = ["ament_cmake", *(["ament_cmake_ros"] if library else []), *dependencies]
     text = (
         _HEAD + "".join(f"find_package({one} REQUIRED)\n" for one in found) + ("" if dependencies else _NO_DEPENDENCY)
@@ -103,7 +103,7 @@ def ament(name: str, dependencies: Sequence[str], node: str | None, library: str
 
 
 def with_modules(text: str) -> str:
-    """The same `CMakeLists.txt` for a package that has Python modules, too."""
+    """Extend a `CMakeLists.txt` for a package that has Python modules, too."""
     for line, more in (
         ("find_package(ament_cmake REQUIRED)\n", "find_package(ament_cmake_python REQUIRED)\n"),
         ("  find_package(ament_lint_auto REQUIRED)\n", "  find_package(ament_cmake_pytest REQUIRED)\n"),
@@ -113,7 +113,7 @@ def with_modules(text: str) -> str:
 
 
 def plain(name: str, dependencies: Sequence[str], node: str | None, library: str | None) -> str:
-    """The `CMakeLists.txt` of a package of the build type cmake, which uses nothing of ament's."""
+    """Return the `CMakeLists.txt` of a package of the build type cmake, which does not use ament."""
     text = _HEAD.replace("\n\nif(", f"\n\n{_VERSION}if(", 1)
     text += "".join(f"find_package({one} REQUIRED)\n" for one in dependencies) or _NO_DEPENDENCY
     folders = " ".join(f"${{{one}_INCLUDE_DIRS}}" for one in dependencies)
@@ -134,7 +134,7 @@ def plain(name: str, dependencies: Sequence[str], node: str | None, library: str
 
 
 def config(name: str, node: str | None, library: str | None) -> str:
-    """The file by which CMake finds a package of the build type cmake."""
+    """Return the file by which CMake finds a package of the build type cmake."""
     text = 'set(@name_INCLUDE_DIRS "@CONF_INCLUDE_DIRS@")\ninclude("${@name_DIR}/export_@name.cmake")\n'
     text += f"set(@name_LIBRARIES {library})\n" if library else ""
     text += f"set(@name_EXECUTABLE {node})\n" if node else ""
@@ -142,7 +142,7 @@ def config(name: str, node: str | None, library: str | None) -> str:
 
 
 def config_version(name: str) -> str:
-    """The file that tells CMake whether the version of such a package is one that is asked for."""
+    """Return the file by which CMake checks the version of such a package."""
     return f"""\
 set(PACKAGE_VERSION "@{name}_VERSION@")
 
@@ -158,7 +158,7 @@ endif()
 
 
 def program(name: str) -> str:
-    """A first program in C++."""
+    """Return a first program in C++."""
     return f"""\
 #include <cstdio>
 
@@ -175,7 +175,7 @@ def _class_name(library: str) -> str:
 
 
 def header(name: str, library: str) -> str:
-    """The header of a first library in C++."""
+    """Return the header of a first library in C++."""
     guard = f"{name.upper()}__{library.upper()}_HPP_"
     made = _class_name(library)
     return f"""\
@@ -201,7 +201,7 @@ public:
 
 
 def library(name: str, library: str) -> str:
-    """The source of a first library in C++."""
+    """Return the source of a first library in C++."""
     made = _class_name(library)
     return f"""\
 #include "{name}/{library}.hpp"
@@ -218,7 +218,7 @@ namespace {name}
 
 
 def visibility(name: str) -> str:
-    """The header with the macros that say which symbols of a library others see."""
+    """Return the header with the visibility macros of a library."""
     guard = f"{name.upper()}__VISIBILITY_CONTROL_H_"
     return _filled(_VISIBILITY, guard=guard, NAME=name.upper())
 

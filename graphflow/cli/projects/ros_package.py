@@ -16,7 +16,7 @@ TEMPLATES = {"ament_python": "ament_python", "ament_cmake": "ament_cmake", "cmak
 }
 """Templates, each with its build type: a CMake package may have Python modules, too."""
 LICENSES = Path(__file__).parent / "licenses"
-"""The texts of licenses, each called by its identifier in SPDX's list."""
+"""The texts of licenses; each file's name is an SPDX identifier."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ class Description:
         return TEMPLATES[self.template]
 
     def lines(self) -> Iterator[str]:
-        """The settings, in the lines and the order of `ros2 pkg create`."""
+        """Format the settings as `ros2 pkg create` prints them."""
         yield f"package format: {self.package_format}"
         yield "version: 0.0.0"
         yield f"description: {self.description}"
@@ -54,38 +54,38 @@ class Description:
 
 
 class Part(NamedTuple):
-    """A file of a package, or a folder."""
+    """A file or folder of a package."""
 
     path: str
     text: str | None
-    """None for a folder."""
+    """Contents; None for a folder."""
 
 
 def parts(new: Description) -> Iterator[Part]:
-    """The folders and files of a package in the order of `ros2 pkg create`, from the package's folder on."""
+    """Yield the folders and files of a package in the order of `ros2 pkg create`; paths are relative to its folder."""
     yield Part("package.xml", package_xml(new))
     yield from _python(new) if new.build_type == "ament_python" else _cmake(new)
 
 
 def license_text(identifier: str) -> str | None:
-    """The text of a license, None for one that is not known."""
+    """Return the text of a license; None if it is not known."""
     return (LICENSES / f"{identifier}.txt").read_text(encoding="utf-8") if identifier in known_licenses() else None
 
 
 def known_licenses() -> list[str]:
-    """The identifiers of the licenses whose texts are there."""
+    """Return the identifiers of the licenses whose texts are known."""
     return sorted(file.stem for file in LICENSES.glob("*.txt"))
 
 
 def package_xml(new: Description) -> str:
-    """The manifest: who maintains the package, what it depends on, and what builds it.
+    """Return the manifest, with the package's maintainer, dependencies and build tools.
 
     Source: REP 140 and REP 149.
     """
     schema = f"http://download.ros.org/schema/package_format{new.package_format}.xsd"
     language = "http://www.w3.org/2001/XMLSchema"
     tools = _BUILD_TOOLS[new.template]
-    if new.library_name:  # it exports a library as ROS's own packages do
+    if new.library_name:  # ament_cmake_ros makes libraries shared by default, as ROS's own are
         tools = tuple("ament_cmake_ros" if tool == "ament_cmake" else tool for tool in tools)
     needed = {"buildtool_depend": tools, "depend": new.dependencies, "test_depend": _TEST_TOOLS[new.template]}
     blocks = ["".join(f"  <{tag}>{escape(name)}</{tag}>\n" for name in names) for tag, names in needed.items() if names]
@@ -182,7 +182,7 @@ _LINTERS = {
     "flake8": ("[]", ""),
     "pep257": ("['.', 'test']", ""),
 }
-"""The linters of ament that a package's tests run, their arguments, and what else is to be said of the test."""
+"""The linters of ament that a package's tests run, their arguments, and further decorators of the test."""
 _TEST = """\
 import pytest
 

@@ -1,1 +1,1 @@
-"""The verbs that ROS 2 has, one module each."""
+"""The verbs of ROS 2, one module each."""

@@ -27,7 +27,7 @@ def action() -> None:
 
 @action.command(name="list")
 @click.option("-t", "--show-types", is_flag=True, help="Also show types.")
-@click.option("-c", "--count-actions", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-actions", is_flag=True, help="Print only the count.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(show_types: bool, count_actions: bool, as_json: bool) -> None:
     """List the names of all actions."""
@@ -51,7 +51,7 @@ def type_(name: str) -> None:
 
 @action.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-actions", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-actions", is_flag=True, help="Print only the count.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def find(type_name: str, count_actions: bool, as_json: bool) -> None:
     """List the actions of a type."""
@@ -63,7 +63,7 @@ def find(type_name: str, count_actions: bool, as_json: bool) -> None:
 @action.command()
 @click.argument("name", metavar="ACTION")
 @click.option("-t", "--show-types", is_flag=True, help="Also show the type each node uses.")
-@click.option("-c", "--count", is_flag=True, help="Only the count.")
+@click.option("-c", "--count", is_flag=True, help="Print only the count.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
     """Show which nodes serve an action and which send goals to it."""
@@ -94,7 +94,7 @@ def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
 @click.argument("name", metavar="ACTION")
 @echo_options
 def echo(name: str, **options: Any) -> int:
-    """Show the feedback of an action's goals as it comes. Ctrl-C stops it."""
+    """Show the feedback of an action's goals as it arrives, until Ctrl-C."""
     from graphflow.cli.messages import echoing
     from graphflow.introspect.messages.definitions import learn
 
@@ -107,7 +107,7 @@ def echo(name: str, **options: Any) -> int:
 
 
 def _types(view: View, name: str) -> list[str]:
-    """The types of an action in the graph."""
+    """Return the types of an action in the graph."""
     actions = view.cache.actions()
     if name not in actions:
         served = view.cache.served_actions()
@@ -130,7 +130,7 @@ def _types(view: View, name: str) -> list[str]:
     help="Seconds to wait until a server accepts.",
 )
 @stdin_option
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for all that happens.")
+@click.option("--json", "as_json", is_flag=True, help="Print events as lines of JSON.")
 def send_goal(
     name: str,
     type_name: str | None,
@@ -154,22 +154,22 @@ def send_goal(
     with View(domain_id()) as view:
         actions = view.cache.actions()
         alone = view.nobody_here() if full not in actions else ""
-        there, served = actions.get(full), view.cache.served_actions()
+        known, served = actions.get(full), view.cache.served_actions()
         if type_name is None:
             types = _types(view, full)
             raise UsageFault(
                 f"TYPE is missing; {full} is of type {types[0]}: graphflow action send_goal {full} {types[0]}"
             )
-        if there:
+        if known:
             from graphflow.introspect.messages.definitions import learn
 
-            learn(view, full, type_name if type_name in there or len(there) > 1 else there[0])
+            learn(view, full, type_name if type_name in known or len(known) > 1 else known[0])
             for text in shared(view.cache.named(f"{full}{ACTION_SEND_GOAL}")):
                 output.talk(f"WARNING: {text}")
-    wanted = type_of_word(type_name, full, there or ())
+    wanted = type_of_word(type_name, full, known or ())
     check_kind(wanted, "action")
-    actual = agree(wanted, there, full) if there else wanted
+    actual = agree(wanted, known, full) if known else wanted
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values, from_stdin=from_stdin))
-    if not there:
+    if not known:
         output.talk(f"there is no action {full} yet{did_you_mean(full, served) or alone}")
     return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout, as_json=as_json)

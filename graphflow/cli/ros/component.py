@@ -1,4 +1,4 @@
-"""`graphflow component`: nodes are loaded into the processes of a running graph, and unloaded."""
+"""`graphflow component`: load nodes into the processes of a running graph, and unload them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from graphflow.workspace.executables import EXECUTABLES
 
 ANSWER_LIMIT = 30.0
 """Seconds that the supervisor has to answer."""
-_graph = click.option("--graph", help="Which graph, when several are running.")
+_graph = click.option("--graph", help="The running graph, if there are several.")
 
 
 @click.group(cls=GraphVerbs)
@@ -28,7 +28,7 @@ def component() -> None:
 
 @component.command(name="list")
 @click.argument("container", metavar="[PROCESS]", required=False)
-@click.option("--containers-only", is_flag=True, help="Only the processes.")
+@click.option("--containers-only", is_flag=True, help="Print only the processes.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @_graph
 def list_(container: str | None, containers_only: bool, as_json: bool, graph: str | None) -> None:
@@ -54,12 +54,14 @@ def list_(container: str | None, containers_only: bool, as_json: bool, graph: st
 @click.argument("container", metavar="PROCESS")
 @click.argument("what", metavar="MODULE:CLASS|PACKAGE")
 @click.argument("plugin", metavar="[PLUGIN]", required=False)
-@click.option("-n", "--node-name", help="Name of the node; else the class's.")
+@click.option("-n", "--node-name", help="Name of the node. [the class's]")
 @click.option("--node-namespace", default="/", help="Namespace of the node.")
-@click.option("--log-level", type=click.Choice(LOG_LEVELS, case_sensitive=False), help="Least level that is logged.")
+@click.option("--log-level", type=click.Choice(LOG_LEVELS, case_sensitive=False), help="Lowest level that is logged.")
 @click.option("-r", "--remap-rule", "remaps", multiple=True, metavar="FROM:=TO", help="Remap a name.")
 @click.option("-p", "--parameter", "params", multiple=True, metavar="NAME:=VALUE", help="Set a parameter.")
-@click.option("-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="For ROS's sake; not used.")
+@click.option(
+    "-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="Accepted for ROS 2; not used."
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print only the number and the name of the node.")
 @_graph
 def load(
@@ -75,9 +77,9 @@ def load(
     quiet: bool,
     graph: str | None,
 ) -> None:
-    """Load a node into a running process: a class, or what ROS calls a plugin of a package.
+    """Load a node into a running process: a class, or a plugin of a ROS package.
 
-    PROCESS is the word after `process:` in the graph file, or a node that runs in the process.
+    PROCESS is the name given as `process:` in the graph file, or a node that runs in the process.
     """
     from graphflow.cli.projects.node_lookup import find_class
     from graphflow.introspect.graph_view import refuse_taken_names
@@ -100,22 +102,24 @@ def load(
     refuse_taken_names([node.name], run.domain, hint="give this one another name with -n NAME")
     answer = _ask(run.socket, do="load", container=container, node=node.to_json())
     if extra:
-        output.talk(f"{', '.join(extra)}: not needed: messages within a process are always handed over")
+        output.talk(f"{', '.join(extra)}: not needed, messages within a process are always passed without copying")
     number, name = answer["number"], answer["node"]
-    told = f"Loaded component {number} into '{container}' container node as '{name}'"
-    output.data(f"{number}  {name}" if quiet else told)
+    report = f"Loaded component {number} into '{container}' container node as '{name}'"
+    output.data(f"{number}  {name}" if quiet else report)
 
 
 @component.command(short_help="Run a node of a package in a process of its own.")
 @click.argument("package")
 @click.argument("plugin")
-@click.option("-n", "--node-name", help="Name of the node; else the class's.")
+@click.option("-n", "--node-name", help="Name of the node. [the class's]")
 @click.option("--node-namespace", help="Namespace of the node.")
-@click.option("--log-level", type=click.Choice(LOG_LEVELS, case_sensitive=False), help="Least level that is logged.")
+@click.option("--log-level", type=click.Choice(LOG_LEVELS, case_sensitive=False), help="Lowest level that is logged.")
 @click.option("-r", "--remap-rule", "remaps", multiple=True, metavar="FROM:=TO", help="Remap a name.")
 @click.option("-p", "--parameter", "params", multiple=True, metavar="NAME:=VALUE", help="Set a parameter.")
-@click.option("-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="For ROS's sake; not used.")
-@click.option("-c", "--container-node-name", help="For ROS's sake; there is no container.")
+@click.option(
+    "-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="Accepted for ROS 2; not used."
+)
+@click.option("-c", "--container-node-name", help="Accepted for ROS 2; there is no container.")
 def standalone(package: str, plugin: str, **options: Any) -> None:
     """Run a node of a package in a process of its own, as `graphflow run PACKAGE PLUGIN` does. Ctrl-C ends it."""
     from graphflow.cli.ros.run import run
@@ -145,7 +149,7 @@ def unload(container: str, words: tuple[str, ...], graph: str | None) -> None:
 @click.argument("package", required=False)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def types(package: str | None, as_json: bool) -> None:
-    """List the plugins of ROS's packages that are here; any class of a project can be loaded as well."""
+    """List the plugins of the ROS packages that come with graphflow. Any class of a project can be loaded, too."""
     packages = {known for known, _ in EXECUTABLES}
     if package is not None and package not in packages:
         raise UsageFault(f"there is no package {package!r} here{did_you_mean(package, packages)}")
@@ -161,7 +165,7 @@ def types(package: str | None, as_json: bool) -> None:
 
 
 def _containers(socket: str) -> dict[str, list[dict[str, Any]]]:
-    """The rows of `ps` by process; a process of one node has its name."""
+    """Return the rows of `ps` by process; a process of one node has that node's name."""
     with ControlClient(socket) as client:
         client.send(do="ps")
         rows = next(client.receive(), {}).get("nodes", [])
@@ -169,7 +173,7 @@ def _containers(socket: str) -> dict[str, list[dict[str, Any]]]:
 
 
 def _number_of(node: str, container: str, socket: str) -> int:
-    """The number of a node in a process.
+    """Return the number of a node in a process.
 
     Raises:
         SupervisorError: The process has no such node.

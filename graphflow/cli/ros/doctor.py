@@ -1,4 +1,4 @@
-"""`graphflow doctor`: what is wrong, and what to do about it; `doctor hello`: who hears whom."""
+"""`graphflow doctor`: report problems and their remedies; `doctor hello`: test which machines reach each other."""
 
 from __future__ import annotations
 
@@ -26,26 +26,29 @@ from graphflow.wire.process import NUMBERS, WAITS, answer_key, stopped
 
 ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph have to answer."""
-BETWEEN_LOOKS = 0.5
-"""Seconds between two looks at what nodes have counted."""
+SAMPLE_INTERVAL = 0.5
+"""Seconds between two readings of the nodes' counters."""
 
 Findings = dict[str, list[str]]
-"""What was found, by the name of the check."""
+"""Texts of findings, by the name of the check."""
 
 
 @click.group(cls=Verbs, invoke_without_command=True, subcommand_metavar="[hello]")
-@click.option("-r", "--report", is_flag=True, help="Print all that is known of this system and the graph.")
-@click.option("-rf", "--report-failed", is_flag=True, help="The same, only where a check has failed.")
-@click.option("-iw", "--include-warnings", is_flag=True, help="Hints count as faults.")
-@click.option("-ep", "--exclude-packages", is_flag=True, hidden=True, help="For ROS 2's commands: none are checked.")
+@click.option("-r", "--report", is_flag=True, help="Print a full report on this system and the graph.")
+@click.option("-rf", "--report-failed", is_flag=True, help="Print only the sections of the report whose check failed.")
+@click.option("-iw", "--include-warnings", is_flag=True, help="Count hints as faults.")
+@click.option(
+    "-ep", "--exclude-packages", is_flag=True, hidden=True, help="Accepted for ROS 2; no packages are checked."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: bool, **_: bool) -> int:
-    """Check the running graph for problems: deadlocks, groups held for long, processes that do not answer, event loops
-    that are blocked or were late, endpoints that do not match, nodes of one name, nodes that hear themselves, lost
-    messages, floods in logs, topics that nobody publishes, remaps that match nothing, clocks that differ. And what is
-    here without it: what is installed, graphs that were killed, a ROS 2 in this shell that would not see the graph.
+    """Check the running graph for problems: deadlocks, groups occupied for long, processes that do not answer, event
+    loops that are blocked or were late, incompatible endpoints, duplicate node names, nodes that receive their own
+    messages, lost messages, floods of log messages, topics without publishers, remap rules that match nothing, clocks
+    that differ. Also check the installation, graphs that were killed, and a ROS 2 in this shell that could not see the
+    graph.
 
-    Exit code 1 when there is one; late loops alone do not count, nor does what may be meant so.
+    Exit code 1: there is a fault; late event loops and hints do not count as one.
     """
     if click.get_current_context().invoked_subcommand is not None:
         return exits.OK
@@ -67,8 +70,8 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
             raise
         return exits.OK
     with view:
-        first = _look(view)
-        here, remarks = _here()  # a second look, if one is needed, comes a while later
+        first = _sample(view)
+        here, remarks = _here()  # takes a while, by which the second sample, if needed, is later
         faults, notes, count = _graph(view, first)
     faults |= here
     notes |= remarks
@@ -86,7 +89,7 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
 
 
 def _here() -> tuple[Findings, Findings]:
-    """What is wrong without a graph, and what is only to be noted."""
+    """Check this machine without the graph; return faults and notes."""
     faults = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
     notes = {
         "rclpy": list(_whose_rclpy()),
@@ -96,27 +99,27 @@ def _here() -> tuple[Findings, Findings]:
 
 
 def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
-    """What is wrong with the graph, what is only to be noted, and the number of its nodes."""
+    """Check the graph; return faults, notes and the number of its nodes."""
     read = concurrency.read(view.reports(answer_key(view.domain, WAITS), ANSWER_LIMIT))
     second = first
     if needs_second(view, first):
-        time.sleep(max(0.0, first.at + BETWEEN_LOOKS - time.monotonic()))
-        second = _look(view)
+        time.sleep(max(0.0, first.at + SAMPLE_INTERVAL - time.monotonic()))
+        second = _sample(view)
     health = examine(view, first, second)
     ours = view.processes()
-    profiles = [f"{p}: nodes beyond it can be listed, and nothing else is known of them" for p in view.profiles()]
+    profiles = [f"{p}: nodes beyond it can be listed, but nothing else is known about them" for p in view.profiles()]
     others = [
         name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
     ]
     managed = supervised(view.cache.nodes())
     silent = concurrency.unresponsive(read, view)
-    told = " ".join([*silent, *managed.faults])
-    silent += [text for pid, text in stopped().items() if not re.search(rf"\b{pid}\b", told)]
+    reported = " ".join([*silent, *managed.faults])
+    silent += [text for pid, text in stopped().items() if not re.search(rf"\b{pid}\b", reported)]
     faults = {
         "deadlocks": read.reports,
         "stalls": read.stalls,
         "unresponsive": silent,
-        "supervised": [text for text in managed.faults if not _is_told(text, silent)],
+        "supervised": [text for text in managed.faults if not _is_reported(text, silent)],
         "blocked": [
             f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log" for who, seconds in read.blocked
         ],
@@ -144,7 +147,7 @@ def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
     return faults, notes, sum(not is_hidden(name) for name in read.nodes)
 
 
-def _look(view: View) -> Look:
+def _sample(view: View) -> Look:
     at, began_ns = time.monotonic(), time.time_ns()
     return Look(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), began_ns, time.time_ns(), at)
 
@@ -162,20 +165,20 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
 
 
 def _verdict(notes: Findings) -> str:
-    """The last line, where there is no fault: nothing is certain of what was not seen."""
+    """Return the last line if there is no fault; it must not vouch for what could not be seen."""
     if any(notes[kind] for kind in ("silent", "unreadable", "unseen", "kept_back")):
         return "nothing wrong in what could be seen; the lines above say what could not"
-    return "no fault; the lines above may be meant so" if notes["hints"] else "nothing wrong"
+    return "no fault; the lines above may be intended" if notes["hints"] else "nothing wrong"
 
 
-def _is_told(text: str, silent: list[str]) -> bool:
-    """Whether a node that its supervisor speaks of is among those that did not answer."""
+def _is_reported(text: str, silent: list[str]) -> bool:
+    """Whether the node of a supervisor's fault is already reported as not answering."""
     node = text.partition(" ")[0]
-    return any(node in told.split() for told in silent)
+    return any(node in other.split() for other in silent)
 
 
 def _environment() -> Mapping[str, str]:
-    """The environment as it was before this command's own options."""
+    """Return the environment from before this command's options changed it."""
     found: Mapping[str, str] = click.get_current_context().find_root().obj or os.environ
     return found
 
@@ -188,10 +191,10 @@ def _version(name: str) -> str | None:
 
 
 def _whose_rclpy() -> Iterator[str]:
-    """Which rclpy is imported, where there are two."""
+    """Report which rclpy is imported if there are two."""
     other = enabling.elsewhere()
     if other is not None:
-        yield f"import rclpy is that of the ROS 2 in this shell, {other}; graphflow's comes where none is sourced"
+        yield f"import rclpy imports that of the ROS 2 in this shell, {other}; graphflow's is used if none is sourced"
 
 
 def _left_over() -> Iterator[str]:
@@ -199,8 +202,8 @@ def _left_over() -> Iterator[str]:
 
     for folder, run in left_over():
         yield (
-            f"graph {run.graph} (domain {run.domain}) was killed and has left {folder}: start it again, "
-            "which clears up, or delete that folder"
+            f"graph {run.graph} (domain {run.domain}) was killed and left {folder}: start it again, "
+            "which cleans up, or delete that folder"
         )
     for run in running():
         if run.unguarded:
@@ -208,13 +211,13 @@ def _left_over() -> Iterator[str]:
 
 
 @doctor.command()
-@click.option("-t", "--topic", default="/canyouhearme", show_default=True, help="Topic to speak and listen on.")
-@click.option("-ep", "--emit-period", type=click.FloatRange(0.01), default=0.1, help="Seconds between two words. [0.1]")
+@click.option("-t", "--topic", default="/canyouhearme", show_default=True, help="Topic to publish and subscribe to.")
+@click.option("-ep", "--emit-period", type=click.FloatRange(0.01), default=0.1, help="Seconds between messages. [0.1]")
 @click.option("-pp", "--print-period", type=click.FloatRange(0.1), default=1.0, help="Seconds between tables. [1.0]")
-@click.option("-1", "--once", is_flag=True, help="End after the first table.")
-@click.option("--ttl", type=int, hidden=True, help="For ROS 2's commands: nothing is sent by multicast.")
+@click.option("-1", "--once", is_flag=True, help="Exit after the first table.")
+@click.option("--ttl", type=int, hidden=True, help="Accepted for ROS 2; multicast is not used.")
 def hello(topic: str, emit_period: float, print_period: float, once: bool, ttl: int | None) -> int:  # noqa: ARG001
-    """Find out which machines hear each other: run it on each of them. Ctrl-C ends it."""
+    """Find out which machines reach each other: run it on each of them. Ctrl-C ends it."""
     from graphflow.cli.ros.hello import greet
 
     return greet(topic, emit_period, print_period, once=once)

@@ -1,4 +1,4 @@
-"""What `doctor hello` does: speaks, listens, and counts who was heard."""
+"""The work of `doctor hello`: publish greetings, and count those of other machines."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from graphflow.names import expand
 from graphflow.runtime.node import Node
 
 HELLO = "hello, it's me "
-"""What ROS 2's `doctor hello` says, before the name of the machine."""
+"""Text of ROS 2's `doctor hello` before the name of the machine."""
 HOSTS_BOUND = 200
-"""Machines that are counted."""
+"""Most machines that are counted."""
 NAME_BOUND = 255
 
 
 def greet(topic: str, emit_period: float, print_period: float, *, once: bool) -> int:
-    """Speak and listen until Ctrl-C, or until the first table; returns the exit code."""
+    """Publish and listen until Ctrl-C, or until the first table; return the exit code."""
     full = expand(topic, "/", "cli")
 
     async def work(node: Node) -> int:
@@ -39,31 +39,31 @@ async def _greet(node: Node, topic: str, emit_period: float, print_period: float
             heard[host] += 1
 
     node.create_subscription(String, topic, listen, 10, ignore_local=True)
-    said = 0
+    sent = 0
 
-    async def speak() -> None:
-        nonlocal said
+    async def publish() -> None:
+        nonlocal sent
         while True:
             publisher.publish(String(data=f"{HELLO}{socket.gethostname()}"))
-            said += 1
+            sent += 1
             await asyncio.sleep(emit_period)
 
-    speaking = asyncio.ensure_future(speak())
+    publishing = asyncio.ensure_future(publish())
     try:
         while True:
             await asyncio.sleep(print_period)
-            _tell(topic, said, heard, print_period)
+            _print_table(topic, sent, heard, print_period)
             if once:
                 return exits.OK
             heard.clear()
-            said = 0
+            sent = 0
     finally:
-        speaking.cancel()
+        publishing.cancel()
 
 
-def _tell(topic: str, said: int, heard: Counter[str], print_period: float) -> None:
+def _print_table(topic: str, sent: int, heard: Counter[str], print_period: float) -> None:
     output.data("MULTIMACHINE COMMUNICATION SUMMARY")
-    output.data(f"Topic: {topic}, Published Msg Count: {said}")
+    output.data(f"Topic: {topic}, Published Msg Count: {sent}")
     output.data("Subscribed from:" if heard else "Subscribed from: nobody")
     output.lines(f"  {host:<30} {count} messages in {print_period:g} s" for host, count in sorted(heard.items()))
     output.data("-" * 60)

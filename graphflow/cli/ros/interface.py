@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import click
 
@@ -18,7 +18,7 @@ from graphflow.errors import GraphflowError, SupervisorError, UnknownInterface, 
 from graphflow.introspect.graph_view import View
 from graphflow.names import did_you_mean
 
-F = TypeVar("F", bound=Callable[..., Any])
+F = TypeVar("F", bound=Callable[..., object])
 
 
 @click.group(cls=Verbs)
@@ -27,14 +27,14 @@ def interface() -> None:
 
 
 def _kinds(command: F) -> F:
-    """Add what says which kinds of types are meant."""
-    command = click.option("-a", "--only-actions", "only", flag_value="action", help="Actions only.")(command)
-    command = click.option("-s", "--only-srvs", "only", flag_value="srv", help="Services only.")(command)
-    return click.option("-m", "--only-msgs", "only", flag_value="msg", help="Messages only.")(command)
+    """Add the options that choose the kind of types to a command."""
+    command = click.option("-a", "--only-actions", "only", flag_value="action", help="List actions only.")(command)
+    command = click.option("-s", "--only-srvs", "only", flag_value="srv", help="List services only.")(command)
+    return click.option("-m", "--only-msgs", "only", flag_value="msg", help="List messages only.")(command)
 
 
 class _Show(Verb):
-    """A verb of one type, whose package and name may stand apart."""
+    """A verb of one type, which joins a package and a name that were given as two words."""
 
     def one_too_many(self, ctx: click.Context, left: Sequence[str]) -> str:
         from graphflow.msgs import registry
@@ -49,12 +49,12 @@ class _Show(Verb):
 
 @interface.command(cls=_Show)
 @click.argument("type_name", metavar="TYPE")
-@click.option("--all-comments", is_flag=True, help="Comments of nested types, too.")
-@click.option("--no-comments", is_flag=True, help="Without comments and empty lines.")
+@click.option("--all-comments", is_flag=True, help="Show comments of nested types, too.")
+@click.option("--no-comments", is_flag=True, help="Leave out comments and empty lines.")
 def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
-    """Show a definition, with the fields of nested types below each. `-` reads the type from standard input.
+    """Show a definition, with the fields of nested types indented below. `-` reads the type from standard input.
 
-    Comments are those of your own definitions; those that come with graphflow have none.
+    Your own definitions are shown with their comments; those that come with graphflow have none.
     """
     from graphflow.msgs import registry
     from graphflow.wire.idl import without_comment
@@ -79,7 +79,7 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
 
 
 def _instead(word: str) -> str:
-    """Answer a word that is a package, or a field of a type; empty for others."""
+    """Return the error text for a word that is a package or a field of a type; empty for other words."""
     from graphflow.msgs import registry
 
     if registry.package_folders(word):
@@ -97,7 +97,7 @@ def _instead(word: str) -> str:
         for part in fields:
             field = next(field for field in schema.fields if field.name == part)
             if field.type.is_primitive:
-                return f"{'.'.join(fields)} of {name} is {field.type}; all of it: graphflow interface show {name}"
+                return f"{'.'.join(fields)} of {name} is {field.type}; whole type: graphflow interface show {name}"
             schema = registry.message_schema(field.type.base)
     except (GraphflowError, StopIteration):
         return ""
@@ -105,20 +105,20 @@ def _instead(word: str) -> str:
 
 
 def _of_name(word: str) -> str:
-    """The word, unless it is the name of a topic, service or action that is there.
+    """Return the word, unless it is the name of a topic, service or action of the graph.
 
     Raises:
-        UsageFault: It is; the text has its type.
+        UsageFault: It is; the text has the command for its type.
     """
     if not word.startswith("/"):
         return word
     try:
         with View(domain_id()) as view:
             tables = (view.cache.topics(hidden=True), view.cache.services(hidden=True), view.cache.actions())
-    except SupervisorError:  # nothing runs
+    except SupervisorError:  # no graph is running
         return word
     for type_name in (type_ for names in tables for type_ in names.get(word, [])):
-        raise UsageFault(f"{word} is no type, but of one: graphflow interface show {type_name}")
+        raise UsageFault(f"{word} is not a type; to show its type: graphflow interface show {type_name}")
     return word
 
 
@@ -126,7 +126,7 @@ def _of_name(word: str) -> str:
 @_kinds
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(only: str | None, as_json: bool) -> None:
-    """List all types, the project's own too."""
+    """List all types, including the project's own."""
     from graphflow.msgs import registry
 
     use_project()
@@ -145,9 +145,9 @@ interface.add_command(show, "info")
 
 @interface.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("--no-quotes", is_flag=True, help="Without the quotes around all.")
+@click.option("--no-quotes", is_flag=True, help="Leave out the quotes around the message.")
 def proto(type_name: str, no_quotes: bool) -> None:
-    """Print a message with all its fields, for you to fill in; of a service the request, of an action the goal."""
+    """Print a message, a service's request or an action's goal with all its fields, to be filled in."""
     from graphflow.introspect.messages.echo import block, plain
     from graphflow.msgs import registry
 
@@ -161,13 +161,13 @@ def proto(type_name: str, no_quotes: bool) -> None:
 @_kinds
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def package(name: str, only: str | None, as_json: bool) -> None:
-    """List the types of a package; without one the packages."""
+    """List the types of a package; without PACKAGE, the packages."""
     from graphflow.msgs import registry
 
     use_project()
     if not name:
         output.listing(registry.packages(), json=as_json)
-        output.talk("one of these? graphflow interface package PACKAGE lists its types")
+        output.talk("to list the types of one: graphflow interface package PACKAGE")
         return
     if not registry.package_folders(name):
         raise UsageFault(f"there is no interface package {name!r}{did_you_mean(name, registry.packages())}")
@@ -189,9 +189,9 @@ def packages(only: str | None, as_json: bool) -> None:
 
 
 @interface.command()
-@click.option("--output", "-o", "folder", default="typings", show_default=True, help="Folder, in the project.")
+@click.option("--output", "-o", "folder", default="typings", show_default=True, help="Folder in the project.")
 def stubs(folder: str) -> int:
-    """Write what editors and type checkers read about the types of a project or workspace. Repeat when one changes."""
+    """Write stubs of a project's or workspace's types for editors and type checkers. Repeat after changing a type."""
     from graphflow.msgs import registry
     from graphflow.msgs import stubs as writer
     from graphflow.rclpy.messages.stubs import stubs as ros_stubs
@@ -205,7 +205,7 @@ def stubs(folder: str) -> int:
     files |= ros_stubs(workspace.interfaces, (workspace.root if workspace.interfaces else root) / folder)
     if not files:
         where = f"{root / 'interfaces'} has no PACKAGE/msg, PACKAGE/srv or PACKAGE/action with definitions"
-        raise UsageFault(f"{where}, and no package of a workspace is here")
+        raise UsageFault(f"{where}, and there is no package of a workspace")
     try:
         writer.write(files)
     except OSError as error:
@@ -213,12 +213,12 @@ def stubs(folder: str) -> int:
         return exits.FAILED
     output.lines(shown(file) for file in files if file.parent.name in registry.KINDS)
     if folder == "typings":
-        output.talk('editors look there; mypy needs in pyproject.toml: [tool.mypy] mypy_path = "typings"')
+        output.talk('editors find them there; mypy needs this in pyproject.toml: [tool.mypy] mypy_path = "typings"')
     return exits.OK
 
 
 def _nested(line: str, package: str, depth: int, has_comments: bool) -> Iterator[str]:
-    """The definition of the type that a line names, indented, with those of the types in it below."""
+    """Yield the definition of the type of a field, indented, with those of nested types below."""
     from graphflow.errors import InterfaceError
     from graphflow.msgs import registry
     from graphflow.wire import idl
@@ -233,7 +233,7 @@ def _nested(line: str, package: str, depth: int, has_comments: bool) -> Iterator
     if type_.is_primitive:
         return
     inner = type_.base.partition("/")[0]
-    registry.message_schema(type_.base)  # which refuses one that contains itself
+    registry.message_schema(type_.base)  # raises for a type that contains itself, which would recurse for ever
     for text in registry.definition(type_.base).splitlines():
         shown = text.rstrip() if has_comments else idl.without_comment(text).rstrip()
         if shown or has_comments:

@@ -1,4 +1,4 @@
-"""`graphflow launch FILE`, and `launch convert`: ROS's launch files as graph files."""
+"""`graphflow launch FILE` and `launch convert`: run ROS launch files, or convert them to graph files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Verbs(Verbs):
-    """`launch convert FILE`, and `launch FILE` and `launch PACKAGE FILE` for `up`."""
+    """The verbs of `launch`; `launch FILE` and `launch PACKAGE FILE` mean the hidden verb `start`."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         is_verb = not args or args[0] in (*self.list_commands(ctx), "--help", "-h")
@@ -33,33 +33,33 @@ def launch() -> None:
     """Start a launch file as `up` does, or convert it.
 
     \b
-    Before FILE may stand:
-      -s, --show-args                      show the file's arguments and start nothing
-      -p, --print                          show what would run and start nothing
+    Options before FILE:
+      -s, --show-args                      show the file's arguments without starting it
+      -p, --print                          show what would run without starting it
       -n, --noninteractive, --no-console   show logs instead of the console
       --detach                             leave it running in the background
-      --json                               print what happens as JSON, a line each; without the console
+      --json                               print events as lines of JSON, without the console
     """  # noqa: D301 - click wants the character
 
 
 @launch.command(cls=GraphCommand, hidden=True)
 @click.argument("words", nargs=-1, required=True, metavar="[PACKAGE] FILE [NAME:=VALUE]...")
-@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
-@click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run and start nothing.")
+@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments without starting it.")
+@click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run without starting it.")
 @click.option("-n", "--noninteractive", "--no-console", is_flag=True, help="Show logs instead of the console.")
 @click.option("--detach", is_flag=True, help="Leave it running in the background, as `up -d` does.")
-@click.option("--json", is_flag=True, help="Print what happens as JSON, a line each, as `up --json` does.")
-@click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands: there is no more to show.")
-@click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="For ROS 2's commands: it is shown.")
+@click.option("--json", is_flag=True, help="Print events as lines of JSON, as `up --json` does.")
+@click.option("-d", "--debug", is_flag=True, help="Accepted for ROS 2; it shows no more.")
+@click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="Accepted for ROS 2; it is always shown.")
 def start(words: tuple[str, ...], **options: bool) -> int:
-    """Start a file, of a package if one is named."""
+    """Start a launch file, of a package if one is named."""
     from graphflow.cli.graphs.files import plan
     from graphflow.cli.graphs.graphs import up
 
     file, given = _file_of(words)
     is_shown = options["is_shown"]
     if options["debug"]:
-        output.talk("note: -d is ROS's --debug, which shows no more here; --detach leaves the graph in the background")
+        output.talk("note: -d is ROS's --debug, which has no effect here; --detach leaves the graph in the background")
     shared = {"--json": options["json"]}
     flags = (
         shared
@@ -82,10 +82,10 @@ def start(words: tuple[str, ...], **options: bool) -> int:
 
 
 def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
-    """The file that is meant, and the arguments behind it.
+    """Return the launch file that is meant, and its arguments.
 
     Raises:
-        UsageFault: A package is named that has no such file.
+        UsageFault: The package does not exist or has no such file.
     """
     from graphflow.workspace.executables import of_ros, package_share
     from graphflow.workspace.packages import find_workspace
@@ -99,7 +99,7 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
         if first.endswith(_ENDINGS) and package_share(rest[0], project_root(Path.cwd()), os.environ) is not None:
-            raise UsageFault(f"the package stands first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}")
+            raise UsageFault(f"the package comes first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}")
         why = why_no_package(first, find_workspace(Path.cwd()))
         if why is None and first in of_ros():
             graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
@@ -111,20 +111,19 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0])]
     if not found:
-        there = _launch_files(files)
-        raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
+        raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], _launch_files(files))}")
     return str(found[0]), rest[1:]
 
 
 _ENDINGS = (".py", ".xml", ".yaml", ".launch")
-"""Of launch files."""
+"""Suffixes of launch files."""
 
 
 def _refuse_package(word: str) -> None:
-    """See that a word alone is not the name of a package that has launch files.
+    """Check that a single word is not the name of a package with launch files.
 
     Raises:
-        UsageFault: It is; the text has its launch files.
+        UsageFault: It is; the text lists its launch files.
     """
     from graphflow.workspace.executables import package_share
     from graphflow.workspace.project import project_root
@@ -132,18 +131,18 @@ def _refuse_package(word: str) -> None:
     if Path(word).exists() or not word.isidentifier():
         return
     folder = package_share(word, project_root(Path.cwd()), os.environ)
-    there = _launch_files(_files_below(folder)) if folder is not None else []
-    if there:  # one without may have the name of a graph
-        raise UsageFault(f"{word!r} is a package; write graphflow launch {word} FILE; it has {', '.join(there)}")
+    files = _launch_files(_files_below(folder)) if folder is not None else []
+    if files:  # a package without launch files may share its name with a graph, which is meant then
+        raise UsageFault(f"{word!r} is a package; write graphflow launch {word} FILE; it has {', '.join(files)}")
 
 
 def _launch_files(files: Iterable[Path]) -> list[str]:
-    """The names of those that are launch files by their names."""
+    """Return the names that contain `launch`."""
     return sorted({file.name for file in files if "launch" in file.name})
 
 
 def _files_below(folder: Path) -> Iterator[Path]:
-    """The files below a folder, also behind links to folders; each folder once, and a bounded number."""
+    """Yield the files below a folder, following links to folders; each folder once, and a bounded number."""
     seen: set[str] = set()
     for at, folders, names in os.walk(folder, followlinks=True):
         folders[:] = [one for one in folders if os.path.realpath(os.path.join(at, one)) not in seen]
@@ -159,12 +158,12 @@ def _files_below(folder: Path) -> Iterator[Path]:
     "-o", "--output", "target", metavar="GRAPH.yaml", type=click.Path(path_type=Path), help="Write to a file."
 )
 def convert(file: Path, target: Path | None) -> int:
-    """Write a launch file in Python, XML or YAML as a graph file.
+    """Convert a launch file in Python, XML or YAML to a graph file.
 
-    What a graph file has no words for is listed with its line. One in Python is run, in a process of its own, against
-    stand-ins for ROS's launch packages; so do not convert what you do not trust.
+    What a graph file cannot express is listed with its line. A Python launch file is executed, in a process of its own,
+    with replacements of ROS's launch packages: do not convert files that you do not trust.
 
-    Exit code 0: all of it is there; 1: something is not.
+    Exit code 0: everything was converted; 1: something was not.
     """
     from graphflow.launchfiles.conversion import FROM_LAUNCH
     from graphflow.launchfiles.reading import read
@@ -177,7 +176,7 @@ def convert(file: Path, target: Path | None) -> int:
         problems.append(Problem(place, message))
 
     if target is not None and target.exists():
-        raise UsageFault(f"{target} is there already; remove it, or name another file")
+        raise UsageFault(f"{target} already exists; remove it, or name another file")
     top = read(file, shown(file), complain, complain, described, remark=complain, leave_out=complain)
     text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top.without(FROM_LAUNCH))}"
     if target is None:
@@ -191,14 +190,14 @@ def convert(file: Path, target: Path | None) -> int:
 
 
 def _yaml(top: Item) -> str:
-    """A tree as YAML that reads back as the same."""
+    """Format a tree as YAML that parses to the same tree."""
     import yaml
 
     from graphflow.markup.source import scalar
     from graphflow.markup.substitutions import Written
 
     class Dumper(yaml.SafeDumper):
-        """Quotes every text that YAML 1.2 reads as something else."""
+        """A dumper that quotes every text that YAML 1.2 would read as another type."""
 
         def ignore_aliases(self, data: Any) -> bool:
             return True

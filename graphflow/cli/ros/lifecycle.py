@@ -18,7 +18,7 @@ from graphflow.names import did_you_mean, is_hidden
 
 @click.group(cls=GraphVerbs)
 def lifecycle() -> None:
-    """Bring lifecycle nodes from state to state."""
+    """Show and change the states of lifecycle nodes."""
 
 
 _hidden = click.option("-a", "--all", "--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
@@ -27,10 +27,10 @@ _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), de
 
 @lifecycle.command()
 @_hidden
-@click.option("-c", "--count-nodes", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-nodes", is_flag=True, help="Print only the count.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def nodes(hidden: bool, count_nodes: bool, as_json: bool) -> None:
-    """List the nodes that have a life cycle."""
+    """List the lifecycle nodes."""
     with View(domain_id()) as view:
         found = _managed(view, hidden=hidden)
     if as_json:
@@ -49,7 +49,7 @@ def nodes(hidden: bool, count_nodes: bool, as_json: bool) -> None:
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
-    """Show the state of one node or of all."""
+    """Show the state of one lifecycle node or of all."""
     found: dict[str, Any] = {}
     with View(domain_id()) as view:
         for node in [_node(view, name)] if name else _managed(view, hidden=hidden):
@@ -68,11 +68,13 @@ def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
 
 @lifecycle.command(name="list")
 @click.argument("name", metavar="NODE")
-@click.option("-a", "--all", "everything", is_flag=True, help="Those of all states, not only of the present one.")
+@click.option(
+    "-a", "--all", "everything", is_flag=True, help="Show the transitions of all states, not only of the current one."
+)
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
-    """List the transitions that a node can make now."""
+    """List the transitions that a node can make from its current state."""
     with View(domain_id()) as view:
         found = transitions(view, _node(view, name), timeout, everything=everything)
     if as_json:
@@ -89,7 +91,7 @@ def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
 @click.argument("transition", metavar="TRANSITION")
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=60.0, show_default=True, help="Seconds.")
 def set_(name: str, transition: str, timeout: float) -> int:
-    """Make a transition: configure, activate, deactivate, cleanup or shutdown, or its number."""
+    """Trigger a transition: configure, activate, deactivate, cleanup or shutdown, or its number."""
     with View(domain_id()) as view:
         node = _node(view, name)
         ways = {t.transition.label: t.transition for t in transitions(view, node, timeout)}
@@ -116,17 +118,17 @@ def _managed(view: View, *, hidden: bool) -> list[str]:
 
 
 def _node(view: View, name: str) -> str:
-    """The full name of a node with a life cycle.
+    """Return the full name of a lifecycle node.
 
     Raises:
         CallError: There is no such node.
-        UsageFault: It has no life cycle.
+        UsageFault: It is not a lifecycle node.
     """
     node, managed = name if name.startswith("/") else f"/{name}", _managed(view, hidden=True)
     if node in managed:
         return node
     if node not in view.cache.nodes():
-        near = did_you_mean(node, managed) if managed else "; no node here has a life cycle"
+        near = did_you_mean(node, managed) if managed else "; there are no lifecycle nodes here"
         raise CallError(f"there is no node {node}{near}")
-    have = f"; those that do: {', '.join(managed)}" if managed else "; no node here does"
-    raise UsageFault(f"{node} has no life cycle{have}")
+    others = f"; lifecycle nodes: {', '.join(managed)}" if managed else "; there are none here"
+    raise UsageFault(f"{node} is not a lifecycle node{others}")

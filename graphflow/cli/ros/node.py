@@ -1,4 +1,4 @@
-"""`graphflow node list` and `node info`."""
+"""`graphflow node list` and `info`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class _NodeVerbs(GraphVerbs):
 
         verb = " ".join(["stop" if word == "kill" else word, *rest])
         alone = by_itself(f"/{rest[0].lstrip('/')}") if rest and not rest[0].startswith("-") else ""
-        return alone or f"nodes are stopped and started by: graphflow {verb}"
+        return alone or f"to control nodes: graphflow {verb}"
 
 
 @click.group(cls=_NodeVerbs)
@@ -45,7 +45,7 @@ def node() -> None:
 
 @node.command(name="list")
 @click.option("-a", "--all", "--include-hidden-nodes", "everything", is_flag=True, help="Include hidden nodes.")
-@click.option("-c", "--count-nodes", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-nodes", is_flag=True, help="Print only the count.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(everything: bool, count_nodes: bool, as_json: bool) -> None:
     """List the names of all nodes."""
@@ -90,7 +90,7 @@ def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
         output.data(f"  {title}:")
         for e in cache.endpoints(kind, node=full):
             if include_hidden or not is_hidden(e.name):
-                qos = f"  ({_words(e.qos)})" if verbose else ""
+                qos = f"  ({_qos_text(e.qos)})" if verbose else ""
                 output.data(f"    {e.name}: {e.type}{qos}")
         if kind is Kind.CLIENT:
             output.data("")
@@ -102,7 +102,7 @@ def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
     output.data("")
 
 
-def _words(qos: Qos) -> str:
+def _qos_text(qos: Qos) -> str:
     return f"{qos.reliability.name}, {qos.durability.name}, {qos.history.name} ({qos.depth})"
 
 

@@ -1,4 +1,4 @@
-"""`graphflow param`: list, get, set, describe, delete, dump and load."""
+"""`graphflow param list`, `get`, `set`, `delete`, `describe`, `dump` and `load`."""
 
 from __future__ import annotations
 
@@ -29,19 +29,24 @@ def param() -> None:
     """List, get, set, describe, dump and load parameters."""
 
 
-WAYS = 2
-"""Nodes for which a whole command is suggested where the node was left out."""
+SUGGESTED = 2
+"""Most nodes for which a whole command is suggested if the node is missing."""
 _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, help="Seconds to wait.")
 _hidden = click.option(
-    "--include-hidden-nodes", is_flag=True, expose_value=False, help="They are found by name anyway."
+    "--include-hidden-nodes",
+    is_flag=True,
+    expose_value=False,
+    help="Accepted for ROS 2; hidden nodes are always found by name.",
 )
 
 
 @param.command(name="list")
 @click.argument("name", metavar="[NODE]", required=False)
 @click.option("--param-type", is_flag=True, help="Also show types.")
-@click.option("--filter", "pattern", default="", callback=pattern_option, help="Only those that match this pattern.")
-@click.option("--param-prefixes", multiple=True, help="Only those below these.")
+@click.option(
+    "--filter", "pattern", default="", callback=pattern_option, help="List only parameters that match this pattern."
+)
+@click.option("--param-prefixes", multiple=True, help="List only parameters below these prefixes.")
 @click.option("--include-hidden-nodes", is_flag=True, help="Include parameters of hidden nodes.")
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -76,7 +81,7 @@ def list_(
         output.as_json(found)
         return
     if (pattern or param_prefixes) and not any(found.values()):
-        output.talk("no parameter is meant; without --filter and --param-prefixes all are listed")
+        output.talk("no parameter matches; without --filter and --param-prefixes, all are listed")
     for node, names_and_types in found.items():
         if not name:
             output.data(f"{node}:")
@@ -84,13 +89,13 @@ def list_(
 
 
 def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
-    """The error for a command with a word too few: the node was left out, or what comes after it.
+    """Return the error for a command without a node or without the words after it.
 
     Args:
-        words: Those that were given.
+        words: The words that were given.
 
     Raises:
-        CallError: The first is a node's name by its slash, and there is no such node.
+        CallError: The first word begins with a slash, but there is no such node.
     """
     first, *rest = (word for word in words if word)
     form = f"param {verb} NODE PARAMETER{' VALUE' if verb == 'set' else ''}"
@@ -101,7 +106,7 @@ def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
         lacking = ["PARAMETER"] * (not rest) + ["VALUE"] * (verb == "set")
         return UsageFault(f"write {form}: graphflow param {verb} {' '.join([first, *rest, *lacking])}")
     known = _names_by_node(view, timeout)
-    bare = first.lstrip("/")  # as parameters of ROS 1 are named
+    bare = first.lstrip("/")  # parameters of ROS 1 begin with a slash
     having = [node for node, names in known.items() if bare in names]
     node, name = max((first.rpartition(sign)[::2] for sign in "./"), key=lambda pair: len(pair[0]))
     if not having and node and _is_node(view, node):
@@ -112,7 +117,7 @@ def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
     if not having:
         near = did_you_mean(first, (), hidden={name for names in known.values() for name in names})
         return UsageFault(f"write {form}: there is no node {first!r}, nor a parameter of that name{near}")
-    if len(having) > WAYS:
+    if len(having) > SUGGESTED:
         return UsageFault(f"write {form}; {bare!r} is a parameter of {', '.join(having)}")
     after = [bare, *(rest or ["VALUE"] * (verb == "set"))]
     ways = [f"graphflow param {verb} {' '.join([node, *after])}" for node in having]
@@ -120,7 +125,7 @@ def _lacking(view: View, timeout: float, verb: str, *words: str) -> UsageFault:
 
 
 _ASSIGNED = re.compile(r"\{?\s*(?P<name>[\w./]+)\s*(:=|=|:\s)\s*(?P<value>[^{}]*[^{}\s])\s*\}?")
-"""A parameter with its value in one word, as files and other commands have it."""
+"""A parameter and its value in one word, as in files and in other commands."""
 
 
 def _is_node(view: View, name: str) -> bool:
@@ -132,7 +137,7 @@ def _is_node(view: View, name: str) -> bool:
 
 
 def _names_by_node(view: View, timeout: float) -> dict[str, list[str]]:
-    """The names of the parameters of all nodes that answer."""
+    """Return the names of parameters, by node, of all nodes that answer."""
     found = {}
     for node in sorted(e.node_name for e in view.cache.endpoints(Kind.SERVICE) if e.name.endswith("/list_parameters")):
         with suppress(CallError):
@@ -149,7 +154,7 @@ def _type_name(type_: int) -> str:
 @param.command()
 @click.argument("name", metavar="NODE")
 @click.argument("parameter", default="", metavar="PARAMETER")
-@click.option("--hide-type", is_flag=True, help="Only the value.")
+@click.option("--hide-type", is_flag=True, help="Print only the value.")
 @_hidden
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -181,7 +186,7 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
 @_hidden
 @_timeout
 def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> int:
-    """Set a parameter: VALUE is YAML, read as the parameter's type."""
+    """Set a parameter. VALUE is YAML, converted to the parameter's type."""
     with View(domain_id()) as view:
         if not value:
             raise _lacking(view, timeout, "set", name, parameter)
@@ -225,7 +230,7 @@ def delete(name: str, parameter: str, timeout: float) -> int:
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bool) -> int:
-    """Show the type, description and limits of parameters; of all when none is named."""
+    """Show the type, description and limits of parameters, of all if none is named."""
     from graphflow.introspect.messages.echo import plain
 
     with View(domain_id()) as view:
@@ -267,7 +272,7 @@ def _described(d: ParameterDescriptor) -> str:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.argument("file", default="", metavar="")
 def dump(name: str, timeout: float, as_json: bool, file: str) -> None:
-    """Write the parameters of a node as a file that `param load`, `--params-file` and ROS 2 read."""
+    """Print the parameters of a node as a file for `param load`, `--params-file` and ROS 2."""
     from graphflow.graph.params_file import write
     from graphflow.runtime.parameters.values import from_message
 
@@ -287,7 +292,7 @@ def dump(name: str, timeout: float, as_json: bool, file: str) -> None:
 
 
 class _Load(Verb):
-    """A verb of a node and a file, which tells where each stands."""
+    """A verb of a node and a file, which corrects their order."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         words = [word for word in args if not word.startswith("-")]
@@ -295,14 +300,14 @@ class _Load(Verb):
         if not ctx.resilient_parsing and files and words[0] == files[0]:
             others = [word for word in words if word not in files]
             if len(words) <= 2 and "--help" not in args:
-                ctx.fail(f"the node stands first: graphflow param load {others[0] if others else 'NODE'} {files[0]}")
+                ctx.fail(f"the node comes first: graphflow param load {others[0] if others else 'NODE'} {files[0]}")
         return super().parse_args(ctx, args)
 
 
 @param.command(cls=_Load)
 @click.argument("name", metavar="NODE")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--no-use-wildcard", is_flag=True, help="Only the sections that name the node.")
+@click.option("--no-use-wildcard", is_flag=True, help="Use only the sections that name the node.")
 @_hidden
 @_timeout
 def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
@@ -320,7 +325,7 @@ def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
 
 
 def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
-    """Set what can be set; returns whether anything could not."""
+    """Set parameters, as far as possible; return whether any could not be set."""
     described = remote.describe(list(settings))
     present = dict(zip(described, remote.get(list(described)), strict=True))
     failed = False
@@ -343,7 +348,7 @@ def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
 
 
 def _message(value: Any, declared: ParameterDescriptor) -> ParameterValue:
-    """A value as a message; an empty list has the declared type."""
+    """Convert a value to a message; an empty list gets the declared type."""
     from graphflow.interface import type_id
     from graphflow.runtime.parameters.values import to_message
 

@@ -1,4 +1,4 @@
-"""`graphflow pkg list`, `executables`, `prefix`, `xml` and `create`: ROS 2's words for what a project has."""
+"""`graphflow pkg list`, `executables`, `prefix`, `xml` and `create`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from graphflow.reading import found_text
 
 @click.group(cls=Verbs)
 def pkg() -> None:
-    """List packages and what is in them, or make one."""
+    """List packages and their contents, or create one."""
 
 
 def _root() -> Path:
@@ -29,7 +29,7 @@ def _root() -> Path:
 
 
 def _known() -> list[str]:
-    """Packages of nodes that come with graphflow, of the project, and those that have types."""
+    """Return the packages of graphflow, of the project and of installed distributions, and those that have types."""
     from graphflow.msgs import registry
     from graphflow.workspace.executables import project_packages, with_graphflow
     from graphflow.workspace.installed import installed
@@ -41,7 +41,7 @@ def _known() -> list[str]:
 
 
 def _hint(package: str) -> str:
-    """Why there is no package of a name: the state of the folder that has it, or else the name that is meant."""
+    """Explain why a package does not exist, by its folder's state, or else suggest a similar name."""
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.unfound import why_no_package
 
@@ -53,16 +53,16 @@ def _hint(package: str) -> str:
 @pkg.command("list")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(as_json: bool) -> None:
-    """List the packages that are known here."""
+    """List the known packages."""
     output.listing(_known(), json=as_json)
 
 
 @pkg.command()
 @click.argument("package", default="")
-@click.option("--full-path", is_flag=True, help="Where each is.")
+@click.option("--full-path", is_flag=True, help="Print the path of each.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def executables(package: str, full_path: bool, as_json: bool) -> int:
-    """List what `graphflow run PACKAGE EXECUTABLE` can start."""
+    """List the executables that `graphflow run PACKAGE EXECUTABLE` can start."""
     from graphflow.workspace.executables import all_executables
     from graphflow.workspace.packages import find_workspace
 
@@ -87,9 +87,9 @@ def executables(package: str, full_path: bool, as_json: bool) -> int:
 
 @pkg.command()
 @click.argument("package")
-@click.option("--share", is_flag=True, help="The folder of its files.")
+@click.option("--share", is_flag=True, help="Print its share folder instead.")
 def prefix(package: str, share: bool) -> int:
-    """Print where a package is."""
+    """Print the install prefix of a package."""
     from graphflow.workspace.executables import EXECUTABLES, package_prefix, package_share
     from graphflow.workspace.project import demos_root
 
@@ -105,7 +105,7 @@ def prefix(package: str, share: bool) -> int:
 
 @pkg.command()
 @click.argument("package")
-@click.option("-t", "--tag", help="Only what this tag has.")
+@click.option("-t", "--tag", help="Print only the contents of this tag.")
 def xml(package: str, tag: str | None) -> int:
     """Print a package's package.xml."""
     from graphflow.workspace.executables import package_share

@@ -1,4 +1,4 @@
-"""`graphflow rclpy`: whether Python itself imports rclpy from graphflow."""
+"""`graphflow rclpy`: make rclpy importable from plain Python, or undo that."""
 
 from __future__ import annotations
 
@@ -11,46 +11,46 @@ from graphflow.rclpy import enabling
 
 @click.group()
 def rclpy() -> None:
-    """Let plain `python` import rclpy, or not."""
+    """Make rclpy importable from plain `python`, or undo that."""
 
 
 @rclpy.command()
 def enable() -> None:
-    """Let this Python import rclpy, also outside graphflow's commands."""
+    """Make rclpy importable from this Python, also outside graphflow's commands."""
     try:
         file = enabling.enable()
     except OSError as error:
         raise GraphflowError(
             f"{error.filename}: {error.strerror}; enable it in a virtual environment of your own"
         ) from None
-    output.data(f"python imports rclpy from graphflow now: {file}")
-    _say_who_wins()
+    output.data(f"python now imports rclpy from graphflow: {file}")
+    _warn_of_ros()
 
 
 @rclpy.command()
 def disable() -> None:
-    """Take back what `enable` did."""
+    """Undo `graphflow rclpy enable`."""
     try:
         was_enabled = enabling.disable()
     except OSError as error:
         raise GraphflowError(f"{error.filename}: {error.strerror}") from None
-    gone = f"python does not import rclpy from graphflow any more: {enabling.file()} is removed"
-    output.data(gone if was_enabled else "it was not enabled; nothing is changed")
+    gone = f"python no longer imports rclpy from graphflow: {enabling.file()} was removed"
+    output.data(gone if was_enabled else "it was not enabled; nothing was changed")
 
 
 @rclpy.command()
 def status() -> None:
-    """Say what `import rclpy` means here."""
+    """Show which rclpy this Python imports."""
     other = enabling.elsewhere()
     if other is not None:
         output.data(f"a ROS 2 is sourced: rclpy is {other}")
     elif enabling.is_enabled():
         output.data(f"enabled: python imports rclpy from graphflow ({enabling.file()})")
     else:
-        output.data("not enabled: only graphflow's own commands import rclpy; graphflow rclpy enable lets python do so")
+        output.data("not enabled: only graphflow's own commands import rclpy; graphflow rclpy enable changes that")
 
 
-def _say_who_wins() -> None:
+def _warn_of_ros() -> None:
     other = enabling.elsewhere()
     if other is not None:
-        output.talk(f"but in this shell a ROS 2 is sourced, and wins: {other}")
+        output.talk(f"but a ROS 2 is sourced in this shell and takes precedence: {other}")

@@ -1,4 +1,4 @@
-"""What `doctor --report` tells: of this system, of what is installed, and of the graph, in ROS 2's sections."""
+"""The report of `doctor --report` on this system, the installation and the graph, in ROS 2's sections."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _CHECKS = {
     "TOPIC LIST": "health",
     "QOS COMPATIBILITY LIST": "misfits",
 }
-"""Sections that stand for a check; the others are printed only in a whole report."""
+"""Sections that belong to a check; the others are printed only in a full report."""
 _VARIABLES = ("ROS_DISTRO", "ROS_DOMAIN_ID", "GRAPHFLOW_DOMAIN", "RMW_IMPLEMENTATION", "GRAPHFLOW_RENDEZVOUS")
 
 
 def sections(failed: Collection[str] | None) -> Iterator[str]:
-    """The lines of a report.
+    """Yield the lines of a report.
 
     Args:
-        failed: Checks that have failed, for only the sections that stand for them; None for all.
+        failed: Failed checks, to which the report is limited; None for a full report.
     """
     with View(domain_id()) as view:
         graph = _graph(view)
@@ -39,7 +39,7 @@ def sections(failed: Collection[str] | None) -> Iterator[str]:
 
 
 def installed() -> Iterator[str]:
-    """The lines of a report where no graph runs."""
+    """Yield the lines of a report without a running graph."""
     for title, rows in _installed().items():
         yield from _section(title, rows)
 

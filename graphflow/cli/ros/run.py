@@ -1,4 +1,4 @@
-"""`graphflow run MODULE:CLASS`."""
+"""`graphflow run`: run one node, or a program written for rclpy."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from graphflow.errors import GraphflowError, RunsWhenImported, UsageFault
 from graphflow.reading import found_text
 
 _VERBS = {("rmw_zenoh_cpp", "rmw_zenohd"): "router", ("rqt_graph", "rqt_graph"): "graph"}
-"""Programs of ROS 2 that are verbs here."""
+"""Programs of ROS 2 that are verbs of graphflow."""
 
 
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
-@click.option("--prefix", help="A command before the node's, such as 'gdb -ex run --args' or 'nice -n 10'.")
+@click.option("--prefix", help="Command under which to run the node, such as 'gdb -ex run --args' or 'nice -n 10'.")
 @click.argument("what", metavar="MODULE:CLASS|FILE.py|NAME")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED)
 def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     """Run one node: `graphflow run nodes.talker:Talker --ros-args -r chatter:=news -p rate:=2.0`.
 
-    A file (nodes/talker.py) or module (nodes.talker) will do where it has one node class, and the name of a node that
-    comes with graphflow (turtlesim). Words that are not for ROS are the program's own: they are in sys.argv; those that
-    nothing reads are refused.
+    A file (nodes/talker.py) or module (nodes.talker) with one node class will do, and so will the name of a node that
+    comes with graphflow (turtlesim). Other words are passed to the program in sys.argv; those that nothing reads are
+    refused.
 
-    What is written for rclpy runs as it stands: a file, or a package of a ROS 2 workspace and an executable of it, as
-    its setup.py, setup.cfg or CMakeLists.txt has it. Nothing is built before.
+    Programs written for rclpy run unchanged and without building: a file, or a package of a ROS 2 workspace and its
+    executable, as listed in its setup.py, setup.cfg or CMakeLists.txt.
 
     \b
     -r from:=to     remap a name; __node:=NAME and __ns:=/NAMESPACE rename the node
@@ -49,10 +49,10 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     from graphflow.runtime.run import run as run_node
 
     if what.startswith("-"):
-        raise UsageFault(f"run has no option {what!r}; what is for the node comes after its name")
+        raise UsageFault(f"run has no option {what!r}; the node's options come after its name")
     if (option := behind(words)) is not None and not _mentions(what, option):
         placed = before_the_verb(option, ["run", what, *words])
-        output.talk(f"note: {option} behind the node is left to its program; graphflow's {placed}")
+        output.talk(f"note: {option} after the node is passed to its program; graphflow's {placed}")
     verb = _VERBS.get((what, *words[:1]))  # type: ignore[arg-type]
     command = [verb, *words[1:]] if verb else ["run", what, *words]
     if prefix or verb:
@@ -64,7 +64,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     program = find_program(what, words, Path.cwd())
     if program is not None:
         if hasattr(signal, "pthread_sigmask"):
-            signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # an interpreter that starts cannot take it
+            signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # an interpreter cannot handle it while starting
         _become([sys.executable, "-P", "-m", "graphflow.rclpy", *command[1:]])
     try:
         cls, rest = find_class(what, words)
@@ -76,7 +76,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
         raise UsageFault(str(error)) from None
     if text := unread(ros.rest, [cls], is_own_program=False):
         cut = cut_off(ros.rest[0], rest)
-        raise UsageFault(f"nothing reads the word {ros.rest[0]!r}{cut}" if cut else text)
+        raise UsageFault(f"nothing reads {ros.rest[0]!r}{cut}" if cut else text)
     sys.argv = [getfile(cls), *ros.rest]
     names = Resolver(cls.interface().node_name, "/", ros.remaps)
     refuse_taken_names([names.full_name], domain_id(), hint="give this one another name with -r __node:=NAME")
@@ -84,7 +84,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
 
 
 def _mentions(what: str, option: str) -> bool:
-    """Whether a file that is to be run has an option of that name itself."""
+    """Whether the file to run mentions an option of that name, which is then its own."""
     try:
         return what.endswith(".py") and option in found_text(Path(what), "replace")
     except OSError:
@@ -92,7 +92,7 @@ def _mentions(what: str, option: str) -> bool:
 
 
 def _become(command: list[str]) -> NoReturn:
-    """Go on as another program.
+    """Replace this process by another program.
 
     Raises:
         UsageFault: There is none of that name.

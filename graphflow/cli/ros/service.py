@@ -30,7 +30,7 @@ def service() -> None:
 
 @service.command(name="list")
 @click.option("-t", "--show-types", is_flag=True, help="Also show types.")
-@click.option("-c", "--count-services", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-services", is_flag=True, help="Print only the count.")
 @click.option("--include-hidden-services", is_flag=True, help="Include hidden services.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(show_types: bool, count_services: bool, include_hidden_services: bool, as_json: bool) -> None:
@@ -55,7 +55,7 @@ def type_(name: str) -> None:
 
 @service.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-services", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-services", is_flag=True, help="Print only the count.")
 @click.option("--include-hidden-services", is_flag=True, help="Include hidden services.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def find(type_name: str, count_services: bool, include_hidden_services: bool, as_json: bool) -> None:
@@ -74,7 +74,7 @@ def info(name: str, verbose: bool, as_json: bool) -> None:
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         types = view.service_types(full)
-        _tell_shared(view, full)
+        _warn_if_shared(view, full)
         clients, servers = (view.cache.endpoints(kind, full) for kind in (Kind.CLIENT, Kind.SERVICE))
     if as_json:
         nodes = {"clients": [e.node_name for e in clients], "servers": [e.node_name for e in servers]}
@@ -86,8 +86,8 @@ def info(name: str, verbose: bool, as_json: bool) -> None:
         output.lines(f"    {end.node_name}" for end in ends if verbose)
 
 
-def _tell_shared(view: View, name: str) -> None:
-    """Warn where several nodes offer a service."""
+def _warn_if_shared(view: View, name: str) -> None:
+    """Warn if several nodes offer a service."""
     for text in shared(view.cache.named(name)):
         output.talk(f"WARNING: {text}")
 
@@ -96,7 +96,7 @@ def _tell_shared(view: View, name: str) -> None:
 @click.argument("name", metavar="SERVICE")
 @echo_options
 def echo(name: str, **options: Any) -> int:
-    """Show the calls of a service that has introspection, as they are made. Ctrl-C stops it."""
+    """Show the calls of a service with introspection as they are made, until Ctrl-C."""
     from graphflow.cli.messages import echoing
     from graphflow.introspect.messages.definitions import learn
 
@@ -105,7 +105,7 @@ def echo(name: str, **options: Any) -> int:
     with View(domain_id()) as view:
         type_name, *others = view.service_types(full)
         if others:
-            raise UsageFault(f"{full} has several types: {', '.join([type_name, *others])}; one of its nodes is wrong")
+            raise UsageFault(f"{full} has several types: {', '.join([type_name, *others])}; its nodes disagree")
         learn(view, full, type_name, (Kind.SERVICE,))
         if not view.cache.endpoints(Kind.PUBLISHER, f"{full}/_service_event"):
             output.talk(f"WARNING: {view.cache.without_events(full)}")
@@ -116,9 +116,7 @@ def echo(name: str, **options: Any) -> int:
 @click.argument("name", metavar="SERVICE")
 @click.argument("type_name", metavar="TYPE", required=False)
 @click.argument("values", nargs=-1)
-@click.option(
-    "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call repeatedly, this many times a second."
-)
+@click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call repeatedly at this rate, in Hz.")
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds.")
 @stdin_option
 @click.option("--json", "as_json", is_flag=True, help="Print the response as JSON.")
@@ -143,13 +141,13 @@ def call(
     if type_name is None:
         with View(domain_id()) as view:
             types = view.service_types(full)
-        told, given = " and ".join(types), types[0] if len(types) == 1 else "TYPE"
-        raise UsageFault(f"TYPE is missing; {full} is of type {told}: graphflow service call {full} {given}")
+        all_types, given = " and ".join(types), types[0] if len(types) == 1 else "TYPE"
+        raise UsageFault(f"TYPE is missing; {full} is of type {all_types}: graphflow service call {full} {given}")
     with View(domain_id()) as view:
-        there = view.cache.services(hidden=True).get(full, [])
-        if there:
-            learn(view, full, type_name if type_name in there or len(there) > 1 else there[0], (Kind.SERVICE,))
-    wanted = type_of_word(type_name, full, there, command="service call", rest=_meant(there, (type_name, *values)))
+        known = view.cache.services(hidden=True).get(full, [])
+        if known:
+            learn(view, full, type_name if type_name in known or len(known) > 1 else known[0], (Kind.SERVICE,))
+    wanted = type_of_word(type_name, full, known, command="service call", rest=_meant(known, (type_name, *values)))
     check_kind(wanted, "srv")
     values_read = message_values(values, from_stdin=from_stdin)
     with View(domain_id()) as view:
@@ -161,7 +159,7 @@ def call(
                 output.error(str(error))
                 return exits.TIMEOUT
         actual = agree(wanted, view.service_types(full), full)
-        _tell_shared(view, full)
+        _warn_if_shared(view, full)
         request = from_plain(registry.interface_class(registry.service_schema(actual).request.name), values_read)
         while True:
             started = time.monotonic()
@@ -178,7 +176,7 @@ def call(
 
 
 def _meant(types: list[str], words: Sequence[str]) -> str:
-    """The request that words are meant as which stand in the place of the type; empty if that is not known."""
+    """Return the request that words in the place of the type were meant as; empty if unclear."""
     from graphflow.msgs import registry
     from graphflow.msgs.instead import named
 

@@ -1,4 +1,4 @@
-"""Node states from the supervisors of the graphs here, for `graphflow doctor`: more than the network shows."""
+"""Node states from this machine's supervisors, for `graphflow doctor`: they know more than the network shows."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ _UNWELL = {
     "given_up": "has failed",
     "waiting": "has failed",
 }
-"""Faults, by the states of `ps`."""
+"""Descriptions of the states of `ps` that are faults."""
 
 
 class Supervised(NamedTuple):
-    """Faults and notes."""
+    """Faults and notes from supervisors."""
 
     faults: list[str]
     unseen: list[str]
-    """Nodes that run and cannot be seen on the network from here."""
+    """Notes on running nodes that cannot be seen on the network from here."""
 
 
 def supervised(seen: Collection[str]) -> Supervised:
-    """Faults that supervisors report.
+    """Query the supervisors of this domain for faults.
 
     Args:
         seen: Nodes that the network shows.
@@ -53,7 +53,7 @@ def supervised(seen: Collection[str]) -> Supervised:
 
 
 def faults(rows: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Nodes that have ended badly, say nothing, or are stopped."""
+    """Describe nodes that have failed, do not respond or are stopped (SIGSTOP)."""
     found = []
     for row in rows:
         pid = row["pid"]
@@ -66,6 +66,6 @@ def faults(rows: Iterable[Mapping[str, Any]]) -> list[str]:
 
 
 def unseen(rows: Iterable[Mapping[str, Any]], seen: Collection[str]) -> list[str]:
-    """Nodes that run well for their supervisor, and which the network does not show."""
+    """Describe nodes that are ready according to their supervisor but are not seen on the network."""
     lost = [r["node"] for r in rows if r["is_named"] and r["state"] == "ready" and r["node"] not in seen]
-    return [f"not seen on the network, though their supervisor has them as ready: {', '.join(lost)}"] if lost else []
+    return [f"not seen on the network, although ready for their supervisor: {', '.join(lost)}"] if lost else []

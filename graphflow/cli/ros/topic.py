@@ -37,7 +37,7 @@ def topic() -> None:
 
 @topic.command(name="list")
 @click.option("-t", "--show-types", is_flag=True, help="Also show types.")
-@click.option("-c", "--count-topics", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-topics", is_flag=True, help="Print only the count.")
 @click.option("-v", "--verbose", is_flag=True, help="Also show the number of publishers and subscribers.")
 @click.option("--include-hidden-topics", is_flag=True, help="Include hidden topics.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -94,7 +94,7 @@ def info(name: str, verbose: bool, as_json: bool) -> int:
 
 
 def _misfits(e: Entity, cache: GraphCache) -> list[str]:
-    """What keeps an endpoint apart from others on its topic, here or over DDS."""
+    """Describe why an endpoint does not connect to others on its topic, here or over DDS."""
     judged = [(other, verdict(e, other)) for other in cache.named(e.name)]
     return [
         f"INCOMPATIBLE with {other.node_name}: {', '.join(found.policies) or _difference(e, other)}"
@@ -154,7 +154,7 @@ def _described(e: Entity, cache: GraphCache) -> str:
 @click.argument("type_name", metavar="[TYPE]", required=False)
 @echo_options
 def echo(name: str, type_name: str | None, **options: Any) -> int:
-    """Show the messages of a topic as they arrive. Ctrl-C stops it."""
+    """Show the messages of a topic as they arrive, until Ctrl-C."""
     from graphflow.cli.messages import echoing
     from graphflow.cli.messages.types import refuse_turned, use_project
 
@@ -162,7 +162,7 @@ def echo(name: str, type_name: str | None, **options: Any) -> int:
     refuse_turned(name, type_name, "topic echo")
     whole, dot, field = name.partition(".")
     if dot:
-        raise UsageFault(f"a field is shown by: graphflow topic echo {whole} --field {field}")
+        raise UsageFault(f"to show a field: graphflow topic echo {whole} --field {field}")
     full = expand(name, "/", "cli")
     return echoing.run(full, _echo_type(full, type_name), taken(options))
 
@@ -173,11 +173,11 @@ def _warn_of_profile(view: View, full: str) -> None:
 
 
 _A_FIELD = re.compile(r"[a-z_][a-z0-9_]*(\.\w+)*")
-"""The path of a field, which no type is written like."""
+"""The path of a field, which cannot be a type."""
 
 
 def _echo_type(full: str, given: str | None) -> str:
-    """The type to listen for: the one in the graph, else the given one."""
+    """Return the type to subscribe with: the graph's, or else the given one."""
     from graphflow.cli.messages.types import agree, check_kind, type_of_word
     from graphflow.errors import SupervisorError
     from graphflow.introspect.messages.definitions import learn
@@ -195,7 +195,7 @@ def _echo_type(full: str, given: str | None) -> str:
             raise
         cache, topics, types, alone = GraphCache(), {}, [], ""
     if given and types and f"/{given}" not in topics and _A_FIELD.fullmatch(given):
-        raise UsageFault(f"a field is shown by: graphflow topic echo {full} --field {given}")
+        raise UsageFault(f"to show a field: graphflow topic echo {full} --field {given}")
     wanted = type_of_word(given, full, types, topics) if given else None
     if wanted is not None:
         check_kind(wanted, "msg")
@@ -205,9 +205,7 @@ def _echo_type(full: str, given: str | None) -> str:
             raise CallError(f"topic {full} does not appear to be published{alone}")
         if topic := next((topic for topic in visible if full.startswith(f"{topic}/")), None):
             field = full.removeprefix(f"{topic}/").replace("/", ".")
-            raise UsageFault(
-                f"there is no topic {full}; a field is shown by: graphflow topic echo {topic} --field {field}"
-            )
+            raise UsageFault(f"there is no topic {full}; to show a field: graphflow topic echo {topic} --field {field}")
         near = cache.instead(full, visible)
         if near.startswith("; it is"):
             raise CallError(f"Unknown topic '{full}'{near}")
@@ -221,7 +219,7 @@ def _echo_type(full: str, given: str | None) -> str:
         assert wanted is not None
         return wanted
     if len(types) > 1 and wanted is None:
-        raise UsageFault(f"{full} has several types: {', '.join(types)}; say which")
+        raise UsageFault(f"{full} has several types: {', '.join(types)}; name one after the topic")
     return types[0] if wanted is None else agree(wanted, types, full)
 
 
@@ -241,7 +239,7 @@ def type_(name: str) -> int:
 
 @topic.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-topics", is_flag=True, help="Only the count.")
+@click.option("-c", "--count-topics", is_flag=True, help="Print only the count.")
 @click.option("--include-hidden-topics", is_flag=True, help="Include hidden topics.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def find(type_name: str, count_topics: bool, include_hidden_topics: bool, as_json: bool) -> None:
@@ -255,10 +253,10 @@ def find(type_name: str, count_topics: bool, include_hidden_topics: bool, as_jso
 @click.argument("names", metavar="TOPIC...", nargs=-1, required=True)
 @click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
 @click.option("--filter", "expression", default="", help="Count only messages m for which this holds: 'm.data > 3'.")
-@click.option("--wall-time", is_flag=True, help="By the wall clock, as always here.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line every second for each topic.")
+@click.option("--wall-time", is_flag=True, help="Accepted for ROS 2; the wall clock is always used.")
+@click.option("--json", "as_json", is_flag=True, help="Print a line of JSON every second for each topic.")
 def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool, as_json: bool) -> int:  # noqa: ARG001 - ROS 2's word
-    """Show how often messages are published. Ctrl-C stops it."""
+    """Show how often messages arrive, until Ctrl-C."""
     from graphflow.cli.messages import measuring
 
     topics = list(dict.fromkeys(expand(name, "/", "cli") for name in names))
@@ -269,9 +267,9 @@ def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool, as
 @topic.command()
 @click.argument("names", metavar="TOPIC...", nargs=-1, required=True)
 @click.option("-w", "--window", type=click.IntRange(1), default=100, show_default=True, help="Messages to average.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line every second for each topic.")
+@click.option("--json", "as_json", is_flag=True, help="Print a line of JSON every second for each topic.")
 def bw(names: tuple[str, ...], window: int, as_json: bool) -> int:
-    """Show how many bytes are published. Ctrl-C stops it."""
+    """Show how many bytes arrive, until Ctrl-C."""
     from graphflow.cli.messages import measuring
 
     return measuring.bw(list(dict.fromkeys(expand(name, "/", "cli") for name in names)), window, as_json=as_json)
@@ -280,9 +278,9 @@ def bw(names: tuple[str, ...], window: int, as_json: bool) -> int:
 @topic.command()
 @click.argument("name", metavar="TOPIC")
 @click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line every second.")
+@click.option("--json", "as_json", is_flag=True, help="Print a line of JSON every second.")
 def delay(name: str, window: int, as_json: bool) -> int:
-    """Show how old messages are when they come, by the stamps in their headers. Ctrl-C stops it."""
+    """Show how old messages are on arrival, by the stamps in their headers, until Ctrl-C."""
     from graphflow.cli.messages import measuring
 
     full = expand(name, "/", "cli")
@@ -296,7 +294,7 @@ def delay(name: str, window: int, as_json: bool) -> int:
 @click.option("--duration", type=click.FloatRange(0, min_open=True), help="Seconds to listen. [until Ctrl-C]")
 @plot_options
 def plot(names: tuple[str, ...], seconds: float, duration: float | None, **options: Any) -> int:
-    """Draw numbers of messages as curves, in the terminal or into a file. Ctrl-C stops it.
+    """Draw numbers of messages as curves, in the terminal or into a file, until Ctrl-C.
 
     \b
     graphflow topic plot /turtle1/pose.x,y
@@ -318,7 +316,7 @@ def plot(names: tuple[str, ...], seconds: float, duration: float | None, **optio
 
 
 def _learn(*topics: str) -> None:
-    """Make the types of topics known, as far as they are there."""
+    """Fetch the types of topics from the graph, as far as the topics exist."""
     from graphflow.cli.messages.types import use_project
     from graphflow.errors import SupervisorError
     from graphflow.introspect.messages.definitions import learn
@@ -330,7 +328,7 @@ def _learn(*topics: str) -> None:
                 for type_name in view.cache.topics(hidden=True).get(topic_name, [])[:1]:
                     learn(view, topic_name, type_name)
                 _warn_of_profile(view, topic_name)
-    except SupervisorError as error:  # nothing is running yet; it is waited for
+    except SupervisorError as error:  # no graph is running yet; the verb waits for one
         if error.exit_code != exits.NOT_RUNNING:
             raise
 
@@ -344,19 +342,19 @@ def _learn(*topics: str) -> None:
 @click.option("-t", "--times", type=click.IntRange(1), help="Publish this many messages and exit.")
 @click.option("-p", "--print", "print_every", type=click.IntRange(0), default=1, help="Print only every N-th message.")
 @click.option(
-    "-w", "--wait-matching-subscriptions", type=click.IntRange(0), help="First wait for this many. [1 with -1 or -t]"
+    "-w", "--wait-matching-subscriptions", type=click.IntRange(0), help="Wait for this many first. [1 with -1 or -t]"
 )
-@click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Seconds to wait for them at most.")
+@click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Most seconds to wait for them.")
 @click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
 @click.option("-n", "--node-name", help="Name of the publishing node.")
 @stdin_option
-@click.option("--yaml-file", type=click.Path(path_type=Path), help="Publish the messages in a file, each once.")
+@click.option("--yaml-file", type=click.Path(path_type=Path), help="Publish each message in a file once.")
 @qos_options
 def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> int:
-    """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; quotes are optional.
+    """Publish messages. VALUES are the fields in YAML, such as "{data: hello}"; quotes are optional.
 
-    `header: auto` and `stamp: now` stand for the time at which each message is sent. A --yaml-file has messages as
-    `topic echo` prints them, with `---` between; each is published once.
+    `header: auto` and `stamp: now` stand for the time of publication. A --yaml-file has messages as `topic echo` prints
+    them, separated by `---`; each is published once.
     """
     from graphflow.cli.messages import publishing
     from graphflow.cli.messages.types import agree, check_kind, refuse_turned, type_of_word, use_project
@@ -371,7 +369,7 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
             known = view.cache.topics(hidden=True).get(full, [])
             if len(known) == 1:
                 learn(view, full, known[0])
-    except SupervisorError:  # nothing is running yet; others may come
+    except SupervisorError:  # no graph is running yet; subscriptions may appear later
         known = []
     if not type_name or type_name.startswith("{"):
         has, missing = (f"; it carries {known[0]}", known[0]) if known else ("", "TYPE")
@@ -391,10 +389,10 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
 
 
 def _draft(type_name: str, data: Any, place: str) -> Draft:
-    """A message of plain values.
+    """Convert plain values to a message.
 
     Args:
-        place: Where it stands, for errors; empty for the command line.
+        place: File and line of the values, for errors; empty for the command line.
 
     Raises:
         UsageFault: The values do not fit.

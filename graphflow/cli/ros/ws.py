@@ -1,4 +1,4 @@
-"""`graphflow ws`: the packages of a ROS 2 workspace, which nobody has to build."""
+"""`graphflow ws`: show and check the packages of a ROS 2 workspace, which need not be built."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ _HABITS = {
     **dict.fromkeys(("build", "source", "clean"), "Nothing has to be built or sourced: what you edit is what runs."),
     "test": "Nothing has to be built; a package's tests are run by: python -m pytest src/PACKAGE",
 }
-"""Words out of habit, and what is said of them."""
+"""Verbs of build tools, each with the reason that it is not needed."""
 SHOWN = 4
-"""Names that a cell of the table holds."""
+"""Most names in a cell of the table."""
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.argument("habit", nargs=-1, type=click.UNPROCESSED, metavar="[init|build|test|source]...")
 def ws(as_json: bool, habit: tuple[str, ...]) -> int:
-    """Show the packages of a ROS 2 workspace; nothing has to be built.
+    """Show the packages of a ROS 2 workspace, which need not be built.
 
-    The workspace is the one that the current folder is in. What is wrong in its packages is told, and the exit code is
-    then 1.
+    The workspace is the one that the current folder is in. If its packages have faults, they are reported and the exit
+    code is 1.
     """
     from graphflow.errors import InterfaceError, UnknownInterface, UsageFault
     from graphflow.msgs import registry
@@ -37,7 +37,7 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     from graphflow.workspace.unfound import no_packages, outer_workspace
 
     if habit and habit[0] not in _HABITS:
-        raise UsageFault(f"ws shows the packages, and takes no {habit[0]!r}{did_you_mean(habit[0], _HABITS)}")
+        raise UsageFault(f"ws takes no argument {habit[0]!r}{did_you_mean(habit[0], _HABITS)}")
     if habit and not as_json:
         output.talk(_HABITS[habit[0]])
     found = find_workspace(Path.cwd())
@@ -46,7 +46,7 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
         for fault in lacking:
             output.error(fault)
         if not lacking:
-            new = "in src/, graphflow pkg create --build-type ament_python NAME makes one"
+            new = "in src/, graphflow pkg create --build-type ament_python NAME creates one"
             output.error(f"there is no package in {found.root}: go to a folder that has packages in src/; {new}")
         return exits.FAILED
     for name, folder in found.interfaces.items():
@@ -56,12 +56,12 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     other_names = [name_fault(package.folder, package.name) for package in found.packages.values()]
     faults += [fault for fault in [*not_xml, *other_names] if fault is not None]
     faults += [
-        f"{package.folder} hides ROS 2's {package.name}; call it otherwise, there and in its files"
+        f"{package.folder} hides ROS 2's {package.name}; rename it, there and in its files"
         for package in found.packages.values()
         if package.name in of_ros() and package.name not in found.replaced and package.import_roots
     ]
     faults += [
-        f"{double.folder}: another package is called {double.name!r}, too, and is the one that counts: "
+        f"{double.folder}: another package is called {double.name!r}, too, and takes precedence: "
         f"{found.packages[double.name].folder}"
         for double in found.doubles
     ]
@@ -92,7 +92,9 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     else:
         around = outer_workspace(found)
         if around is not None:
-            output.talk(f"This workspace lies in another one, whose packages are not seen from here: {around.root}")
+            output.talk(
+                f"This workspace is within another one, whose packages are not visible from here: {around.root}"
+            )
         heads = [("PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER")]
         body = [
             (p.name, _some(p.executables), _some(shown), str(p.folder.relative_to(found.root))) for p, shown in rows
@@ -108,6 +110,6 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
 
 
 def _some(names: list[str]) -> str:
-    """The first names of a list; `--json` has all."""
+    """Return the first names of a list; `--json` prints all."""
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return ", ".join(names[:SHOWN]) + more or "-"

@@ -1,1 +1,1 @@
-"""Drawings made of characters: directed graphs and curves."""
+"""Drawings of characters: directed graphs and curves."""

@@ -1,4 +1,4 @@
-"""Numbers of messages over time, and how they are drawn with the letters of a terminal."""
+"""Numbers of messages over time, drawn as curves in a terminal."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from graphflow.introspect.messages.fields import number_path, value_at
 from graphflow.introspect.messages.units import unit
 
 CURVES = 6
-"""Curves in one picture, unless more were asked for by name."""
+"""Most curves in a picture, unless fields are named."""
 LARGEST = 1e150
-"""What is larger stands for "no measurement", and cannot be drawn."""
+"""Largest value that is drawn; larger ones commonly stand for "no measurement"."""
 COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e00")
-"""Colours that everybody can tell apart (Okabe and Ito 2008)."""
+"""Colours that colour-blind people can distinguish, too (Okabe and Ito 2008)."""
 
 
 class Curve:
@@ -25,10 +25,10 @@ class Curve:
     Args:
         field: Its path: `linear.x`.
         type_name: The topic's type.
-        label: How it is called in the picture.
+        label: Its name in the picture.
 
     Raises:
-        UsageFault: The type has no such field, or it is no number.
+        UsageFault: The type has no such field, or it is not a number.
     """
 
     def __init__(self, field: str, type_name: str, label: str = "") -> None:
@@ -38,10 +38,10 @@ class Curve:
         self.values = array("d")
         self._path = number_path(field, type_name)
         self.unit = unit(self._path, type_name)
-        """As `m/s`; empty where the message's definition gives none."""
+        """Such as `m/s`; empty if the message's definition gives none."""
 
     def add(self, at: float, message: Any) -> None:
-        """Take in a message; what is no number, or is not there, is a gap."""
+        """Append a message's value; a missing element or one that is not a number is a gap."""
         try:
             value = float(value_at(message, self._path))
         except (IndexError, TypeError, ValueError):
@@ -50,18 +50,18 @@ class Curve:
         self.values.append(value)
 
     def forget(self, before: float) -> None:
-        """Drop what is older."""
+        """Drop values older than `before`."""
         cut = bisect_left(self.times, before)
         del self.times[:cut]
         del self.values[:cut]
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing of it can be drawn."""
+        """Whether it has no value that can be drawn."""
         return not any(abs(y) <= LARGEST for y in self.values)
 
     def shown(self, since: float = -math.inf) -> tuple[list[float], list[float]]:
-        """The times and values that there are, from a moment on; what is none, or beyond `LARGEST`, is a gap."""
+        """Return the times and values from a moment on, without NaN and values beyond `LARGEST`."""
         start = bisect_left(self.times, since)
         points = zip(self.times[start:], self.values[start:], strict=True)
         found = [(x, y) for x, y in points if abs(y) <= LARGEST]
@@ -69,7 +69,7 @@ class Curve:
 
     @property
     def legend(self) -> str:
-        """The curve's name, its last number, and the unit."""
+        """The curve's name, last value and unit."""
         return f"{self.label} {self.values[-1]:.4g} {self.unit}".rstrip() if self.values else f"{self.label} -"
 
 
@@ -81,16 +81,16 @@ def chart(
     colours: Sequence[str] = (),
     legend: bool = True,
 ) -> str:
-    """Curves in letters, as lines of text with the escape sequences of their colours.
+    """Draw curves with Braille characters, as lines of text with the escape sequences of their colours.
 
     Args:
-        size: Columns and rows of the whole.
-        span: The first and the last second on the axis, else those of the data; the last one is written as 0.
-        colours: As `#rrggbb`, one for each curve; none for a picture without colours.
-        legend: Whether the names of the curves and their last numbers stand below.
+        size: Columns and rows of the picture.
+        span: The first and last second on the axis, by default those of the data; the last one is labelled 0.
+        colours: One `#rrggbb` for each curve; none for a picture without colours.
+        legend: Whether the names and last values of the curves are printed below.
 
     Returns:
-        The text; empty as long as there is no number.
+        The text; empty if there is no value.
     """
     end = span[1] if span else 0.0
     drawn = [curve.shown(span[0]) if span else curve.shown() for curve in curves]
@@ -120,7 +120,7 @@ def chart(
 
 
 _SIDE = 12
-"""Columns for the frame and the numbers beside it."""
+"""Columns of the frame and the numbers beside it."""
 
 
 def _margins(values: Sequence[float]) -> tuple[float, float]:

@@ -1,10 +1,10 @@
-"""A directed graph as boxes and arrows of characters, in layers from left to right.
+"""Draw a directed graph as boxes and arrows of characters, in layers from left to right.
 
-Layers, their order and the lanes between them are chosen as Sugiyama, Tagawa and Toda do: arrows that go back are
-turned round, nodes come after all that lead to them, an arrow over several layers passes a place in each, and each
-layer is ordered by where its neighbours are. All arrows of one source share one lane, so that they part where they
-must. An arrow that goes back runs below everything else. Lines are kept as directions by cell: wherever they meet, the
-character is the one that joins them.
+Layers and their order are chosen as by Sugiyama, Tagawa and Toda: arrows that close a cycle are reversed, each node is
+in a layer after all its predecessors, an arrow across several layers gets a dummy place in each, and each layer is
+sorted by the mean position of its neighbours. All arrows of one source share one lane, so that they branch as late as
+possible. Arrows that go back run below everything else. Lines are stored as sets of directions by cell, so that
+crossing lines get the character that joins them.
 
 Source: Sugiyama, Tagawa, Toda, "Methods for visual understanding of hierarchical system structures", 1981.
 """
@@ -17,15 +17,15 @@ from typing import NamedTuple
 
 NORTH, EAST, SOUTH, WEST = 1, 2, 4, 8
 _LINES = " ╵╶└╷│┌├╴┘─┴┐┤┬┼"
-"""The character by the directions that meet in it."""
+"""Line characters, indexed by the set of directions that meet in them."""
 SWEEPS = 6
-"""How often the layers are put in order, each time by the layer on the other side."""
+"""Number of times that the layers are sorted, alternately by the previous and the next layer."""
 GAP = 1
 """Empty rows between two boxes."""
 
 
 class Rect(NamedTuple):
-    """A place on the screen, in cells."""
+    """A rectangle of the screen, in cells."""
 
     x: int
     y: int
@@ -45,7 +45,7 @@ class Rect(NamedTuple):
 
 
 class Box(NamedTuple):
-    """A box to be drawn: its lines of text, and whether its corners are round."""
+    """A box to be drawn: its lines of text, and the shape of its corners."""
 
     lines: tuple[str, ...]
     is_round: bool = True
@@ -60,7 +60,7 @@ class Box(NamedTuple):
 
 
 class Cell(NamedTuple):
-    """A character of the drawing, and what it belongs to: a box by its name, an arrow by its source; empty for none."""
+    """A character of the drawing, with the name of its box or the source of its arrow; empty for none."""
 
     text: str
     box: str = ""
@@ -69,7 +69,7 @@ class Cell(NamedTuple):
 
 @dataclass
 class _Place:
-    """A box in its layer, or the place where an arrow passes one."""
+    """A box in its layer, or the place where an arrow passes through a layer."""
 
     name: str
     layer: int
@@ -91,11 +91,11 @@ class Drawing:
 
     rows: list[list[Cell]]
     boxes: dict[str, Rect] = field(default_factory=dict)
-    """Where each box is."""
+    """The rectangle of each box."""
 
 
 def draw(boxes: Mapping[str, Box], arrows: Iterable[tuple[str, str]]) -> Drawing:
-    """Draw boxes, by their names, and arrows from one to another."""
+    """Draw named boxes and the arrows between them."""
     return _Drawer(boxes, dict.fromkeys(arrows)).drawn()
 
 
@@ -108,9 +108,9 @@ class _Drawer:
         self._places: dict[str, _Place] = {}
         self._layers: list[list[_Place]] = []
         self._links: dict[str, list[str]] = {}
-        """The places in the next layer that each place leads to."""
+        """The successors of each place, in the next layer."""
         self._source: dict[str, str] = {}
-        """The box from which a passing arrow comes."""
+        """The source of the arrow that passes through a place."""
         self._lines: dict[tuple[int, int], int] = {}
         self._owner: dict[tuple[int, int], str] = {}
         self._tips: dict[tuple[int, int], str] = {}
@@ -125,7 +125,7 @@ class _Drawer:
         self._route_back(lanes)
         return self._characters()
 
-    # where everything goes
+    # Positions.
 
     def _put_in_layers(self) -> None:
         layer = _layers(list(self._boxes), self._forward)
@@ -134,7 +134,7 @@ class _Drawer:
         for a, b in self._forward:
             before = a
             for between in range(layer[a] + 1, layer[b]):
-                # One passage a source and layer: its arrows part as late as they can.
+                # One passage per source and layer: its arrows branch as late as possible.
                 passage = f"{a} \0{between}"
                 if passage not in self._places:
                     self._places[passage] = _Place(passage, between, 1)
@@ -164,14 +164,14 @@ class _Drawer:
             near = above if sweep % 2 == 0 else self._links
             for layer in layers:
                 for place in layer:
-                    there = [self._places[n].order for n in near.get(place.name, ())]
-                    place.order = sum(there) / len(there) if there else place.order
+                    orders = [self._places[n].order for n in near.get(place.name, ())]
+                    place.order = sum(orders) / len(orders) if orders else place.order
                 layer.sort(key=lambda place: place.order)
                 for i, place in enumerate(layer):
                     place.order = i
 
     def _lanes(self, i: int) -> dict[str, int]:
-        """The lane right of a layer for each place in it from which arrows leave: nearer for those further down."""
+        """Assign lanes right of a layer to its places with outgoing arrows; lower places get nearer lanes."""
         backs = {a for a, _ in self._back if self._places[a].layer == i}
         leaving = [place.name for place in self._layers[i] if self._links.get(place.name) or place.name in backs]
         return {name: n for n, name in enumerate(reversed(leaving))}
@@ -192,7 +192,7 @@ class _Drawer:
                 y += place.height + GAP
             x += width + len(lanes[i]) + 4
 
-    # lines
+    # Lines.
 
     def _width(self, place: _Place) -> int:
         return place.box.width if place.box is not None else 1
@@ -209,7 +209,7 @@ class _Drawer:
             x = self._lane_x(i, lanes[place.name])
             begin = place.x + (self._width(place) if place.box is not None else 0)
             self._across(begin, x, place.row, owner)
-            self._lines[begin, place.row] |= WEST  # it comes out of the box
+            self._lines[begin, place.row] |= WEST  # joins the line to the box
             for target in targets:
                 self._down(x, place.row, target.row, owner)
                 end = target.x - (1 if target.box is not None else 0)
@@ -249,7 +249,7 @@ class _Drawer:
             self._lines[cell] = self._lines.get(cell, 0) | bits
             self._owner[cell] = owner
 
-    # characters
+    # Characters.
 
     def _characters(self) -> Drawing:
         rects = {p.name: Rect(p.x, p.y, p.box.width, p.height) for p in self._places.values() if p.box is not None}
@@ -272,7 +272,7 @@ def _frame(box: Box) -> list[str]:
 
 
 def _back_edges(names: Sequence[str], edges: Sequence[tuple[str, str]]) -> dict[tuple[str, str], None]:
-    """The edges that close a circle, found by walking from the names in order, those that nothing leads to first."""
+    """Find the edges that close a cycle, by a depth-first search that starts at names without predecessors."""
     targets: dict[str, list[str]] = {}
     for a, b in edges:
         targets.setdefault(a, []).append(b)
@@ -300,7 +300,7 @@ def _back_edges(names: Sequence[str], edges: Sequence[tuple[str, str]]) -> dict[
 
 
 def _layers(names: Sequence[str], edges: Sequence[tuple[str, str]]) -> dict[str, int]:
-    """The layer of each name: after all that lead to it."""
+    """Assign each name a layer after all its predecessors."""
     before: dict[str, list[str]] = {name: [] for name in names}
     after: dict[str, list[str]] = {name: [] for name in names}
     for a, b in edges:

@@ -1,4 +1,4 @@
-"""What is drawn of a graph: nodes, topics and the arrows between them; also in the words of Mermaid and Graphviz."""
+"""Pictures of a graph: its nodes, topics and the arrows between them; also as Mermaid and Graphviz sources."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Entity, Kind
 
 _EVERYWHERE = ("/rosout", "/parameter_events", "/clock")
-"""Topics that every node has: they would be in every picture."""
+"""Topics of every node, left out of pictures."""
 
 
 class Arrow(NamedTuple):
-    """A node publishes to a topic, or a topic reaches a node."""
+    """An arrow from a publishing node to its topic, or from a topic to a subscribing node."""
 
     source: str
     target: str
@@ -23,7 +23,7 @@ class Arrow(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """What is to be drawn."""
+    """The elements of a picture."""
 
     nodes: tuple[str, ...]
     topics: tuple[str, ...]
@@ -31,12 +31,12 @@ class Picture(NamedTuple):
 
 
 def picture(cache: GraphCache, below: str, collapsed: frozenset[str], *, everything: bool) -> Picture:
-    """Nodes, topics and the arrows between them.
+    """Select the nodes, topics and arrows to draw.
 
     Args:
-        below: Only nodes of this namespace and what they are connected to; empty for all.
-        collapsed: Namespaces drawn as one box each.
-        everything: Also topics that only one side knows, and those that every node has.
+        below: Namespace whose nodes are drawn with their connections; empty for all.
+        collapsed: Namespaces that are drawn as one box each.
+        everything: Whether to include unconnected topics, and those of every node.
     """
     ends: dict[str, list[Entity]] = {}
     for e in cache:
@@ -45,16 +45,16 @@ def picture(cache: GraphCache, below: str, collapsed: frozenset[str], *, everyth
     nodes = dict.fromkeys(box_of(n, collapsed) for n in cache.nodes(hidden=False) if n.startswith(below))
     arrows: dict[Arrow, None] = {}
     topics: dict[str, None] = {}
-    for topic, there in sorted(ends.items()):
-        kinds = {e.kind for e in there}
-        near = any(e.node_name.startswith(below) for e in there)
+    for topic, endpoints in sorted(ends.items()):
+        kinds = {e.kind for e in endpoints}
+        near = any(e.node_name.startswith(below) for e in endpoints)
         if not near or (not everything and (len(kinds) < 2 or topic in _EVERYWHERE)):
             continue
-        sources = {box_of(e.node_name, collapsed) for e in there if e.kind is Kind.PUBLISHER}
-        targets = {box_of(e.node_name, collapsed) for e in there if e.kind is Kind.SUBSCRIPTION}
+        sources = {box_of(e.node_name, collapsed) for e in endpoints if e.kind is Kind.PUBLISHER}
+        targets = {box_of(e.node_name, collapsed) for e in endpoints if e.kind is Kind.SUBSCRIPTION}
         if sources == targets and len(sources) == 1 and not everything:
-            continue  # it stays within one box
-        bad = bool(misfit(there))
+            continue  # its arrows would stay within one box
+        bad = bool(misfit(endpoints))
         topics[topic] = None
         nodes.update(dict.fromkeys((*sorted(sources), *sorted(targets))))
         arrows.update(dict.fromkeys(Arrow(s, topic, bad) for s in sorted(sources)))
@@ -63,15 +63,15 @@ def picture(cache: GraphCache, below: str, collapsed: frozenset[str], *, everyth
 
 
 def box_of(node: str, collapsed: Iterable[str]) -> str:
-    """The box that a node is drawn in: its own, or that of a namespace."""
+    """Return the box in which a node is drawn: its own, or that of a collapsed namespace."""
     found = [space for space in collapsed if node.startswith(f"{space}/")]
     return f"{max(found, key=len)}/…" if found else node
 
 
-def misfit(there: list[Entity]) -> str:
-    """What keeps a publisher and a subscription of a topic apart, in a few words; empty for nothing."""
-    for publisher in there:
-        for other in there:
+def misfit(endpoints: list[Entity]) -> str:
+    """Return the policies that keep a publisher and a subscription of a topic apart; empty if none do."""
+    for publisher in endpoints:
+        for other in endpoints:
             if publisher.kind is Kind.PUBLISHER and other.kind is Kind.SUBSCRIPTION:
                 found = verdict(publisher, other)
                 if found is not None and found.complaint:
@@ -79,21 +79,21 @@ def misfit(there: list[Entity]) -> str:
     return ""
 
 
-def mermaid(made: Picture) -> str:
-    """A flow chart of Mermaid; what does not fit together is red."""
-    ids = {name: f"n{i}" for i, name in enumerate((*made.nodes, *made.topics))}
+def mermaid(picture: Picture) -> str:
+    """Format a Mermaid flow chart; incompatible connections are red."""
+    ids = {name: f"n{i}" for i, name in enumerate((*picture.nodes, *picture.topics))}
     lines = ["flowchart LR"]
-    lines += [f'  {ids[n]}(["{n}"])' for n in made.nodes]
-    lines += [f'  {ids[t]}["{t}"]' for t in made.topics]
-    lines += [f"  {ids[a.source]} --> {ids[a.target]}" for a in made.arrows]
-    bad = [str(i) for i, arrow in enumerate(made.arrows) if arrow.is_bad]
+    lines += [f'  {ids[n]}(["{n}"])' for n in picture.nodes]
+    lines += [f'  {ids[t]}["{t}"]' for t in picture.topics]
+    lines += [f"  {ids[a.source]} --> {ids[a.target]}" for a in picture.arrows]
+    bad = [str(i) for i, arrow in enumerate(picture.arrows) if arrow.is_bad]
     return "\n".join([*lines, *([f"  linkStyle {','.join(bad)} stroke:red"] if bad else [])])
 
 
-def dot(made: Picture) -> str:
-    """A digraph of Graphviz; what does not fit together is red."""
+def dot(picture: Picture) -> str:
+    """Format a Graphviz digraph; incompatible connections are red."""
     lines = ["digraph graphflow {", "  rankdir=LR;", "  node [fontname=sans];"]
-    lines += [f'  "{n}" [shape=ellipse];' for n in made.nodes]
-    lines += [f'  "{t}" [shape=box, color=gray40];' for t in made.topics]
-    lines += [f'  "{a.source}" -> "{a.target}"{" [color=red]" if a.is_bad else ""};' for a in made.arrows]
+    lines += [f'  "{n}" [shape=ellipse];' for n in picture.nodes]
+    lines += [f'  "{t}" [shape=box, color=gray40];' for t in picture.topics]
+    lines += [f'  "{a.source}" -> "{a.target}"{" [color=red]" if a.is_bad else ""};' for a in picture.arrows]
     return "\n".join([*lines, "}"])

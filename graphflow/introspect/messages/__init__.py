@@ -1,1 +1,1 @@
-"""Messages and their types, seen from outside: as text, by field, in rates and units."""
+"""Messages and their types as tools need them: text, fields, rates, units and definitions."""

@@ -12,11 +12,11 @@ TRUNCATE = 128
 
 
 def plain(value: Any, limit: int | None = None) -> Any:
-    """A message as dicts, lists and scalars.
+    """Convert a message to dicts, lists and scalars.
 
     Args:
-        limit: Elements of lists that will be shown; one more is kept, for `truncated` to see. A byte of an image takes
-            eight in a list.
+        limit: Elements of lists that will be shown; one more is kept, by which `truncated` sees that there are more.
+            Without it, an image would become a list of eight bytes per byte.
     """
     kept = None if limit is None else limit + 1
     if isinstance(value, Message):
@@ -29,7 +29,7 @@ def plain(value: Any, limit: int | None = None) -> Any:
 
 
 def truncated(value: Any, limit: int | None = TRUNCATE) -> Any:
-    """Plain data with long lists and strings cut, as marked by `...`."""
+    """Cut long lists and strings in plain data; cuts are marked by `...`."""
     if limit is None:
         return value
     if isinstance(value, dict):
@@ -43,7 +43,7 @@ def truncated(value: Any, limit: int | None = TRUNCATE) -> Any:
 
 
 def block(data: Any, indent: int = 0) -> str:
-    """Plain data as YAML in block style."""
+    """Format plain data as YAML in block style."""
     pad = "  " * indent
     if isinstance(data, dict):
         if not data:
@@ -70,7 +70,7 @@ def _item(value: Any, indent: int) -> str:
 
 
 def flow(data: Any) -> str:
-    """Plain data as YAML on one line."""
+    """Format plain data as YAML on one line."""
     if isinstance(data, dict):
         return "{" + ", ".join(f"{k}: {flow(v)}" for k, v in data.items()) + "}"
     if isinstance(data, list):
@@ -79,7 +79,7 @@ def flow(data: Any) -> str:
 
 
 def scalar(value: Any) -> str:
-    """One value so that it reads back as what it is."""
+    """Format one value as YAML that parses to the same value."""
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -120,7 +120,7 @@ def _string(text: str) -> str:
 
 
 def csv(data: Any) -> str:
-    """The leaves of plain data, separated by commas."""
+    """Format the leaves of plain data, separated by commas."""
     if isinstance(data, dict):
         return ",".join(csv(v) for v in data.values())
     if isinstance(data, list):

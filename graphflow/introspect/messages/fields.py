@@ -12,12 +12,12 @@ from graphflow.names import did_you_mean
 from graphflow.wire.schema import FieldType
 
 Path = list[str | int]
-"""Names of fields, and numbers of elements."""
+"""Names of fields and indexes of elements."""
 _TEXTS = ("string", "wstring")
 
 
 def field_path(text: str, type_name: str) -> Path:
-    """`a.b[0].c` as parts, checked against the type.
+    """Parse a path such as `a.b[0].c`, checked against the type.
 
     Raises:
         UsageFault: The type has no such field or element.
@@ -26,33 +26,33 @@ def field_path(text: str, type_name: str) -> Path:
 
 
 def number_path(text: str, type_name: str) -> Path:
-    """As `field_path`, of a field that holds one number.
+    """Parse the path of a field that is a single number, as `field_path` does.
 
     Raises:
-        UsageFault: The type has no such field or element, or it is no number.
+        UsageFault: The type has no such field or element, or it is not a number.
     """
     path, type_ = _resolved(text, type_name)
     if type_.array:
-        raise UsageFault(f"{text} is a list; say which element, as in {text}[0]")
+        raise UsageFault(f"{text} is a list; choose an element, as in {text}[0]")
     if not type_.is_primitive:
         fields = numbers(type_.base)
-        hint = f"; say which field, as in {text}.{fields[0]}" if fields else ""
-        raise UsageFault(f"{text} is of type {type_.base} and no number{hint}")
+        hint = f"; choose a field, as in {text}.{fields[0]}" if fields else ""
+        raise UsageFault(f"{text} is of type {type_.base}, not a number{hint}")
     if type_.base in _TEXTS:
-        raise UsageFault(f"{text} is of type {type_.base} and no number")
+        raise UsageFault(f"{text} is of type {type_.base}, not a number")
     return path
 
 
 def numbers(type_name: str) -> list[str]:
-    """The paths of all fields that hold one number; arrays are left out."""
+    """Return the paths of all fields that are single numbers, outside arrays."""
     return list(_numbers(type_name, ""))
 
 
 def value_at(message: Any, path: Path) -> Any:
-    """What a message has at a path.
+    """Return the value of a message at a path.
 
     Raises:
-        IndexError: A list of the message is shorter.
+        IndexError: A list of the message is too short.
     """
     for part in path:
         message = message[part] if isinstance(part, int) else getattr(message, part)
@@ -87,9 +87,9 @@ def _resolved(text: str, type_name: str) -> tuple[Path, FieldType]:
 
 
 def _field_type(type_: FieldType, at: str, word: str) -> FieldType:
-    """The type of field `word` in what stands at `at`."""
+    """Return the type of field `word` of the value at path `at`, which has type `type_`."""
     if type_.array:
-        raise UsageFault(f"{at} is a list; say which element, as in {at}[0]")
+        raise UsageFault(f"{at} is a list; choose an element, as in {at}[0]")
     if type_.is_primitive:
         raise UsageFault(f"{at} is of type {type_} and has no field {word!r}")
     fields = {f.name: f.type for f in registry.message_schema(type_.base).fields}

@@ -1,6 +1,6 @@
-"""How fast messages come, how late, and how much they weigh, in the words of `ros2 topic hz`, `delay` and `bw`.
+"""Rates, delays and sizes of messages, formatted as by `ros2 topic hz`, `delay` and `bw`.
 
-The numbers are of a window of the last messages. Times are nanoseconds; a deviation is that of the whole window.
+The statistics are of a window of the last messages. Times are nanoseconds; the deviation is the population's.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 
 class Spread(NamedTuple):
-    """Mean, extremes and deviation of some numbers."""
+    """Mean, extremes and standard deviation of some numbers."""
 
     mean: float
     least: float
     most: float
     deviation: float
     window: int
-    """How many numbers."""
+    """Number of values."""
 
     @classmethod
     def of(cls, numbers: list[float]) -> Spread:
@@ -29,15 +29,15 @@ class Spread(NamedTuple):
 
 
 class Arrivals:
-    """When messages came.
+    """Times at which messages arrived.
 
     Args:
-        window: How many gaps between messages count.
+        window: Number of gaps between messages to keep.
     """
 
     def __init__(self, window: int) -> None:
         self.count = 0
-        """All that came."""
+        """Number of all messages."""
         self._times: deque[int] = deque(maxlen=window + 1)
 
     def add(self, now_ns: int) -> None:
@@ -45,22 +45,22 @@ class Arrivals:
         self._times.append(now_ns)
 
     def gaps(self) -> Spread | None:
-        """Seconds between messages; None while there are fewer than two."""
+        """Return seconds between messages; None while there are fewer than two messages."""
         gaps = [(b - a) / 1e9 for a, b in itertools.pairwise(self._times)]
         return Spread.of(gaps) if gaps else None
 
     @staticmethod
     def rate(gaps: Spread) -> float:
-        """Messages a second."""
+        """Return messages per second."""
         return 1 / gaps.mean if gaps.mean else 0.0
 
     def numbers(self) -> dict[str, float] | None:
-        """For programs: messages a second, and seconds between them; None while there is nothing to tell."""
+        """Return messages per second and seconds between them; None while there are fewer than two messages."""
         gaps = self.gaps()
         return None if gaps is None else {"rate": self.rate(gaps), **_named(gaps)}
 
     def text(self) -> str:
-        """As `ros2 topic hz` prints it; empty while there is nothing to tell."""
+        """Format the rate as `ros2 topic hz` does; empty while there are fewer than two messages."""
         gaps = self.gaps()
         if gaps is None:
             return ""
@@ -68,10 +68,10 @@ class Arrivals:
 
 
 class Delays:
-    """How old messages were when they came, by the stamps in their headers.
+    """Ages of messages on arrival, by the stamps in their headers.
 
     Args:
-        window: How many messages count.
+        window: Number of messages to keep.
     """
 
     def __init__(self, window: int) -> None:
@@ -81,16 +81,16 @@ class Delays:
         self._delays.append(delay_ns / 1e9)
 
     def spread(self) -> Spread | None:
-        """Seconds; None while there is no message."""
+        """Return seconds of delay; None while there is no message."""
         return Spread.of(list(self._delays)) if self._delays else None
 
     def numbers(self) -> dict[str, float] | None:
-        """For programs, in seconds; None while there is nothing to tell."""
+        """Return seconds of delay by statistic; None while there is no message."""
         spread = self.spread()
         return None if spread is None else {"delay": spread.mean, **_named(spread)}
 
     def text(self) -> str:
-        """As `ros2 topic delay` prints it; empty while there is nothing to tell."""
+        """Format the delay as `ros2 topic delay` does; empty while there is no message."""
         spread = self.spread()
         if spread is None:
             return ""
@@ -98,42 +98,42 @@ class Delays:
 
 
 class Weights:
-    """How many bytes came when.
+    """Sizes of messages and the times at which they arrived.
 
     Args:
-        window: How many messages count.
+        window: Number of messages to keep.
     """
 
     def __init__(self, window: int) -> None:
-        self._came: deque[tuple[int, int]] = deque(maxlen=window)
+        self._arrivals: deque[tuple[int, int]] = deque(maxlen=window)
 
     def add(self, now_ns: int, size: int) -> None:
-        self._came.append((now_ns, size))
+        self._arrivals.append((now_ns, size))
 
     def per_second(self, now_ns: int) -> float:
-        """Bytes a second from the first message of the window until now; 0 while there is none."""
-        if not self._came:
+        """Return bytes per second from the first message of the window until now; 0 while there is none."""
+        if not self._arrivals:
             return 0.0
-        seconds = (now_ns - self._came[0][0]) / 1e9
-        return sum(size for _, size in self._came) / seconds if seconds > 0 else 0.0
+        seconds = (now_ns - self._arrivals[0][0]) / 1e9
+        return sum(size for _, size in self._arrivals) / seconds if seconds > 0 else 0.0
 
     def sizes(self) -> Spread | None:
-        """Bytes of messages; None while there are fewer than two."""
-        return Spread.of([float(size) for _, size in self._came]) if len(self._came) > 1 else None
+        """Return bytes per message; None while there are fewer than two messages."""
+        return Spread.of([float(size) for _, size in self._arrivals]) if len(self._arrivals) > 1 else None
 
     def numbers(self, now_ns: int) -> dict[str, float] | None:
-        """For programs: bytes a second, and bytes of messages; None while there is nothing to tell."""
+        """Return bytes per second and per message; None while there are fewer than two messages."""
         sizes = self.sizes()
         if sizes is None:
             return None
         return {"bytes_per_second": self.per_second(now_ns), "mean": sizes.mean, **_named(sizes)}
 
     def text(self, now_ns: int) -> str:
-        """As `ros2 topic bw` prints it; empty while there are fewer than two messages."""
+        """Format the bandwidth as `ros2 topic bw` does; empty while there are fewer than two messages."""
         sizes = self.sizes()
         if sizes is None:
             return ""
-        unit, by = _unit(self.per_second(now_ns))  # for all, as ROS 2 has it
+        unit, by = _unit(self.per_second(now_ns))  # one unit for all numbers, as in ROS 2
         total, mean, least, most = (f"{n / by:.2f} {unit}" for n in (self.per_second(now_ns), *sizes[:3]))
         return f"{total}/s from {sizes.window} messages\n\tMessage size mean: {mean} min: {least} max: {most}"
 
@@ -148,12 +148,12 @@ def _spread(spread: Spread) -> str:
 
 
 def _unit(size: float) -> tuple[str, float]:
-    """The unit for a number of bytes, and how many it has."""
+    """Return the unit for a number of bytes, and the bytes in one unit."""
     return ("B", 1.0) if size < 1000 else ("KB", 1e3) if size < 1e6 else ("MB", 1e6)
 
 
 def table(rows: dict[str, Arrivals]) -> str:
-    """The rates of several topics, as `ros2 topic hz` prints them; empty while there is nothing to tell."""
+    """Format the rates of several topics as `ros2 topic hz` does; empty while there is none."""
     head = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
     lines = [
         (name, f"{Arrivals.rate(g):.2f}", f"{g.least:.2e}", f"{g.most:.2e}", f"{g.deviation:.2e}", str(g.window))

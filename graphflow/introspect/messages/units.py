@@ -1,4 +1,4 @@
-"""The units of the standard messages' fields, which their definitions name in comments only.
+"""The units of the standard messages' fields, which their definitions give only in comments.
 
 Source: REP 103 (SI units) and the comments of common_interfaces.
 """
@@ -59,7 +59,7 @@ _UNITS: dict[str, dict[str, str]] = {
 
 
 def unit(path: Path, type_name: str) -> str:
-    """The unit of a field; empty where the type's definition gives none.
+    """Return the unit of a field; empty if the type's definition gives none.
 
     Args:
         path: As from `introspect.fields`, checked against the type.

@@ -328,7 +328,7 @@ class Groups(View):
         place = _place(activity)
         text = Text.assemble((f"     {activity.label}", colours.bad if is_dead else colours.text))
         text.append(note, style=colours.dim)
-        waits = concurrency.words(activity.wait, self._graph)
+        waits = concurrency.describe(activity.wait, self._graph)
         if waits:
             text.append(
                 f", awaits {waits}, {activity.age:.1f} s",

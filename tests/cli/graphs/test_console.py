@@ -94,7 +94,7 @@ def test_how_it_was_left(
     how: str, exit_code: int | None, code: int, said: str, run: GraphRun, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """What runs on and how to come back; or that the graph has ended, with its exit code."""
-    assert console._say_goodbye(run, how, exit_code) == code
+    assert console._report_end(run, how, exit_code) == code
     assert said in capsys.readouterr().err
 
 
@@ -107,7 +107,7 @@ def test_stopping_on_the_way_out(run: GraphRun, monkeypatch: pytest.MonkeyPatch)
         return 0
 
     monkeypatch.setattr(console, "take_down", take_down)
-    assert console._say_goodbye(run, "stop", None) == 0
+    assert console._report_end(run, "stop", None) == 0
     assert downs == [("lab", False)]
 
 

@@ -50,7 +50,7 @@ def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest
         ("ohter", "ohter: there is no such file; did you mean 'graphs/other.yaml'"),
         ("graphs/ohter.yaml", "graphs/ohter.yaml: there is no such file; did you mean 'graphs/other.yaml'"),
         ("graphs", "graphs: is a folder; name one of its files: graphs/other.yaml"),
-        ("talker", "'talker' is a node and no graph: graphflow run talker"),
+        ("talker", "'talker' is a node, not a graph: graphflow run talker"),
         ("lamp.launch.py", "lamp.launch.py: there is no such file; to start it: graphflow launch lamp lamp.launch.py"),
         ("pipe.yaml", "pipe.yaml: it is not a regular file"),
         ("turtlesm", "turtlesm: there is no such file; did you mean 'turtlesim'"),
@@ -160,7 +160,7 @@ def test_names_explained(machine: Machine) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ("/chatter", "GRAPH.yaml /chatter; of what runs: graphflow node info /chatter or topic info /chatter"),
+        ("/chatter", "GRAPH.yaml /chatter; for a running graph: graphflow node info /chatter or topic info /chatter"),
         ("/chatter lab.yaml", "lab.yaml /chatter"),
         ("chatter lab.yaml", "lab.yaml chatter"),
     ],
@@ -169,7 +169,7 @@ def test_a_name_without_its_graph(here: Machine, tmp_path: Path, words: str, tol
     """The order is told, and the verbs for what runs."""
     (tmp_path / "lab.yaml").write_text(GRAPH)
     said = here.look("explain", *words.split(), cwd=tmp_path, code=2)
-    assert said == f"error: the graph file stands first: graphflow explain {told}\n"
+    assert said == f"error: the graph file comes first: graphflow explain {told}\n"
 
 
 def test_the_schema(machine: Machine) -> None:
@@ -209,8 +209,8 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     timer = "        self.t = self.create_timer(1.0, self.tick)\n"
     (tmp_path / "own/a.py").write_text(text.replace("        self.c.call(1)\n", timer + polls))
     said = machine.look("check", "own", cwd=tmp_path)
-    assert "own/a.py:7: not analysed: a callback polls what this file does not show being set" in said
-    assert said.endswith("own: no deadlocks to be seen in the source, 1 loop not analysed\n")
+    assert "own/a.py:7: not analysed: a callback polls a value that is not set in this file" in said
+    assert said.endswith("own: no deadlocks visible in the source, 1 loop not analysed\n")
     [place] = json.loads(machine.look("check", "own", "--json", cwd=tmp_path))["unfollowed"]
     assert place["line"] == 7
     assert "there is no file none.py" in machine.look("check", "none.py", cwd=tmp_path, code=2)
@@ -222,4 +222,4 @@ def test_source_is_checked_by_its_file(machine: Machine, tmp_path: Path, text: s
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "robot.py").touch()
     told = machine.look("check", text, cwd=tmp_path, code=2)
-    assert told == f"error: {text}: source is checked by its file: graphflow check own/robot.py\n"
+    assert told == f"error: {text}: to check source, name its file: graphflow check own/robot.py\n"

@@ -19,7 +19,7 @@ def test_in_the_terminal(standing: Machine) -> None:
     assert "│ /talker │" in text
     assert "▶│ /chatter │" in text
     assert "! /office/minutes" in text
-    assert "! /office/minutes does not fit: graphflow topic info -v /office/minutes\n" in text
+    assert "! /office/minutes is incompatible: graphflow topic info -v /office/minutes\n" in text
     assert "/rosout" not in text
     assert "/rosout" in standing.look("graph", "--all")
 
@@ -30,7 +30,7 @@ def test_a_part(standing: Machine) -> None:
     assert "/office/clerk" in text
     assert "/talker" not in text
     assert standing.look("graph", "ofice", code=1) == (
-        "error: no node is called /ofice, or is below it; did you mean '/office'?\n"
+        "error: there is no node /ofice, and none below that name; did you mean '/office'?\n"
     )
 
 

@@ -1,4 +1,4 @@
-"""Lines of logs, chosen by level and time."""
+"""Filtering log lines by level and time."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ def test_restart_and_stop(machine: Machine) -> None:
     file = write(project, GOOD)
     machine.run("up", "-d", file, cwd=project)
     before = rows(machine)
-    assert "/a runs again, process" in machine.look("restart", "a")
+    assert "/a is running again, process" in machine.look("restart", "a")
     after = rows(machine)
     assert after["/a"]["pid"] != before["/a"]["pid"]
     assert after["/b"]["pid"] == before["/b"]["pid"]
@@ -54,8 +54,8 @@ def test_a_node_that_runs_by_itself(machine: Machine) -> None:
     node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")
     node.wait_for("Publishing")
     told = machine.look("stop", "/talker", code=3)
-    assert f"/talker runs by itself, in no graph of `up`, in process {node.pid}: " in told
-    assert told.rstrip().endswith(f"; end it there by Ctrl-C, or by: kill {node.pid}")
+    assert f"/talker was not started by `up`; it runs in process {node.pid}: " in told
+    assert told.rstrip().endswith(f"; end it there with Ctrl-C, or by: kill {node.pid}")
     assert told.strip() in machine.look("node", "kill", "/talker", code=2).replace("Error", "error")
     assert "no graph is running" in machine.look("stop", "/talkr", code=3)
     project = make_project(machine.run_directory / "lab")
@@ -86,7 +86,7 @@ def test_waiting(standing: Machine) -> None:
     assert "after 0.1 s /talker is ready" in text
     [row] = json.loads(standing.look("wait", "talker", "--json"))
     assert (row["node"], row["state"]) == ("/talker", "ready")
-    assert "--ready and --ended: one of them" in standing.look("wait", "--ready", "--ended", code=2)
+    assert "give either --ready or --ended" in standing.look("wait", "--ready", "--ended", code=2)
     assert "has no node /tolker; did you mean '/talker'?" in standing.look("wait", "tolker", code=1)
 
 
@@ -94,7 +94,9 @@ def test_what_cannot_be_done(standing: Machine) -> None:
     """Nothing that is asked for is silently left undone."""
     text = standing.look("start", "/talker", code=1)
     assert "/talker runs already: it is ready; to begin anew: graphflow restart /talker" in text
-    assert "a graph is started by: graphflow up lab.yaml" in standing.look("start", "lab.yaml", code=2)
+    assert "lab.yaml is a graph file; start it with: graphflow up lab.yaml" in standing.look(
+        "start", "lab.yaml", code=2
+    )
 
 
 def test_waiting_for_nothing(machine: Machine) -> None:

@@ -43,7 +43,7 @@ def here(machine: Machine, tmp_path: Path) -> Machine:
     [
         ("nodes", "nodes: 2 node classes, no problems\n"),
         ("nodes/talk.py", "nodes/talk.py: 2 node classes, no problems\n"),
-        ("ros", "ros: no deadlocks to be seen in the source\n"),
+        ("ros", "ros: no deadlocks visible in the source\n"),
         (".", ".: 2 node classes, no problems\n"),
     ],
 )
@@ -79,7 +79,7 @@ def test_deadlocks_in_source(machine: Machine) -> None:
 
 def test_a_folder_without_nodes(here: Machine, tmp_path: Path) -> None:
     """Its graph files are named."""
-    assert "its graph files are checked one by one: graphs/g.yaml" in here.look("check", "graphs", cwd=tmp_path, code=2)
+    assert "check its graph files one by one: graphs/g.yaml" in here.look("check", "graphs", cwd=tmp_path, code=2)
 
 
 @pytest.mark.parametrize("verb", ["up", "plan", "launch"])
@@ -87,7 +87,7 @@ def test_a_node_where_a_graph_is_wanted(here: Machine, tmp_path: Path, verb: str
     """It is said how a node is run, and how a graph file names it; a node of rclpy's runs as a file."""
     text = here.look(verb, "nodes/talk.py", cwd=tmp_path, code=2)
     assert (
-        "nodes/talk.py is a node and no graph file; it has Talker, Other; run it with: graphflow run nodes.talk:Talker"
+        "nodes/talk.py is a node, not a graph file; it has Talker, Other; run it with: graphflow run nodes.talk:Talker"
         in text
     )
     assert "nodes: {/talker: {class: nodes.talk:Talker}}" in text

@@ -1,4 +1,4 @@
-"""What `up` shows while a graph comes up, runs and goes down; and log files, followed."""
+"""Output of `up` while a graph comes up, runs and goes down, with the nodes' log files."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def test_the_groups_of_a_node(standing: Machine) -> None:
     lines = standing.look("groups", "/office/clerk").splitlines()
     assert lines[:2] == ["/office/clerk", "  desk  (limit 1)"]
     assert lines[2].startswith("    add  service  ")
-    assert lines[3] == "  in no group  (each queues behind itself only)"
+    assert lines[3] == "  in no group  (each waits only for its own runs)"
     assert "    add_in_secret  service  0 runs" in lines[4:]
     found = json.loads(standing.look("groups", "/office/clerk", "--json"))
     assert found["node"] == "/office/clerk"

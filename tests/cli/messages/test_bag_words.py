@@ -15,5 +15,5 @@ def test_a_moment_is_a_number() -> None:
     none: Any = None
     assert moment_option(none, none, "1.5") == 1.5
     assert moment_option(none, none, None) is None
-    with pytest.raises(click.BadParameter, match=r"is no number of seconds.*; in the time here it is 1700000000$"):
+    with pytest.raises(click.BadParameter, match=r"is not a number of seconds.*; as local time it is 1700000000$"):
         moment_option(none, none, "2023-11-14T22:13:20+00:00")

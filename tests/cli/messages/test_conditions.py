@@ -18,7 +18,7 @@ def test_a_condition() -> None:
 @pytest.mark.parametrize("text", ["", "m.data =", "import os", "m.data; 1", "\0"])
 def test_what_is_no_condition(text: str) -> None:
     """Says how one is written."""
-    with pytest.raises(UsageFault, match=r"is no expression: .*; write for example 'm\.data > 3'"):
+    with pytest.raises(UsageFault, match=r"is not an expression: .*; example: 'm\.data > 3'"):
         compiled(text)
 
 

@@ -119,7 +119,9 @@ def test_delay(things: Machine) -> None:
 @slow
 def test_what_cannot_be_measured(things: Machine) -> None:
     """Says why; what is not there is waited for, and told with the nearest."""
-    assert "has no header, and so no stamp to tell a delay by" in things.run("topic", "delay", "/rosout", code=2)
+    assert "has no header, so no stamp from which a delay could be measured" in things.run(
+        "topic", "delay", "/rosout", code=2
+    )
     assert "AttributeError" in things.run("topic", "hz", "/things", "--filter", "m.y", code=2, cwd=Path("/"))
     watch(things, "hz", "/thing", until="topic [/thing] does not appear to be published yet; did you mean '/things'?")
 

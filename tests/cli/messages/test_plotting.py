@@ -90,8 +90,8 @@ def test_a_bag(machine: Machine, speeds: Path, tmp_path: Path) -> None:
     [
         (["/sped.linear.x"], 1, "has no topic /sped; did you mean '/speed'?"),
         (["/speed.liner.x"], 2, "has no field 'liner'; did you mean 'linear'?"),
-        (["/speed.linear"], 2, "and no number; say which field, as in linear.x"),
-        (["/speed.linear.x", "--start", "50"], 1, "no message of /speed has come"),
+        (["/speed.linear"], 2, "not a number; choose a field, as in linear.x"),
+        (["/speed.linear.x", "--start", "50"], 1, "no message of /speed has arrived"),
         (["/speed.linear.x", "--png", "/nowhere/a.png"], 2, "/nowhere/a.png: there is no folder /nowhere"),
     ],
 )
@@ -144,7 +144,7 @@ def test_messages_without_the_number(capsys: pytest.CaptureFixture[str]) -> None
     lacking = Curve("ranges[900]", "sensor_msgs/msg/LaserScan")
     lacking.add(0.0, LaserScan(ranges=[1.0, 2.0]))
     assert _finished({"/scan": [lacking]}, PlotOptions()) == 1
-    assert "1 messages of /scan came, and none had ranges[900]" in capsys.readouterr().err
+    assert "1 messages of /scan arrived, but none had ranges[900]" in capsys.readouterr().err
     huge = Curve("data", "std_msgs/msg/Float64")
     huge.add(0.0, Float64(data=1.7e308))
     assert _finished({"/x": [huge]}, PlotOptions()) == 1
@@ -170,4 +170,4 @@ def test_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.Monk
     _show({"/speed": [curve]}, 99.0, 10.0)
     assert "\x1b[38;2;" not in capsys.readouterr().out
     _show({"/speed": [curve]}, 999.0, 10.0)
-    assert "no message of /speed has come" in capsys.readouterr().out
+    assert "no message of /speed has arrived" in capsys.readouterr().out

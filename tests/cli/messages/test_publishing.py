@@ -1,4 +1,4 @@
-"""What `topic pub` does once it has a message."""
+"""The work of `topic pub`."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ async def test_once_waits_for_a_listener(graph: Graph, capsys: pytest.CaptureFix
     told = capsys.readouterr()
     assert told.out == "Waiting for at least 1 matching subscription(s)...\n"
     assert told.err == (
-        "no node listens to /said so far; Ctrl-C ends the waiting, and -w 0 publishes without it; did you mean "
+        "no node subscribes to /said so far; Ctrl-C ends the wait, and -w 0 publishes without it; did you mean "
         "'/sad'?\n"
     )
     heard = graph.tap(String, "/said")
@@ -76,7 +76,7 @@ async def test_waiting_has_a_limit(graph: Graph, capsys: pytest.CaptureFixture[s
     assert task.result() == exits.TIMEOUT
     assert not heard
     assert capsys.readouterr().err == (
-        "1 of 2 nodes listen to /said so far; Ctrl-C ends the waiting, and -w 0 publishes without it\n"
+        "1 of 2 nodes subscribe to /said so far; Ctrl-C ends the wait, and -w 0 publishes without it\n"
         "error: /said: fewer than 2 subscriptions after 3 s\n"
     )
 
@@ -90,7 +90,7 @@ async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) ->
     await graph.clock.advance(UNHEARD_AFTER + 3.0)
     publishing.cancel()
     told = capsys.readouterr().err
-    assert told.count("no node hears /chater so far; did you mean '/chatter'?") == 1
+    assert told.count("no node subscribes to /chater so far; did you mean '/chatter'?") == 1
 
 
 async def test_it_stays_for_a_while(graph: Graph) -> None:

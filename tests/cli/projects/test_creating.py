@@ -124,7 +124,7 @@ def test_without_a_build_type(machine: Machine, tmp_path: Path) -> None:
     words = ["my_pkg", "--node-name", "first", "--destination-directory", "src"]
     told = machine.look("pkg", "create", *words, cwd=tmp_path)
     assert "creating src/my_pkg/pyproject.toml" in told
-    assert "note: --node-name: not used by a project of graphflow's; --build-type makes" in told
+    assert "note: --node-name: not used by a graphflow project; --build-type writes" in told
     assert not (tmp_path / "src/my_pkg/package.xml").exists()
 
 
@@ -139,7 +139,7 @@ def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_
     ("words", "told"),
     [
         ("my_pkg rclpy std_msgs", "write graphflow pkg create my_pkg --dependencies rclpy std_msgs"),
-        ("my robott", "a name is one word, such as my_robott; packages that it needs stand behind --dependencies"),
+        ("my robott", "a name is one word, such as my_robott; list the packages that it needs after --dependencies"),
         ("--node-name talker", "the package's name is missing; write it first: graphflow pkg create NAME"),
     ],
 )
@@ -156,11 +156,11 @@ def test_words_without_an_option(words: str, told: str) -> None:
         (["my-pkg"], "did you mean 'my_pkg'?"),
         (["3pkg"], "begin with a letter, and take no keyword of Python's; did you mean 'my_3pkg'?"),
         (["class"], "did you mean 'my_class'?"),
-        (["../pkg"], "'../pkg' is no name of a package"),
-        (["class"], "'class' is no name of a package"),
+        (["../pkg"], "'../pkg' cannot be the name of a package"),
+        (["class"], "'class' cannot be the name of a package"),
         (["test"], "a Python package cannot be called 'test'"),
         (["my_pkg", "--node-name", "first.py"], "did you mean 'first'?"),
-        (["my_pkg", "--template", "ament_cmake_python"], "is one of --build-type ament_cmake"),
+        (["my_pkg", "--template", "ament_cmake_python"], "is for --build-type ament_cmake"),
     ],
 )
 def test_what_cannot_be(machine: Machine, tmp_path: Path, words: list[str], told: str) -> None:
@@ -189,7 +189,7 @@ def test_licenses(machine: Machine, source: Path) -> None:
 def test_node_and_library_of_one_name(machine: Machine, source: Path) -> None:
     """The node becomes another one, as in ROS 2."""
     words = ["a", "--build-type", "ament_cmake", "--node-name", "b", "--library-name", "b"]
-    assert "the node becomes 'b_node'" in machine.look("pkg", "create", *words, cwd=source)
+    assert "the node is called 'b_node'" in machine.look("pkg", "create", *words, cwd=source)
     assert (source / "a/src/b_node.cpp").is_file()
 
 

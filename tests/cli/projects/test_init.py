@@ -89,7 +89,7 @@ def test_its_graph_can_be_included_under_namespaces(machine: Machine, tmp_path: 
         ("1lab", "did you mean 'my_1lab'?"),
         ("lab__a", "did you mean 'lab_a'?"),
         ("..lab", "did you mean 'lab'?"),
-        ("class", "'class' is a name of Python's, which yours would hide; did you mean 'my_class'?"),
+        ("class", "'class' is a module or keyword of Python's, which yours would hide; did you mean 'my_class'?"),
         ("random", "did you mean 'my_random'?"),
     ],
 )
@@ -114,4 +114,4 @@ def test_the_folder_itself(machine: Machine, tmp_path: Path) -> None:
     assert machine.run("init", ".", cwd=tmp_path / "lab").endswith("next:\n  graphflow up graphs/lab.yaml\n")
     assert (tmp_path / "lab" / "lab" / "greeter.py").is_file()
     told = machine.run("init", ".", cwd=tmp_path / "lab", code=2)
-    assert told == "error: this folder is not empty; graphflow init NAME writes a project into a new one\n"
+    assert told == "error: this folder is not empty; graphflow init NAME creates a new one\n"

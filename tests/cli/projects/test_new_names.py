@@ -11,8 +11,8 @@ from graphflow.cli.projects.new_names import (
     check_package,
     hidden_module,
     near_name,
-    tell_name,
-    tell_place,
+    warn_of_name,
+    warn_of_place,
 )
 from graphflow.errors import UsageFault
 
@@ -36,7 +36,7 @@ def test_names_of_ros(source: Path, name: str) -> None:
 def test_a_name_of_the_workspace(source: Path) -> None:
     """Is refused wherever the new package is to be."""
     for folder in (source / "tools" / "lamp", source.parent / "lamp"):
-        with pytest.raises(UsageFault, match=f"{source / 'lamp'} is the package 'lamp' already"):
+        with pytest.raises(UsageFault, match=f"{source / 'lamp'} already is the package 'lamp'"):
             check_package("lamp", folder)
     check_package("lamp", source / "lamp")
     check_package("light", source / "light")
@@ -46,7 +46,7 @@ def test_dependencies(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Are names of packages; one that is like a known one is probably misspelt."""
     with pytest.raises(UsageFault, match="write spaces between them: --dependencies rclpy std_msgs"):
         check_dependencies(["lamp", "rclpy,std_msgs"], source / "new")
-    with pytest.raises(UsageFault, match=r"'<x>' is no name of a package$"):
+    with pytest.raises(UsageFault, match=r"'<x>' cannot be the name of a package$"):
         check_dependencies(["<x>"], source / "new")
     check_dependencies(["rclpy", "rclcpp", "nav2_msgs", "lamp"], source / "new")
     assert capsys.readouterr().err == ""
@@ -57,18 +57,18 @@ def test_dependencies(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_name_that_ros_warns_of(capsys: pytest.CaptureFixture[str]) -> None:
     """Is told with one that it does not; other names are not."""
     for name in ("lamp", "lamp_2"):
-        tell_name(name)
+        warn_of_name(name)
     assert capsys.readouterr().err == ""
-    tell_name("TurtleCtl")
-    told = "note: names of packages have lower-case letters, digits and _, as 'turtle_ctl' has\n"
+    warn_of_name("TurtleCtl")
+    told = "note: names of packages consist of lower-case letters, digits and _, such as 'turtle_ctl'\n"
     assert capsys.readouterr().err == told
 
 
 def test_a_place_where_it_is_not_found(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Is told with the command that mends it."""
-    tell_place(source / "new")
+    warn_of_place(source / "new")
     assert capsys.readouterr().err == ""
-    tell_place(source.parent / "new")
+    warn_of_place(source.parent / "new")
     told = f"in src/: mv {source.parent / 'new'} {source}\n"
     assert capsys.readouterr().err == f"note: packages of this workspace are looked for {told}"
 
@@ -90,6 +90,6 @@ def test_modules_that_would_be_hidden(tmp_path: Path, monkeypatch: pytest.Monkey
     (tmp_path / "own_lamp" / "__init__.py").touch()
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    assert [hidden_module(word) for word in ("class", "queue")] == ["a name of Python's"] * 2
+    assert [hidden_module(word) for word in ("class", "queue")] == ["a module or keyword of Python's"] * 2
     assert [hidden_module(word) for word in ("graphflow", "yaml", "numpy")] == ["an installed module"] * 3
     assert [hidden_module(word) for word in ("own_lamp", "nothing_of_that_name")] == ["", ""]

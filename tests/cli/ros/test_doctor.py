@@ -32,7 +32,7 @@ def test_endpoints_that_do_not_fit(standing: Machine) -> None:
     found.pop("late")
     found.pop("starts")
     assert found.pop("hints") == [
-        "/office/clerk calls /bank/add, which nobody offers; of that type there is /office/clerk/add"
+        "/office/clerk calls /bank/add, which no node offers; available with that type: /office/clerk/add"
     ]
     others = (
         "deadlocks",
@@ -111,7 +111,7 @@ def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
     run_file.parent.mkdir(parents=True, exist_ok=True)
     run_file.write_text(json.dumps({**run, "pid": 2**22 + 1, "guardian": 0}))
     text = machine.look("doctor", code=3)
-    assert f"was killed and has left {run_file.parent}" in text
+    assert f"was killed and left {run_file.parent}" in text
     run_file.unlink()
 
 
@@ -119,7 +119,7 @@ def test_which_rclpy_wins_is_said(machine: Machine, monkeypatch: pytest.MonkeyPa
     """Where there are two; it is no fault."""
     assert "rclpy" not in machine.look("doctor", code=3)
     monkeypatch.setattr(enabling, "elsewhere", lambda: "/opt/ros/rclpy/__init__.py")
-    assert "import rclpy is that of the ROS 2 in this shell, /opt/ros/rclpy" in machine.look("doctor", code=3)
+    assert "import rclpy imports that of the ROS 2 in this shell, /opt/ros/rclpy" in machine.look("doctor", code=3)
     assert json.loads(machine.look("doctor", "--json", code=3).partition("\nerror")[0])["rclpy"]
 
 
@@ -142,6 +142,6 @@ def test_hints_as_faults(machine: Machine) -> None:
     machine.until(lambda: "/chatter" in machine.look("topic", "list", code=None), "it listens")
     text = machine.look("doctor")
     assert "listens to /chatter, which nobody publishes" in text
-    assert "1 node, no fault; the lines above may be meant so" in text
+    assert "1 node, no fault; the lines above may be intended" in text
     machine.look("doctor", "-iw", code=1)
     assert node.end() == 0

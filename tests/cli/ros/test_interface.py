@@ -109,7 +109,7 @@ def test_without_comments(own: Path, show: Show) -> None:
         ),
         (
             "Twist.linear.x",
-            "error: linear.x of geometry_msgs/msg/Twist is float64; all of it: graphflow interface show ",
+            "error: linear.x of geometry_msgs/msg/Twist is float64; whole type: graphflow interface show ",
         ),
         ("Twist.zzz", "error: there is no interface package 'Twist'"),
         ("a/b/c/d", "error: 'a/b/c/d' is not an interface name; write package/msg/Name"),

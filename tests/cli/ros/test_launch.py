@@ -127,7 +127,7 @@ def test_debug_is_not_detach(machine: Machine, tmp_path: Path) -> None:
     file = tmp_path / "a.launch.xml"
     file.write_text(XML)
     told = machine.look("launch", "-d", "-p", str(file))
-    assert "note: -d is ROS's --debug, which shows no more here; --detach leaves the graph in the background" in told
+    assert "note: -d is ROS's --debug, which has no effect here; --detach leaves the graph in the background" in told
 
 
 def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
@@ -161,5 +161,5 @@ def test_a_package_without_a_file(machine: Machine, tmp_path: Path) -> None:
     told = machine.look("launch", "lamp", cwd=tmp_path, code=2)
     assert told == "error: 'lamp' is a package; write graphflow launch lamp FILE; it has a_launch.xml, b.launch.py\n"
     told = machine.look("launch", "b.launch.py", "lamp", "a:=1", cwd=tmp_path, code=2)
-    assert told == "error: the package stands first: graphflow launch lamp b.launch.py a:=1\n"
+    assert told == "error: the package comes first: graphflow launch lamp b.launch.py a:=1\n"
     assert "lamb: there is no such file" in machine.look("launch", "lamb", cwd=tmp_path, code=2)

@@ -34,7 +34,7 @@ def test_a_life(machine: Machine) -> None:
     assert "inactive " in machine.look("ps")
     told = machine.look("lifecycle", "set", "/lc_talker", "configure", code=1)
     assert "Unknown transition requested, available ones are:\n- cleanup [2]\n- activate [3]\n- shutdown [6]" in told
-    assert "error: /lc_listener has no life cycle; those that do: /lc_talker" in machine.look(
+    assert "error: /lc_listener is not a lifecycle node; lifecycle nodes: /lc_talker" in machine.look(
         "lifecycle", "get", "/lc_listener", code=2
     )
     told = machine.look("lifecycle", "get", "/nobody", code=1)

@@ -198,10 +198,10 @@ def test_some_of_a_list(standing: Machine) -> None:
     """By a pattern, or by what they begin with."""
     assert standing.look("param", "list", "/office/clerk", "--filter", "sim_time$") == "  use_sim_time\n"
     assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim") == (
-        "no parameter is meant; without --filter and --param-prefixes all are listed\n"
+        "no parameter matches; without --filter and --param-prefixes, all are listed\n"
     )
     assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim_time") == "  use_sim_time\n"
-    assert "'(' is no regular expression" in standing.look("param", "list", "--filter", "(", code=2)
+    assert "'(' is not a regular expression" in standing.look("param", "list", "--filter", "(", code=2)
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,7 @@ def test_some_of_a_list(standing: Machine) -> None:
 def test_a_file_before_the_node(words: str, node: str) -> None:
     """The whole command is told; the file need not be there."""
     done = CliRunner().invoke(cli, ["param", "load", *words.split()])
-    assert f"the node stands first: graphflow param load {node} {words.split()[0]}" in done.output
+    assert f"the node comes first: graphflow param load {node} {words.split()[0]}" in done.output
 
 
 @pytest.mark.parametrize(

@@ -55,11 +55,11 @@ def test_call(standing: Machine) -> None:
         (
             [ADD, "{a: 1}"],
             2,
-            f"error: '{{a: 1}}' was taken for the type of {ADD}; that is {TYPE}: graphflow service call {ADD} {TYPE} "
+            f"error: '{{a: 1}}' was read as the type of {ADD}; its type is {TYPE}: graphflow service call {ADD} {TYPE} "
             "'{a: 1}'",
         ),
-        ([ADD, "1", "2"], 2, f"that is {TYPE}: graphflow service call {ADD} {TYPE} '{{a: 1, b: 2}}'"),
-        ([ADD, "1"], 2, f"that is {TYPE}: graphflow service call {ADD} {TYPE} ..."),
+        ([ADD, "1", "2"], 2, f"its type is {TYPE}: graphflow service call {ADD} {TYPE} '{{a: 1, b: 2}}'"),
+        ([ADD, "1"], 2, f"its type is {TYPE}: graphflow service call {ADD} {TYPE} ..."),
         ([ADD, TYPE, "{a: -1}"], 1, f"the handler of {ADD} raised ValueError: no debts"),
         ([ADD, TYPE, "{a: x}"], 2, "AddTwoInts_Request.a: expected int64, got 'x'"),
         ([ADD, TYPE, "{c: 1}"], 2, "c"),

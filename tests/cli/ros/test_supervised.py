@@ -42,5 +42,5 @@ def test_a_stopped_process(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_nodes_that_the_network_does_not_show() -> None:
     """Only what is ready, and has the name that the file gives it."""
     rows = [row("/a"), row("/b"), row("/c", "starting"), row("/program", is_named=False)]
-    assert unseen(rows, ["/a"]) == ["not seen on the network, though their supervisor has them as ready: /b"]
+    assert unseen(rows, ["/a"]) == ["not seen on the network, although ready for their supervisor: /b"]
     assert unseen(rows, ["/a", "/b"]) == []

@@ -93,13 +93,13 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
             4,
             "error: no node offers the service /chatter; it is a topic, of",
         ),
-        ("topic echo /chatter data", 2, "error: a field is shown by: graphflow topic echo /chatter --field data"),
+        ("topic echo /chatter data", 2, "error: to show a field: graphflow topic echo /chatter --field data"),
         (
             "topic echo /chatter/data",
             2,
-            "error: there is no topic /chatter/data; a field is shown by: graphflow topic echo /chatter --field data",
+            "error: there is no topic /chatter/data; to show a field: graphflow topic echo /chatter --field data",
         ),
-        ("topic echo /chatter.data", 2, "error: a field is shown by: graphflow topic echo /chatter --field data"),
+        ("topic echo /chatter.data", 2, "error: to show a field: graphflow topic echo /chatter --field data"),
         ("topic echo /talker", 1, "Unknown topic '/talker'; it is a node"),
         ("topic echo /chater", 1, "topic /chater does not appear to be published yet; did you mean '/chatter'?"),
         ("topic echo /chater", 1, "To wait for it, give its type: graphflow topic echo /chater TYPE"),
@@ -122,18 +122,18 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
         (
             "topic echo /chatter /rosout",
             2,
-            "'/rosout' was taken for the type of /chatter; /rosout needs a command of its",
+            "'/rosout' was read as the type of /chatter; /rosout needs a command of its",
         ),
-        ("topic echo chatter rosout", 2, "error: 'rosout' was taken for the type of /chatter; /rosout needs a command"),
+        ("topic echo chatter rosout", 2, "error: 'rosout' was read as the type of /chatter; /rosout needs a command"),
         (
             "topic echo /chatter Strin",
             2,
-            "error: 'Strin' was taken for the type of /chatter; that is std_msgs/msg/String",
+            "error: 'Strin' was read as the type of /chatter; its type is std_msgs/msg/String",
         ),
         (
             "topic pub /chatter hello",
             2,
-            "error: 'hello' was taken for the type of /chatter; that is std_msgs/msg/String",
+            "error: 'hello' was read as the type of /chatter; its type is std_msgs/msg/String",
         ),
         ("topic pub /chatter std_msgs/msg/String dta: x", 2, "did you mean 'data'?"),
         ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "that is std_msgs/msg/String"),
@@ -159,7 +159,7 @@ def test_echo_of_what_fits(standing: Machine) -> None:
     """A condition on the message; its bytes."""
     words = ("topic", "echo", "/chatter", "--once", "--filter")
     assert "Hello World" in standing.look(*words, "'World' in m.data")
-    assert "is no expression" in standing.look(*words, "m.data >", code=2)
+    assert "is not an expression" in standing.look(*words, "m.data >", code=2)
     assert "AttributeError: " in standing.look(*words, "m.nothing", code=2)
     for condition in ([], ["--filter", "'World' in m.data"]):
         text = standing.look("topic", "echo", "/chatter", "--once", "--raw", *condition)

@@ -104,7 +104,7 @@ def test_two_packages_of_one_name(machine: Machine, workspace: Path) -> None:
     (workspace / "src/more/lamp").mkdir(parents=True)
     (workspace / "src/more/lamp/package.xml").write_text("<package><name>lamp</name></package>")
     said = machine.look("ws", cwd=workspace, code=1)
-    assert f"src/more/lamp: another package is called 'lamp', too, and is the one that counts: {workspace}" in said
+    assert f"src/more/lamp: another package is called 'lamp', too, and takes precedence: {workspace}" in said
 
 
 def test_a_package_without_executables(machine: Machine, workspace: Path) -> None:

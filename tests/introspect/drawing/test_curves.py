@@ -24,7 +24,7 @@ def line(label: str = "") -> Curve:
 
 def test_what_is_no_field_is_told_at_once() -> None:
     """Not when the first message comes."""
-    with pytest.raises(UsageFault, match="no number"):
+    with pytest.raises(UsageFault, match="not a number"):
         Curve("linear", TWIST)
 
 

@@ -116,7 +116,7 @@ def test_learning_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
     view: Any = View(InterfaceError("broken"))
     with pytest.raises(UnknownInterface, match=r"no interface package 'definitions_msgs'.*; broken"):
         learn(view, "/things", THING)
-    with pytest.raises(UnknownInterface, match="no node that uses it gives its definition"):
+    with pytest.raises(UnknownInterface, match="no node that uses it provides its definition"):
         learn(view, "/other", THING)
 
 
@@ -134,7 +134,7 @@ def test_how_many_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
         learn(view, "/things", THING)
     assert len(view.asked) == 3
     other = "definitions_msgs/msg/Other"
-    with pytest.raises(UnknownInterface, match="no node that uses it gives its definition"):
+    with pytest.raises(UnknownInterface, match="no node that uses it provides its definition"):
         learn(view, "/things", other)
     assert len(view.asked) == 3
 

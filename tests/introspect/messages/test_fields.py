@@ -45,7 +45,7 @@ def test_wrong_paths(text: str, message: str) -> None:
 
 def test_a_field_of_a_list_needs_an_element() -> None:
     """Who forgets the index is told how to give it."""
-    with pytest.raises(UsageFault, match=r"points is a list; say which element, as in points\[0\]"):
+    with pytest.raises(UsageFault, match=r"points is a list; choose an element, as in points\[0\]"):
         field_path("points.x", "geometry_msgs/msg/Polygon")
 
 
@@ -61,10 +61,14 @@ def test_the_numbers_of_a_type() -> None:
 @pytest.mark.parametrize(
     ("text", "type_name", "message"),
     [
-        ("linear", "geometry_msgs/msg/Twist", "linear is of type geometry_msgs/msg/Vector3 and no number; say which"),
+        (
+            "linear",
+            "geometry_msgs/msg/Twist",
+            "linear is of type geometry_msgs/msg/Vector3, not a number; choose a field",
+        ),
         ("linear", "geometry_msgs/msg/Twist", "as in linear.x"),
-        ("data", "std_msgs/msg/String", "data is of type string and no number"),
-        ("ranges", "sensor_msgs/msg/LaserScan", r"ranges is a list; say which element, as in ranges\[0\]"),
+        ("data", "std_msgs/msg/String", "data is of type string, not a number"),
+        ("ranges", "sensor_msgs/msg/LaserScan", r"ranges is a list; choose an element, as in ranges\[0\]"),
         ("layout", "std_msgs/msg/Float64MultiArray", "layout.data_offset"),
         ("linear.q", "geometry_msgs/msg/Twist", "has no field 'q'"),
     ],

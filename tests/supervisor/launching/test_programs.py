@@ -95,7 +95,7 @@ def test_a_program_is_like_a_node(machine: Machine, project: Path) -> None:
     machine.until(lambda: "red here" in log.read_text(), "it has begun")
     children = [child.pid for child in psutil.Process(rows(machine)["/p"]["pid"]).children()]
     assert rows(machine)["/p"]["class"].startswith("sh -c")
-    assert "/p runs again, process" in machine.look("restart", "/p")
+    assert "/p is running again, process" in machine.look("restart", "/p")
     machine.look("down")
     nothing_is_left(machine, [*pids, *children])
     assert log.read_text().count("cleaned up") == (0 if is_portable() and os.name == "nt" else 2)

@@ -143,7 +143,7 @@ def test_down_ends_a_graph_whose_processes_are_stopped(machine: Machine, nursery
     os.kill(pid, signal.SIGSTOP)
     text = machine.look("down")
     if name == "supervisor":
-        assert f"the supervisor, process {pid}, is stopped; it is killed, and its nodes are ended" in text
+        assert f"the supervisor, process {pid}, is stopped; killing it and ending its nodes" in text
     nothing_is_left(machine, nursery)
 
 
