@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypedDict
 
 from graphflow.errors import CallTimeout, RemoteError
 from graphflow.introspect.graph_view import View
@@ -29,6 +29,62 @@ from graphflow.machines.waits.wait_graph import (
 from graphflow.machines.waits.wait_graph_json import from_json
 from graphflow.wire.process import GROUPS, answer_key
 
+HandlerRow = TypedDict(
+    "HandlerRow",
+    {
+        "handler": str,
+        "kind": str,
+        "async": bool,
+        "running": int,
+        "waiting": int,
+        "runs": int | None,
+        "errors": int,
+    },
+)
+"""A handler with its counters, as `deadlock.inspection` describes it."""
+
+
+class GroupRow(TypedDict):
+    """A group with its handlers, as `deadlock.inspection` describes it; without a name, the handlers in none."""
+
+    name: str
+    limit: int | None
+    when_full: str
+    thread: bool
+    handlers: list[HandlerRow]
+
+
+class Regrouping(TypedDict):
+    """The groups of a node after a change, and the lines that make it permanent."""
+
+    groups: list[GroupRow]
+    where: str
+    yaml: list[str]
+
+
+class ActivityRow(TypedDict):
+    """An activity that holds a slot or waits, for `graphflow waits`."""
+
+    activity: str
+    holds: str
+    waits_for: str
+    since: float
+    """Seconds that it has waited or run."""
+    left: float | None
+    """Seconds until its wait times out; None if it does not."""
+    place: str
+    stuck: bool
+
+
+class QueueRow(TypedDict):
+    """A handler whose work is queued, for `graphflow waits`."""
+
+    handler: str
+    group: str
+    held_by: list[str]
+    waiting: int
+    dropped: int
+
 
 @dataclass
 class ConcurrencyReport:
@@ -37,7 +93,7 @@ class ConcurrencyReport:
     graph: WaitGraph
     reports: list[str]
     """Explanations of current deadlocks."""
-    nodes: dict[str, list[dict[str, Any]]]
+    nodes: dict[str, list[GroupRow]]
     """Groups by node, as `deadlock.inspection` describes them."""
     unreadable: int = 0
     processes: set[str] = field(default_factory=set)
@@ -82,7 +138,7 @@ def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
     return sorted(found)
 
 
-def change_groups(view: View, node: str, requests: Sequence[Mapping[str, Any]], timeout: float) -> dict[str, Any]:
+def change_groups(view: View, node: str, requests: Sequence[Mapping[str, object]], timeout: float) -> Regrouping:
     """Change the groups of a node; return its new groups, and the lines of a graph file for them.
 
     Args:
@@ -102,8 +158,8 @@ def change_groups(view: View, node: str, requests: Sequence[Mapping[str, Any]], 
             raise CallTimeout(text) from None
         if answer.is_error:
             raise RemoteError.from_payload(answer.payload, node)
-    told: dict[str, Any] = json.loads(answer.payload)
-    return told
+    regrouping: Regrouping = json.loads(answer.payload)
+    return regrouping
 
 
 def stuck(waits: ConcurrencyReport) -> set[str]:
@@ -112,10 +168,10 @@ def stuck(waits: ConcurrencyReport) -> set[str]:
     return {i for d in explained(waits.graph, dead) for i in (*d.ring, *d.victims)}
 
 
-def rows(waits: ConcurrencyReport) -> list[dict[str, Any]]:
+def rows(waits: ConcurrencyReport) -> list[ActivityRow]:
     """Describe every activity that holds a slot or waits, the longest first."""
     graph, dead = waits.graph, stuck(waits)
-    found = []
+    found: list[ActivityRow] = []
     for a in sorted(graph.activities.values(), key=lambda a: -a.age):
         group = group_of(a, graph)
         if a.wait is FREE and not group:
@@ -134,17 +190,22 @@ def rows(waits: ConcurrencyReport) -> list[dict[str, Any]]:
     return found
 
 
-def queued(waits: ConcurrencyReport) -> list[dict[str, Any]]:
+def queued(waits: ConcurrencyReport) -> list[QueueRow]:
     """Describe the handlers whose work is queued for a slot."""
-    found = []
+    found: list[QueueRow] = []
     for queue in waits.graph.queues.values():
         if queue.waiting:
             groups = [waits.graph.groups[name] for name in queue.needs if name in waits.graph.groups]
             holders = [title(a) for a in waits.graph.activities.values() if set(a.holds) & set(queue.needs)]
             name = f"{queue.label} of {queue.node}"
-            numbers = {"waiting": queue.waiting, "dropped": queue.dropped}
             found.append(
-                {"handler": name, "group": next((g.name for g in groups if g.name), ""), "held_by": holders, **numbers}
+                {
+                    "handler": name,
+                    "group": next((g.name for g in groups if g.name), ""),
+                    "held_by": holders,
+                    "waiting": queue.waiting,
+                    "dropped": queue.dropped,
+                }
             )
     return found
 

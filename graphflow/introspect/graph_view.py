@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Iterable
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from graphflow.errors import (
     CallError,
@@ -26,6 +26,9 @@ from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import NODES, Kind, watch_key
 from graphflow.wire.net import NetToken
 from graphflow.wire.process import ProcessToken
+
+if TYPE_CHECKING:
+    from graphflow.msgs.base import Message
 
 logger = logging.getLogger("graphflow")
 
@@ -121,7 +124,7 @@ class View:
             time.sleep(0.05)
             self.refresh()
 
-    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
+    def call(self, name: str, type_name: str, request: Message, timeout: float = 10.0, *, plain: bool = False) -> Any:
         """Call a service and return the response message.
 
         Args:

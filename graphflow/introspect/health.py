@@ -7,7 +7,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.numbers import REPLY_BOUND
@@ -83,7 +83,7 @@ def read(replies: Iterable[bytes]) -> Counts:
     found: dict[tuple[str, str], dict[str, float]] = {}
     for reply in replies:
         try:
-            data: Any = json.loads(reply) if len(reply) <= REPLY_BOUND else {}
+            data = json.loads(reply) if len(reply) <= REPLY_BOUND else {}
             for node, parts in dict(data["nodes"]).items():
                 for part, numbers in dict(parts).items():
                     kept = {str(k): float(n) for k, n in dict(numbers).items() if isinstance(n, (int, float))}
@@ -187,7 +187,7 @@ def _strangers(view: View) -> Iterator[str]:
             yield f"{', '.join(nodes[:SHOWN])}{more} on another machine, {host}"
 
 
-def _answer(reply: bytes) -> dict[str, Any]:
+def _answer(reply: bytes) -> dict[str, object]:
     """Parse a process's answer; empty if it cannot be read."""
     try:
         data = json.loads(reply) if len(reply) <= REPLY_BOUND else {}

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.wire.liveliness import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 
 _CHANGE = "lifecycle_msgs/srv/ChangeState"
 _STATE = "lifecycle_msgs/srv/GetState"
@@ -19,14 +24,15 @@ def managed_nodes(cache: GraphCache) -> list[str]:
     return sorted({e.node_name for e in servers if e.type == _CHANGE and e.name == f"{e.node_name}/change_state"})
 
 
-def state(view: View, node: str, timeout: float) -> Any:
+def state(view: View, node: str, timeout: float) -> State:
     """Return the state of a node. Raises CallError: It does not answer."""
     from graphflow.msgs.lifecycle_msgs.srv import GetState
 
-    return view.call(f"{node}/get_state", _STATE, GetState.Request(), timeout).current_state
+    response: GetState.Response = view.call(f"{node}/get_state", _STATE, GetState.Request(), timeout)
+    return response.current_state
 
 
-def transitions(view: View, node: str, timeout: float, *, everything: bool = False) -> Any:
+def transitions(view: View, node: str, timeout: float, *, everything: bool = False) -> Sequence[TransitionDescription]:
     """Return the transitions that a node can make from its current state.
 
     Args:
@@ -38,14 +44,16 @@ def transitions(view: View, node: str, timeout: float, *, everything: bool = Fal
     from graphflow.msgs.lifecycle_msgs.srv import GetAvailableTransitions
 
     service = f"{node}/{'get_transition_graph' if everything else 'get_available_transitions'}"
-    return view.call(service, _TRANSITIONS, GetAvailableTransitions.Request(), timeout).available_transitions
+    response: GetAvailableTransitions.Response
+    response = view.call(service, _TRANSITIONS, GetAvailableTransitions.Request(), timeout)
+    return response.available_transitions
 
 
-def change(view: View, node: str, transition: Any, timeout: float) -> bool:
+def change(view: View, node: str, transition: Transition, timeout: float) -> bool:
     """Trigger a transition of a node; return False if it fails, as the node's log explains.
 
     Args:
-        transition: A `lifecycle_msgs/msg/Transition`.
+        transition: One of those that `transitions` returns.
 
     Raises:
         CallError: It does not answer.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 REPLY_BOUND = 1 << 20
 """Most bytes of one process's answer."""
@@ -58,7 +58,7 @@ class Numbers:
         if len(reply) > REPLY_BOUND:
             return
         try:
-            data: Any = json.loads(reply)
+            data = json.loads(reply)
             for node, parts in dict(data["nodes"]).items():
                 self.lags[node] = float(data["lag"])
                 for title, numbers in dict(parts).items():

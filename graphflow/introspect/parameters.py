@@ -29,7 +29,7 @@ class RemoteParameters:
     def __init__(self, view: View, node: str, timeout: float) -> None:
         self._view, self._node, self._timeout = view, node, timeout
 
-    def _call(self, service: str, type_name: str, **request: Any) -> Any:
+    def _call(self, service: str, type_name: str, **request: object) -> Any:
         from graphflow.msgs import registry
         from graphflow.msgs.values import from_plain
 
@@ -84,7 +84,7 @@ class RemoteParameters:
         return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, self.names())}")
 
 
-def read_value(text: str, type_: int) -> Any:
+def read_value(text: str, type_: int) -> object:
     """Convert a typed value to the declared type: quoted or not, `on` for a bool, 2 for a double.
 
     Args:
@@ -110,7 +110,7 @@ def read_value(text: str, type_: int) -> Any:
     return as_declared(value, type_)
 
 
-def as_declared(value: Any, type_: int) -> Any:
+def as_declared(value: object, type_: int) -> object:
     """Convert a YAML value to a parameter's type: integers to doubles, lists of numbers to bytes.
 
     Args:

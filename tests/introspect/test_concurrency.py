@@ -56,7 +56,7 @@ def reply(picture: WaitGraph, process: str = "z", **more: Any) -> bytes:
 
 def test_answers_are_joined() -> None:
     """Pictures, reports, stalls and groups of all processes; blocked and late loops by their nodes."""
-    groups = {name: [{"name": "work"}] for name in ("/a", "/b", "/c")}
+    groups: dict[str, Any] = {name: [{"name": "work"}] for name in ("/a", "/b", "/c")}
     read = concurrency.read(
         [
             reply(crossing()[0], "1", nodes={"/a": groups["/a"]}, reports=["DEADLOCK"]),

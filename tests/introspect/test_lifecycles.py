@@ -8,6 +8,7 @@ from typing import Any
 from graphflow import LifecycleNode, Node
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
+from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState
 from graphflow.testing import Graph
 
@@ -25,10 +26,12 @@ class Asked(View):
 
 def test_what_is_asked() -> None:
     """The services of ROS 2."""
-    view = Asked(current_state="active", available_transitions=["deactivate"], success=True)
-    assert state(view, "/lived", 1.0) == "active"
-    assert transitions(view, "/lived", 1.0) == transitions(view, "/lived", 1.0, everything=True) == ["deactivate"]
-    assert change(view, "/lived", {"id": 4}, 1.0) is True
+    active, deactivate = State(label="active"), Transition(id=4, label="deactivate")
+    way = TransitionDescription(transition=deactivate)
+    view = Asked(current_state=active, available_transitions=[way], success=True)
+    assert state(view, "/lived", 1.0) is active
+    assert transitions(view, "/lived", 1.0) == transitions(view, "/lived", 1.0, everything=True) == [way]
+    assert change(view, "/lived", deactivate, 1.0) is True
     assert [(name, type_) for name, type_, _ in view.asked] == [
         ("/lived/get_state", "GetState"),
         ("/lived/get_available_transitions", "GetAvailableTransitions"),

@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.graphs.node_rows import graph_rows, node_rows
 from graphflow.cli.graphs.streaming import take_down
 from graphflow.cli.net_options import reach, reach_options
 from graphflow.cli.tree import verbs
@@ -20,7 +21,6 @@ from graphflow.domain import domain_id, go_to
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.supervisor import rundir
 from graphflow.supervisor.control.choosing import choose, running_here
-from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.times import ago
 from graphflow.workspace.project import shown
@@ -61,7 +61,7 @@ def _report_end(run: GraphRun, how: str, exit_code: int | None) -> int:
         output.error(f"the supervisor of {run.graph} died; its log is {run.logs}/{rundir.SUPERVISOR_LOG}")
         output.talk(f"start the graph again with: graphflow up {shown(Path(run.file))}")
         return exits.FAILED
-    nodes = len(_rows(run)["nodes"])
+    nodes = len(node_rows(run.socket))
     which = f" --graph {run.graph}" if len(rundir.running()) > 1 else ""
     if how == "failed":
         output.error("the console failed, but the graph keeps running; please report the error above")
@@ -72,15 +72,9 @@ def _report_end(run: GraphRun, how: str, exit_code: int | None) -> int:
     return exits.FAILED if how == "failed" else exits.OK
 
 
-def _rows(run: GraphRun) -> dict[str, Any]:
-    with ControlClient(run.socket) as client:
-        client.send(do="ps")
-        return next(client.receive(), {"nodes": [], "consoles": []})
-
-
 @click.command()
 @click.argument("graph", required=False, metavar="[GRAPH]")
-@click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
+@click.option("--graph", "name", metavar="NAME", help="Name of the running graph, if there are several.")
 @click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a; else GRAPHFLOW_PREFIX, or ctrl+b.")
 @reach_options
 def attach(graph: str | None, name: str | None, prefix: str | None, connect: tuple[str, ...], net: str | None) -> int:
@@ -125,7 +119,7 @@ def ls(as_json: bool) -> int:
     """List running graphs with their nodes and attached consoles."""
     rows = []
     for run in running_here(everything=True):
-        answer = _rows(run)
+        answer = graph_rows(run.socket)
         states = Counter(node["state"] for node in answer["nodes"])
         rows.append(
             {
@@ -133,7 +127,7 @@ def ls(as_json: bool) -> int:
                 "domain": run.domain,
                 "nodes": dict(states),
                 "began": run.began,
-                "consoles": [c["name"] for c in answer.get("consoles", [])],
+                "consoles": [c["name"] for c in answer["consoles"]],
                 "file": run.file,
             }
         )
@@ -163,7 +157,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
 @click.command()
 @click.option("--web", is_flag=True, help="Serve it to a browser on this machine.")
 @click.option("--port", type=click.IntRange(1, 65535), default=8147, show_default=True, help="Port for --web.")
-@click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
+@click.option("--graph", "name", metavar="NAME", help="Name of the running graph, if there are several.")
 @click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a.")
 def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
     """Open the console on a running graph, here or in a browser."""

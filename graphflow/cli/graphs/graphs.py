@@ -22,11 +22,12 @@ from graphflow.times import ago
 from graphflow.wire.profile import PROFILES, VARIABLE
 
 if TYPE_CHECKING:
+    from graphflow.cli.graphs.node_rows import NodeRow
     from graphflow.supervisor.rundir import GraphRun
     from graphflow.supervisor.starts import Start
 
-_graph = click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
-_everywhere = click.option("--all", "everything", is_flag=True, help="Include every domain.")
+_graph = click.option("--graph", "name", metavar="NAME", help="Name of the running graph, if there are several.")
+_everywhere = click.option("--all", "everything", is_flag=True, help="Include the graphs of all domains.")
 
 LEVELS = ("debug", "info", "warn", "error", "fatal")
 DETAIL = 60
@@ -97,12 +98,15 @@ def up(
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
         return int(report["exit_code"])
+    from graphflow.supervisor.rundir import GraphRun
+
+    run = GraphRun(**report["run"])
     if uses_console:
         launched.let_go()
-        return _open_console(report["run"], launched.wait)
+        return _open_console(run, launched.wait)
     from graphflow.cli.graphs.streaming import stream
 
-    code = stream(report["run"], report["classes"], detach=detach, end=launched.wait, as_json=as_json)
+    code = stream(run, report["classes"], detach=detach, end=launched.wait, as_json=as_json)
     if detach:
         launched.let_go()
     return code
@@ -120,16 +124,14 @@ def _take_down_running(path: Path) -> None:
             take_down(run, now=False)
 
 
-def _open_console(run: dict[str, Any], end: Callable[[], str]) -> int:
+def _open_console(run: GraphRun, end: Callable[[], str]) -> int:
     from graphflow.cli.graphs.console import show
     from graphflow.cli.graphs.streaming import GONE_LIMIT, report_loss
-    from graphflow.supervisor.rundir import GraphRun
 
-    shown = GraphRun(**run)
     try:
-        return show(shown, shown.domain)
+        return show(run, run.domain)
     except SupervisorError:
-        if not shown.wait_gone(GONE_LIMIT):
+        if not run.wait_gone(GONE_LIMIT):
             raise
         return report_loss(run, end)
 
@@ -216,23 +218,19 @@ def _report_start(start: Start) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ps(name: str | None, everything: bool, as_json: bool) -> int:
     """List the nodes of running graphs in this domain: state, process and uptime."""
+    from graphflow.cli.graphs.node_rows import node_rows
     from graphflow.supervisor.control.choosing import choose, running_here
-    from graphflow.supervisor.control.client import ControlClient
 
     runs = [choose(name)] if name else running_here(everything=everything)
-    rows, silent = [], []
+    rows: list[tuple[GraphRun, NodeRow]] = []
+    silent = []
     for run in runs:
         try:
-            with ControlClient(run.socket) as client:
-                client.send(do="ps")
-                answer = next(client.receive(PS_LIMIT), None)
+            rows += [(run, row) for row in node_rows(run.socket, PS_LIMIT)]
         except SupervisorError:
             silent.append(run)
-            continue
-        for node in (answer or {}).get("nodes", []):
-            rows.append({"graph": run.graph, "domain": run.domain, **node})
     if as_json:
-        output.as_json(rows)
+        output.as_json([{"graph": run.graph, "domain": run.domain, **row} for run, row in rows])
     elif rows:
         output.lines(_table(rows))
     for run in runs:
@@ -245,12 +243,12 @@ def ps(name: str | None, everything: bool, as_json: bool) -> int:
     return exits.TIMEOUT if silent else exits.OK
 
 
-def _table(rows: list[dict[str, Any]]) -> list[str]:
+def _table(rows: list[tuple[GraphRun, NodeRow]]) -> list[str]:
     head = ("GRAPH", "NODE", "STATE", "PID", "FOR", "CLASS")
     now = time.time()
     cells = [head] + [
         (
-            row["graph"],
+            run.graph,
             row["node"],
             (row.get("lifecycle") or row["state"])
             + (f" ({shorten(row['detail'], DETAIL, placeholder=' ...')})" if row["detail"] else ""),
@@ -258,7 +256,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
             ago(now - row["since"]),
             row["class"],
         )
-        for row in rows
+        for run, row in rows
     ]
     return output.columns(cells)
 

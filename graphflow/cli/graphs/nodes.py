@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.introspect.graph_view import View
@@ -29,7 +30,7 @@ POLL = 0.05
 OVER = ("failed", "given_up", "ended")
 """States that a node leaves only by command."""
 
-_graph = click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
+_graph = click.option("--graph", "name", metavar="NAME", help="Name of the running graph, if there are several.")
 _nodes = click.argument("nodes", nargs=-1, required=True, metavar="NODE...")
 
 
@@ -117,7 +118,7 @@ def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name:
 
 def _waited(
     nodes: tuple[str, ...], graph: str | None, timeout: float, *, ended: bool
-) -> tuple[list[dict[str, Any]], int, str]:
+) -> tuple[list[NodeRow], int, str]:
     """Wait for nodes; return their rows, the exit code and, unless it is 0, the reason."""
     deadline = time.monotonic() + timeout
     while True:
@@ -142,17 +143,17 @@ def _not_there() -> str:
     return f"no graph is running yet; {starts}" if (starts := being_started()) else "no graph is running"
 
 
-def _rows_if_any(graph: str | None) -> list[dict[str, Any]] | None:
+def _rows_if_any(graph: str | None) -> list[NodeRow] | None:
     """Return the rows of all nodes; None while no graph is running."""
     try:
-        return _rows(choose(graph).socket)
+        return node_rows(choose(graph).socket)
     except SupervisorError as error:
         if error.exit_code in (exits.NOT_RUNNING, exits.FAILED):  # it has not started yet, or has just ended
             return None
         raise
 
 
-def _wanted(nodes: tuple[str, ...], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _wanted(nodes: tuple[str, ...], rows: list[NodeRow]) -> list[NodeRow]:
     if not nodes:
         return rows
     known = {row["node"]: row for row in rows}
@@ -166,15 +167,8 @@ def _full(node: str) -> str:
     return node if node.startswith("/") else f"/{node}"
 
 
-def _rows(socket: str) -> list[dict[str, Any]]:
-    with ControlClient(socket) as client:
-        client.send(do="ps")
-        rows: list[dict[str, Any]] = next(client.receive(), {}).get("nodes", [])
-    return rows
-
-
-def _row(socket: str, node: str) -> dict[str, Any]:
-    return _wanted((node,), _rows(socket))[0]
+def _row(socket: str, node: str) -> NodeRow:
+    return _wanted((node,), node_rows(socket))[0]
 
 
 def _last_lines(log: Path) -> list[str]:
@@ -228,7 +222,7 @@ def _ask(what: str, node: str, graph: str | None, **more: Any) -> int:
 def by_itself(node: str) -> str:
     """Describe where a node outside all graphs runs and how to end it; empty if the network shows no such node."""
     try:
-        if any(row["node"] == node for run in rundir.running() if run.is_here for row in _rows(run.socket)):
+        if any(row["node"] == node for run in rundir.running() if run.is_here for row in node_rows(run.socket)):
             return ""
         with View(domain_id()) as view:
             if node not in view.cache.nodes():
@@ -240,7 +234,7 @@ def by_itself(node: str) -> str:
     return f"{node} was not started by `up`; it runs in {owner}; end it there with Ctrl-C{end}"
 
 
-def _await(socket: str, node: str, wanted: str) -> dict[str, Any]:
+def _await(socket: str, node: str, wanted: str) -> NodeRow:
     """Wait until a node is in the wanted state or in one that it does not leave; return its row."""
     deadline = time.monotonic() + LIMIT
     while True:

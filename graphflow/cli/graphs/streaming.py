@@ -11,16 +11,20 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.cli import exits, output
 from graphflow.cli.graphs.loglines import Chosen, record
+from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.processes.process_tree import state_of
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, left_over
 from graphflow.system import is_portable, terminal_name
+
+if TYPE_CHECKING:
+    from graphflow.supervisor.control.clients import Event
 
 _POLL = 0.1
 """Seconds between reads of the log files."""
@@ -103,7 +107,7 @@ def _rest(path: Path, offset: int) -> bytes:
 
 
 def stream(
-    run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: Callable[[], str], as_json: bool = False
+    run: GraphRun, classes: dict[str, str], *, detach: bool, end: Callable[[], str], as_json: bool = False
 ) -> int:
     """Follow a graph from its start to its end, or until it is up; return the exit code of `up`.
 
@@ -116,35 +120,29 @@ def stream(
         signal.signal(number, lambda got, _: interrupts.append(got))
     # Connect first: a graph that fails at once waits only for its first follower before it ends.
     try:
-        nodes = _list_nodes(run["socket"])
-        with ControlClient(run["socket"]) as client:
+        nodes = node_rows(run.socket)
+        with ControlClient(run.socket) as client:
             client.send(do="follow")
             followed = _Stream(run, classes, nodes, client, detach, interrupts, as_json=as_json).run()
     except SupervisorError:
-        if not GraphRun(**run).wait_gone(GONE_LIMIT):
+        if not run.wait_gone(GONE_LIMIT):
             raise
         followed = None
     if followed is None:
         return report_loss(run, end)
     if not detach:
-        GraphRun(**run).wait_gone(GONE_LIMIT)
+        run.wait_gone(GONE_LIMIT)
     return followed
 
 
-def _list_nodes(socket: str) -> list[dict[str, Any]]:
-    with ControlClient(socket) as client:
-        client.send(do="ps")
-        answer = next(client.receive(), {})
-    nodes: list[dict[str, Any]] = answer.get("nodes", [])
-    return nodes
-
-
 class _Stream:
+    """A graph as one `up` shows it, from the supervisor's events and the nodes' logs."""
+
     def __init__(
         self,
-        run: dict[str, Any],
+        run: GraphRun,
         classes: dict[str, str],
-        nodes: list[dict[str, Any]],
+        nodes: list[NodeRow],
         client: ControlClient,
         detach: bool,
         interrupts: list[int],
@@ -193,57 +191,70 @@ class _Stream:
         since = self._unanswered_since
         if since is None or time.monotonic() - since < _SILENCE_LIMIT:
             return
-        run = GraphRun(**self._run)
         if self._stop_sent > 1:
             self._unanswered_since = None
-            end_silent(run)
+            end_silent(self._run)
         elif not self._has_reported_silence:
             self._has_reported_silence = True
-            output.talk(f"{silent(run)}; Ctrl-C again ends the graph without it")
+            output.talk(f"{silent(self._run)}; Ctrl-C again ends the graph without it")
 
-    def _show(self, event: dict[str, Any]) -> int | None:
+    def _show(self, event: Event) -> int | None:
         """Show one event; return the exit code if it is the last."""
-        what = event["event"]
-        if self._as_json and what in _PUBLISHED:
-            more = {"graph": self._run["graph"], "domain": self._run["domain"], "logs": self._run["logs"]}
-            output.as_json({**event, **(more | {"nodes": self._nodes} if what == "up" else {})})
-        if what == "step":
-            mark = "done" if event["ok"] else "FAILED"
-            output.talk(f"step {event['step']} {mark}: {event['text']}")
-        elif what == "said":
-            output.talk(event["text"])
-        elif what == "up":
-            self._greet(event["seconds"], event.get("pending", {}))
-            self._is_up = True
-        elif what == "checked" and self._detach:
-            return exits.OK
-        elif what == "note":
-            output.talk(f"note: {event['text']}")
-        elif what == "stopping":
-            if self._logs is not None and not self._detach:
-                self._logs.show()
-            again = "; Ctrl-C again kills it" if event["reason"] == "Ctrl-C" else ""
-            output.talk(f"stopping ({event['reason']}){again}")
-        elif what == "exited" and event["unexpected"]:
-            self._report_death(event)
-        elif what == "error":
-            output.error(event["message"])
-        elif what == "end":
-            if self._logs is not None and not self._detach:
-                self._logs.show()
-            output.talk(f"graph {self._run['graph']} has ended")
-            has_failed = self._detach and not self._is_up
-            return int(event["exit_code"]) or (exits.FAILED if has_failed else exits.OK)
+        if self._as_json and event["event"] in _PUBLISHED:
+            self._print_json(event)
+        self._print(event)
+        match event["event"]:
+            case "up":
+                self._is_up = True
+            case "checked" if self._detach:
+                return exits.OK
+            case "end":
+                has_failed = self._detach and not self._is_up
+                return int(event["exit_code"]) or (exits.FAILED if has_failed else exits.OK)
         return None
 
-    def _report_death(self, event: dict[str, Any]) -> None:
+    def _print_json(self, event: Event) -> None:
+        more: dict[str, object] = {}
+        if event["event"] == "up":
+            run = self._run
+            more = {"graph": run.graph, "domain": run.domain, "logs": run.logs, "nodes": self._nodes}
+        output.as_json({**event, **more})
+
+    def _print(self, event: Event) -> None:
+        """Print one event for people. Log lines come first that nodes wrote before the event."""
+        match event["event"]:
+            case "step":
+                mark = "done" if event["ok"] else "FAILED"
+                output.talk(f"step {event['step']} {mark}: {event['text']}")
+            case "said":
+                output.talk(event["text"])
+            case "up":
+                self._greet(event["seconds"], event.get("pending", {}))
+            case "note":
+                output.talk(f"note: {event['text']}")
+            case "stopping":
+                self._show_logs()
+                again = "; Ctrl-C again kills it" if event["reason"] == "Ctrl-C" else ""
+                output.talk(f"stopping ({event['reason']}){again}")
+            case "exited" if event["unexpected"]:
+                self._report_death(event)
+            case "error":
+                output.error(event["message"])
+            case "end":
+                self._show_logs()
+                output.talk(f"graph {self._run.graph} has ended")
+
+    def _show_logs(self) -> None:
         if self._logs is not None and not self._detach:
             self._logs.show()
+
+    def _report_death(self, event: Event) -> None:
+        self._show_logs()
         names = ", ".join(event["nodes"])
         reason = f": {event['error']}" if event["error"] else ""
         follows = ""
         if event.get("again") is not None:
-            follows = f"; it is restarted in {event['again']:.1f} s"
+            follows = f"; it is started again in {event['again']:.1f} s"
         elif event.get("given_up"):
             follows = f"; given up: {event['given_up']}"
         output.error(
@@ -255,7 +266,7 @@ class _Stream:
         width = max((len(n["node"]) for n in self._nodes), default=0)
         class_width = max((len(n["class"]) for n in self._nodes), default=0)
         count = f"{len(self._nodes)} node{'' if len(self._nodes) == 1 else 's'}"
-        output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
+        output.talk(f"graph {run.graph} is up: {count} in domain {run.domain}, {seconds:.2f} s")
         for node in self._nodes:
             place = self._classes.get(node["class"], "")
             waits = pending.get(node["node"])
@@ -274,11 +285,11 @@ class _Stream:
             **(of_node if name else {"graphflow node list": "all nodes"}),
             "graphflow ps": "the states of the nodes",
         }
-        if run["domain"] != domain_id():
-            hints = {f"export GRAPHFLOW_DOMAIN={run['domain']}": "first: the file has its own domain", **hints}
+        if run.domain != domain_id():
+            hints = {f"export GRAPHFLOW_DOMAIN={run.domain}": "first: the file has its own domain", **hints}
         for command, what in hints.items():
             output.talk(f"  {command:32}  {what}")
-        output.talk(f"Logs are in {run['logs']}")
+        output.talk(f"Logs are in {run.logs}")
         if self._detach:
             output.talk("Open the console with: graphflow attach\nStop with: graphflow down")
         else:
@@ -286,9 +297,9 @@ class _Stream:
         output.talk("")
 
 
-def report_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
+def report_loss(run: GraphRun, end: Callable[[], str]) -> int:
     """Report that the supervisor was killed, once its graph has ended; return the exit code of `up`."""
-    lost = GraphRun(**run).renewed()
+    lost = run.renewed()
     has_gone = lost.wait_gone(GONE_LIMIT)
     why = guardian_report(lost) or (end() if has_gone else silent(lost))
     output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
@@ -315,7 +326,7 @@ def how_ended(logs: Path) -> str:
         entry = line.partition(" INFO ")[2]
         if entry.startswith(('{"event": "error"', '{"event": "stopping"')):
             with suppress(ValueError):  # a full disk has truncated it
-                event: dict[str, Any] = json.loads(entry)
+                event: Event = json.loads(entry)
                 return str(event["message"] if event["event"] == "error" else f"it was stopped ({event['reason']})")
     return ""
 

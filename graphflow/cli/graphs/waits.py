@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Literal
 
 import click
 
@@ -16,6 +16,8 @@ from graphflow.names import did_you_mean
 
 ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph have to answer."""
+_COUNTS: tuple[Literal["running", "waiting", "errors"], ...] = ("running", "waiting", "errors")
+"""Counters of a handler that are shown unless they are 0."""
 
 
 def _read(view: View) -> found.ConcurrencyReport:
@@ -95,13 +97,13 @@ def show(node: str, as_json: bool) -> None:
     _show(full, _groups_of(read, full), as_json=as_json)
 
 
-def _groups_of(read: found.ConcurrencyReport, node: str) -> list[dict[str, Any]]:
+def _groups_of(read: found.ConcurrencyReport, node: str) -> list[found.GroupRow]:
     if node not in read.nodes:
         raise UsageFault(f"{node} is not a graphflow node, or is on another machine, so its groups are unknown")
     return read.nodes[node]
 
 
-def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
+def _show(node: str, known: list[found.GroupRow], *, as_json: bool) -> None:
     if as_json:
         output.as_json({"node": node, "groups": known})
         return
@@ -115,7 +117,7 @@ def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
             output.data("  in no group  (each waits only for its own runs)")
         for handler in group["handlers"]:
             counts = [] if handler["runs"] is None else [f"{handler['runs']} runs"]  # not counted in rclpy
-            counts += [f"{handler[word]} {word}" for word in ("running", "waiting", "errors") if handler[word]]
+            counts += [f"{handler[word]} {word}" for word in _COUNTS if handler[word]]
             output.data(f"    {handler['handler']}  {handler['kind']}  {', '.join(counts)}".rstrip())
 
 
@@ -152,14 +154,14 @@ def limit(node: str, group: str, number: str, timeout: float, as_json: bool) -> 
     """
     if number != "none" and not (number.isascii() and number.isdecimal() and int(number[:9]) > 0):
         raise UsageFault(f"{number!r} is not a limit; write a number of at least 1, or none")
-    wanted = {"group": group, "limit": None if number == "none" else int(number[:9])}
+    wanted: dict[str, object] = {"group": group, "limit": None if number == "none" else int(number[:9])}
     _change(node, [wanted], timeout, as_json=as_json)
 
 
 @groups.command()
 @click.argument("node")
 @click.argument("handlers", metavar="HANDLER...", nargs=-1, required=True)
-@click.option("--graph", "name", metavar="NAME", help="The running graph, if there are several.")
+@click.option("--graph", "name", metavar="NAME", help="Name of the running graph, if there are several.")
 def thread(node: str, handlers: tuple[str, ...], name: str | None) -> int:
     """Restart a node with these handlers in threads, where they may block without blocking the event loop.
 
@@ -181,7 +183,7 @@ def thread(node: str, handlers: tuple[str, ...], name: str | None) -> int:
     return restart_node(full, name, threads=list(handlers))
 
 
-def _change(node: str, requests: list[dict[str, Any]], timeout: float, *, as_json: bool) -> None:
+def _change(node: str, requests: list[dict[str, object]], timeout: float, *, as_json: bool) -> None:
     with View(domain_id()) as view:
         full = view.node(node)
         try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from graphflow.cli import output
@@ -113,7 +113,7 @@ def _print_numbers(found: Mapping[str, Mapping[str, float] | None]) -> None:
 async def _measure(
     node: Node, topics: list[str], meter: Callable[[str, str], Take], report: Callable[[int], None]
 ) -> int:
-    """Listen to topics, as soon as each is there, and tell of them every second."""
+    """Subscribe to topics as each gets a publisher, and report every second; ends by cancellation or a fault."""
     clock, cache = node.clock, node.context.cache
     failed: list[UsageFault] = []
     count = 0
@@ -131,9 +131,9 @@ async def _measure(
 
         raw.subscribe(node, type_name, topic, arrived, QOS, type_hash=type_hash)
 
-    waiting, told = set(topics), 0
-    next_ns = (heard_ns := clock.monotonic_ns()) + to_ns(EVERY)
-    is_silence_told = False
+    waiting, reported = set(topics), 0
+    next_ns = (arrived_ns := clock.monotonic_ns()) + to_ns(EVERY)
+    has_warned = False
     while not failed:
         for topic in sorted(waiting):
             for publisher in cache.endpoints(Kind.PUBLISHER, topic)[:1]:
@@ -143,21 +143,27 @@ async def _measure(
         now_ns = clock.monotonic_ns()
         if now_ns >= next_ns:
             next_ns += to_ns(EVERY)
-            if count > told:
-                told, heard_ns, is_silence_told = count, now_ns, False
+            if count > reported:
+                reported, arrived_ns, has_warned = count, now_ns, False
                 report(now_ns)
-        if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
-            is_silence_told = True
-            for topic in sorted(waiting):
-                output.talk(f"WARNING: {cache.unpublished(topic)}")
-            if waiting and not cache.nodes(hidden=False):
-                output.talk(await node.offload(nothing_here, "no nodes"))
-            if not waiting:
-                output.talk(await node.offload(_why_silent, topics))
+        if now_ns - arrived_ns >= to_ns(SILENT) and not has_warned:
+            has_warned = True
+            await _warn_of_silence(node, topics, waiting)
     raise failed[0]
 
 
+async def _warn_of_silence(node: Node, topics: list[str], unpublished: Collection[str]) -> None:
+    """Explain why no messages arrive: topics without publishers, an empty domain, or a net profile."""
+    cache = node.context.cache
+    for topic in sorted(unpublished):
+        output.talk(f"WARNING: {cache.unpublished(topic)}")
+    if unpublished and not cache.nodes(hidden=False):
+        output.talk(await node.offload(nothing_here, "no nodes"))
+    if not unpublished:
+        output.talk(await node.offload(_why_silent, topics))
+
+
 def _why_silent(topics: list[str]) -> str:
-    """That nothing comes of topics that somebody publishes; and the net profile that keeps it back, if one does."""
+    """Return the net profile that does not pass one of the topics, or that there are no new messages."""
     with View(domain_id()) as view:
         return next(filter(None, (view.kept_back(topic, Kind.PUBLISHER) for topic in topics)), "no new messages")

@@ -54,23 +54,14 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
         if named.endswith(".py"):
             cls = import_class(f"{_module_of(file, root)}:{class_name}")
         elif ":" in what:
-            if "-" in named:  # as in a graph file
-                way = f"; or run its file: graphflow run {named.replace('.', '/')}.py"
-                raise UsageFault(f"{what!r} is not a class; {class_meant(what)}{way}")
-            cls = import_class(what)
+            cls = _class_of(what, named)
         elif what.endswith(".py"):
             cls = _only(_module_of(file, root))
         elif rest[:1] and (found := find(what, rest[0].removesuffix(".py"), root)) is not None:
             cls = import_class(found.class_path)
             rest = rest[1:]
-        elif (known := _executables_of(what)) and rest[:1] and not rest[0].startswith("-"):
-            raise UsageFault(f"package {what!r} has no executable {rest[0]!r} here{did_you_mean(rest[0], known)}")
-        elif what.rpartition(".")[2][:1].isupper():
-            module, _, name = what.rpartition(".")
-            meant = nearest_module(module or name.lower(), str(root)) or module or f"nodes.{name.lower()}"
-            raise UsageFault(f"{what!r}: write MODULE:CLASS, {meant}:{name}")
         else:
-            cls = _dotted(what) if "." in what else _named(what, root, words)
+            cls = _by_name(what, root, words)
     except GraphflowError as error:
         if what.endswith(".py") and isinstance(error.__cause__, RunsWhenImported):
             raise error.__cause__ from None
@@ -78,6 +69,25 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
         output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")
     return cls, rest
+
+
+def _class_of(path: str, module: str) -> type[Node]:
+    """Import MODULE:CLASS; a hyphen is a common mistake for the underscore of a module's name."""
+    if "-" in module:
+        way = f"; or run its file: graphflow run {module.replace('.', '/')}.py"
+        raise UsageFault(f"{path!r} is not a class; {class_meant(path)}{way}")
+    return import_class(path)
+
+
+def _by_name(what: str, root: Path, words: Sequence[str]) -> type[Node]:
+    """Find a node by a word without a class: a package, a module or a node's name."""
+    if (known := _executables_of(what)) and words and not words[0].startswith("-"):
+        raise UsageFault(f"package {what!r} has no executable {words[0]!r} here{did_you_mean(words[0], known)}")
+    if what.rpartition(".")[2][:1].isupper():
+        module, _, name = what.rpartition(".")
+        meant = nearest_module(module or name.lower(), str(root)) or module or f"nodes.{name.lower()}"
+        raise UsageFault(f"{what!r}: write MODULE:CLASS, {meant}:{name}")
+    return _dotted(what) if "." in what else _named(what, root, words)
 
 
 def _source_line(error: BaseException | None) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from graphflow.cli import output
+from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.errors import GraphFileError, SupervisorError, UsageFault
 from graphflow.graph.model import LOG_LEVELS
@@ -18,7 +19,7 @@ from graphflow.workspace.executables import EXECUTABLES
 
 ANSWER_LIMIT = 30.0
 """Seconds that the supervisor has to answer."""
-_graph = click.option("--graph", help="The running graph, if there are several.")
+_graph = click.option("--graph", help="Name of the running graph, if there are several.")
 
 
 @click.group(cls=GraphVerbs)
@@ -164,12 +165,9 @@ def types(package: str | None, as_json: bool) -> None:
         output.lines(f"{indent}{name}" for of, name in EXECUTABLES if of == known)
 
 
-def _containers(socket: str) -> dict[str, list[dict[str, Any]]]:
+def _containers(socket: str) -> dict[str, list[NodeRow]]:
     """Return the rows of `ps` by process; a process of one node has that node's name."""
-    with ControlClient(socket) as client:
-        client.send(do="ps")
-        rows = next(client.receive(), {}).get("nodes", [])
-    return {name: list(found) for name, found in groupby(rows, lambda row: row["process"] or row["node"])}
+    return {name: list(rows) for name, rows in groupby(node_rows(socket), lambda row: row["process"] or row["node"])}
 
 
 def _number_of(node: str, container: str, socket: str) -> int:
@@ -179,7 +177,7 @@ def _number_of(node: str, container: str, socket: str) -> int:
         SupervisorError: The process has no such node.
     """
     found = _containers(socket)
-    rows = {row["node"]: int(row["number"]) for row in found.get(f"/{container.lstrip('/')}", found.get(container, []))}
+    rows = {row["node"]: row["number"] for row in found.get(f"/{container.lstrip('/')}", found.get(container, []))}
     name = f"/{node.lstrip('/')}"
     if name not in rows:
         raise SupervisorError(f"process {container!r} has no node {name}{did_you_mean(name, rows)}")

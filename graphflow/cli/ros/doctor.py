@@ -48,25 +48,14 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
     that differ. Also check the installation, graphs that were killed, and a ROS 2 in this shell that could not see the
     graph.
 
-    Exit code 1: there is a fault; late event loops and hints do not count as one.
+    Exit code 1: there is a fault. Late event loops do not count, nor do hints without --include-warnings.
     """
     if click.get_current_context().invoked_subcommand is not None:
         return exits.OK
     try:
         view = View(domain_id())
     except SupervisorError as error:
-        if error.exit_code != exits.NOT_RUNNING:
-            raise
-        here, remarks = _here()
-        if report:
-            from graphflow.cli.ros.report import installed
-
-            output.lines(installed())
-        if as_json:
-            output.as_json({**here, **remarks})
-        elif not report:
-            output.lines(text for texts in [*here.values(), *remarks.values()] for text in texts)
-        if any(here.values()) or not report:
+        if error.exit_code != exits.NOT_RUNNING or not _check_installation(report=report, as_json=as_json):
             raise
         return exits.OK
     with view:
@@ -86,6 +75,20 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
         output.lines(sections(None if report else failed))
     is_well = not failed and not (include_warnings and notes["hints"])
     return exits.OK if is_well else exits.FAILED
+
+
+def _check_installation(*, report: bool, as_json: bool) -> bool:
+    """Print the findings without a running graph; return whether a report was wanted and there is no fault."""
+    here, remarks = _here()
+    if report:
+        from graphflow.cli.ros.report import installed
+
+        output.lines(installed())
+    if as_json:
+        output.as_json({**here, **remarks})
+    elif not report:
+        output.lines(text for texts in [*here.values(), *remarks.values()] for text in texts)
+    return report and not any(here.values())
 
 
 def _here() -> tuple[Findings, Findings]:

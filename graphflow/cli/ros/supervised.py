@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Collection, Iterable
+from typing import NamedTuple
 
+from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.errors import SupervisorError
 from graphflow.supervisor import rundir
-from graphflow.supervisor.control.client import ControlClient
 from graphflow.wire.process import is_stopped
 
 LIMIT = 1.0
@@ -40,9 +40,7 @@ def supervised(seen: Collection[str]) -> Supervised:
         if not run.is_here:
             continue
         try:
-            with ControlClient(run.socket) as client:
-                client.send(do="ps")
-                rows = (next(client.receive(LIMIT), None) or {}).get("nodes", [])
+            rows = node_rows(run.socket, LIMIT)
         except SupervisorError:
             resume = f"; it is stopped: kill -CONT {run.pid}" if is_stopped(run.pid) else ""
             found.faults.append(f"the supervisor of graph {run.graph} (process {run.pid}) does not answer{resume}")
@@ -52,7 +50,7 @@ def supervised(seen: Collection[str]) -> Supervised:
     return found
 
 
-def faults(rows: Iterable[Mapping[str, Any]]) -> list[str]:
+def faults(rows: Iterable[NodeRow]) -> list[str]:
     """Describe nodes that have failed, do not respond or are stopped (SIGSTOP)."""
     found = []
     for row in rows:
@@ -65,7 +63,7 @@ def faults(rows: Iterable[Mapping[str, Any]]) -> list[str]:
     return found
 
 
-def unseen(rows: Iterable[Mapping[str, Any]], seen: Collection[str]) -> list[str]:
+def unseen(rows: Iterable[NodeRow], seen: Collection[str]) -> list[str]:
     """Describe nodes that are ready according to their supervisor but are not seen on the network."""
     lost = [r["node"] for r in rows if r["is_named"] and r["state"] == "ready" and r["node"] not in seen]
     return [f"not seen on the network, although ready for their supervisor: {', '.join(lost)}"] if lost else []

@@ -16,7 +16,7 @@ from graphflow.cli.messages.types import names_of_type
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, messages_in, stdin_option
 from graphflow.domain import domain_id
-from graphflow.errors import CallError, EncodeError, UsageFault
+from graphflow.errors import CallError, EncodeError, GraphflowError, UsageFault
 from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
@@ -199,28 +199,31 @@ def _echo_type(full: str, given: str | None) -> str:
     wanted = type_of_word(given, full, types, topics) if given else None
     if wanted is not None:
         check_kind(wanted, "msg")
-    if wanted is None and not types:
-        visible = [t for t in topics if not is_hidden(t)]
-        if alone:
-            raise CallError(f"topic {full} does not appear to be published{alone}")
-        if topic := next((topic for topic in visible if full.startswith(f"{topic}/")), None):
-            field = full.removeprefix(f"{topic}/").replace("/", ".")
-            raise UsageFault(f"there is no topic {full}; to show a field: graphflow topic echo {topic} --field {field}")
-        near = cache.instead(full, visible)
-        if near.startswith("; it is"):
-            raise CallError(f"Unknown topic '{full}'{near}")
-        raise CallError(
-            f"topic {full} does not appear to be published yet{near}{' To' if near.endswith('?') else '; to'} wait for "
-            f"it, give its type: graphflow topic echo {full} TYPE"
-        )
-    if not types:
-        near = cache.instead(full, (), topics) or alone
-        output.talk(f"WARNING: topic [{full}] does not appear to be published yet{near}")
-        assert wanted is not None
-        return wanted
-    if len(types) > 1 and wanted is None:
-        raise UsageFault(f"{full} has several types: {', '.join(types)}; name one after the topic")
-    return types[0] if wanted is None else agree(wanted, types, full)
+    if types:
+        if len(types) > 1 and wanted is None:
+            raise UsageFault(f"{full} has several types: {', '.join(types)}; name one after the topic")
+        return types[0] if wanted is None else agree(wanted, types, full)
+    if wanted is None:
+        raise CallError(f"topic {full} does not appear to be published{alone}") if alone else _absent(full, cache)
+    near = cache.instead(full, (), topics) or alone
+    output.talk(f"WARNING: topic [{full}] does not appear to be published yet{near}")
+    return wanted
+
+
+def _absent(full: str, cache: GraphCache) -> GraphflowError:
+    """Return the error for a topic that does not exist, whose type was not given, either."""
+    visible = list(cache.topics())
+    if topic := next((topic for topic in visible if full.startswith(f"{topic}/")), None):
+        field = full.removeprefix(f"{topic}/").replace("/", ".")
+        return UsageFault(f"there is no topic {full}; to show a field: graphflow topic echo {topic} --field {field}")
+    near = cache.instead(full, visible)
+    if near.startswith("; it is"):
+        return CallError(f"Unknown topic '{full}'{near}")
+    to = " To" if near.endswith("?") else "; to"
+    return CallError(
+        f"topic {full} does not appear to be published yet{near}{to} wait for it, give its type: "
+        f"graphflow topic echo {full} TYPE"
+    )
 
 
 @topic.command("type")

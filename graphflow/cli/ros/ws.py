@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from graphflow.cli import exits, output
+
+if TYPE_CHECKING:
+    from graphflow.workspace.packages import Package, Workspace
 
 _HABITS = {
     "init": "A workspace needs no initialization: it is a folder that has packages in src/.",
@@ -27,86 +32,114 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     The workspace is the one that the current folder is in. If its packages have faults, they are reported and the exit
     code is 1.
     """
-    from graphflow.errors import InterfaceError, UnknownInterface, UsageFault
+    from graphflow.errors import UsageFault
     from graphflow.msgs import registry
     from graphflow.names import did_you_mean
-    from graphflow.wire.idl import is_type_name
-    from graphflow.workspace.executables import of_ros
-    from graphflow.workspace.manifest import fault_of, name_fault
-    from graphflow.workspace.packages import KINDS, find_workspace
-    from graphflow.workspace.unfound import no_packages, outer_workspace
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.unfound import no_packages
 
     if habit and habit[0] not in _HABITS:
         raise UsageFault(f"ws takes no argument {habit[0]!r}{did_you_mean(habit[0], _HABITS)}")
     if habit and not as_json:
         output.talk(_HABITS[habit[0]])
-    found = find_workspace(Path.cwd())
-    lacking = no_packages(found)
-    if not found.packages:
-        for fault in lacking:
+    workspace = find_workspace(Path.cwd())
+    lacking = no_packages(workspace)
+    if not workspace.packages:
+        new = "in src/, graphflow pkg create --build-type ament_python NAME creates one"
+        none = f"there is no package in {workspace.root}: go to a folder that has packages in src/; {new}"
+        for fault in lacking or [none]:
             output.error(fault)
-        if not lacking:
-            new = "in src/, graphflow pkg create --build-type ament_python NAME creates one"
-            output.error(f"there is no package in {found.root}: go to a folder that has packages in src/; {new}")
         return exits.FAILED
-    for name, folder in found.interfaces.items():
+    for name, folder in workspace.interfaces.items():
         registry.add_package(name, folder)
-    faults = lacking + [fault for package in found.packages.values() for fault in package.faults]
-    not_xml = [fault_of(package.folder / "package.xml") for package in found.packages.values()]
-    other_names = [name_fault(package.folder, package.name) for package in found.packages.values()]
-    faults += [fault for fault in [*not_xml, *other_names] if fault is not None]
-    faults += [
-        f"{package.folder} hides ROS 2's {package.name}; rename it, there and in its files"
-        for package in found.packages.values()
-        if package.name in of_ros() and package.name not in found.replaced and package.import_roots
-    ]
-    faults += [
-        f"{double.folder}: another package is called {double.name!r}, too, and takes precedence: "
-        f"{found.packages[double.name].folder}"
-        for double in found.doubles
-    ]
-    rows = []
-    for package in found.packages.values():
-        kinds = KINDS if package.has_interfaces else ()
-        shown = [f"{kind}/{name}" for kind in kinds for name in registry.names_in(package.name, kind)]
-        for name in shown:
-            base = name.rpartition("/")[2]
-            if not is_type_name(base):
-                file = registry.definition_file(f"{package.name}/{name}")
-                right = file.with_name(f"{registry.camel(base)}{file.suffix}")
-                faults.append(f"{file} must be {right}{registry.IN_CAMEL}")
-                continue
-            try:
-                registry.hash_of(f"{package.name}/{name}")  # which reads the types of its fields, too
-            except UnknownInterface as error:
-                faults.append(f"{registry.definition_file(f'{package.name}/{name}')}: {error}")
-            except InterfaceError as error:
-                faults.append(str(error))
-        rows.append((package, shown))
+    interfaces = {package.name: _interfaces_of(package) for package in workspace.packages.values()}
+    faults = [*lacking, *_package_faults(workspace)]
+    faults += [fault for package, names in interfaces.items() for fault in _interface_faults(package, names)]
     if as_json:
-        known = [
-            {"package": p.name, "folder": str(p.folder), "executables": p.executables, "interfaces": shown}
-            for p, shown in rows
-        ]
-        output.as_json({"root": str(found.root), "packages": known, "faults": faults})
+        _print_json(workspace, interfaces, faults)
     else:
-        around = outer_workspace(found)
-        if around is not None:
-            output.talk(
-                f"This workspace is within another one, whose packages are not visible from here: {around.root}"
-            )
-        heads = [("PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER")]
-        body = [
-            (p.name, _some(p.executables), _some(shown), str(p.folder.relative_to(found.root))) for p, shown in rows
-        ]
-        output.lines(output.columns([*heads, *body]))
-        for fault in faults:
-            output.error(fault)
-        for name, folder in found.replaced.items():
-            output.talk(f"{folder} is not imported: graphflow has {name} itself")
-        if not faults and any(p.executables for p, _ in rows):
-            output.talk("Start one with: graphflow run PACKAGE EXECUTABLE")
+        _print(workspace, interfaces, faults)
     return exits.FAILED if faults else exits.OK
+
+
+def _interfaces_of(package: Package) -> list[str]:
+    """Return the types of a package, as `kind/Name`."""
+    from graphflow.msgs import registry
+    from graphflow.workspace.packages import KINDS
+
+    kinds = KINDS if package.has_interfaces else ()
+    return [f"{kind}/{name}" for kind in kinds for name in registry.names_in(package.name, kind)]
+
+
+def _package_faults(workspace: Workspace) -> Iterator[str]:
+    """Report faults of packages: in their own files, invalid names, and names that hide or repeat others."""
+    from graphflow.workspace.executables import of_ros
+    from graphflow.workspace.manifest import fault_of, name_fault
+
+    packages = workspace.packages.values()
+    for package in packages:
+        yield from package.faults
+    for package in packages:
+        if (not_xml := fault_of(package.folder / "package.xml")) is not None:
+            yield not_xml
+    for package in packages:
+        if (wrong_name := name_fault(package.folder, package.name)) is not None:
+            yield wrong_name
+    for package in packages:
+        if package.name in of_ros() and package.name not in workspace.replaced and package.import_roots:
+            yield f"{package.folder} hides ROS 2's {package.name}; rename it, there and in its files"
+    for double in workspace.doubles:
+        first = workspace.packages[double.name].folder
+        yield f"{double.folder}: another package is called {double.name!r}, too, and takes precedence: {first}"
+
+
+def _interface_faults(package: str, names: Iterable[str]) -> Iterator[str]:
+    """Report types with invalid names, and types whose definition or fields are invalid."""
+    from graphflow.errors import InterfaceError, UnknownInterface
+    from graphflow.msgs import registry
+    from graphflow.wire.idl import is_type_name
+
+    for name in names:
+        base, full = name.rpartition("/")[2], f"{package}/{name}"
+        if not is_type_name(base):
+            file = registry.definition_file(full)
+            right = file.with_name(f"{registry.camel(base)}{file.suffix}")
+            yield f"{file} must be {right}{registry.IN_CAMEL}"
+            continue
+        try:
+            registry.hash_of(full)  # parses the definition and those of all nested types
+        except UnknownInterface as error:
+            yield f"{registry.definition_file(full)}: {error}"
+        except InterfaceError as error:  # its text begins with the file
+            yield str(error)
+
+
+def _print_json(workspace: Workspace, interfaces: Mapping[str, list[str]], faults: list[str]) -> None:
+    packages = [
+        {"package": p.name, "folder": str(p.folder), "executables": p.executables, "interfaces": interfaces[p.name]}
+        for p in workspace.packages.values()
+    ]
+    output.as_json({"root": str(workspace.root), "packages": packages, "faults": faults})
+
+
+def _print(workspace: Workspace, interfaces: Mapping[str, list[str]], faults: list[str]) -> None:
+    from graphflow.workspace.unfound import outer_workspace
+
+    outer = outer_workspace(workspace)
+    if outer is not None:
+        output.talk(f"This workspace is within another one, whose packages are not visible from here: {outer.root}")
+    packages = workspace.packages.values()
+    rows = [("PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER")]
+    for p in packages:
+        folder = str(p.folder.relative_to(workspace.root))
+        rows.append((p.name, _some(p.executables), _some(interfaces[p.name]), folder))
+    output.lines(output.columns(rows))
+    for fault in faults:
+        output.error(fault)
+    for name, place in workspace.replaced.items():
+        output.talk(f"{place} is not imported: graphflow has {name} itself")
+    if not faults and any(p.executables for p in packages):
+        output.talk("Start one with: graphflow run PACKAGE EXECUTABLE")
 
 
 def _some(names: list[str]) -> str:

@@ -6,10 +6,13 @@ import math
 from array import array
 from bisect import bisect_left
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.introspect.messages.fields import number_path, value_at
 from graphflow.introspect.messages.units import unit
+
+if TYPE_CHECKING:
+    from graphflow.msgs.base import Message
 
 CURVES = 6
 """Most curves in a picture, unless fields are named."""
@@ -40,7 +43,7 @@ class Curve:
         self.unit = unit(self._path, type_name)
         """Such as `m/s`; empty if the message's definition gives none."""
 
-    def add(self, at: float, message: Any) -> None:
+    def add(self, at: float, message: Message) -> None:
         """Append a message's value; a missing element or one that is not a number is a gap."""
         try:
             value = float(value_at(message, self._path))

@@ -15,6 +15,8 @@ from graphflow.wire.described import DESCRIBING, FieldSaid, definition_of, verif
 from graphflow.wire.liveliness import Entity, Kind
 
 if TYPE_CHECKING:
+    from graphflow.msgs.type_description_interfaces.msg import Field
+    from graphflow.msgs.type_description_interfaces.srv import GetTypeDescription_Request, GetTypeDescription_Response
     from graphflow.runtime.node import Node
 
 LIMIT = 2.0
@@ -26,9 +28,9 @@ NODES_BOUND = 3
 NOBODY = "no node that uses it provides its definition"
 
 
-def request_for(entity: Entity) -> Any:
+def request_for(entity: Entity) -> GetTypeDescription_Request:
     """Return the request for the definition of an endpoint's type."""
-    request = registry.interface_class(f"{DESCRIBING}_Request")
+    request: type[GetTypeDescription_Request] = registry.interface_class(f"{DESCRIBING}_Request")
     return request(type_name=entity.type, type_hash=entity.hash, include_type_sources=True)
 
 
@@ -37,7 +39,7 @@ def service_of(entity: Entity) -> str:
     return f"{entity.node_name}/get_type_description"
 
 
-def sources_in(response: Any, entity: Entity) -> dict[str, str]:
+def sources_in(response: GetTypeDescription_Response, entity: Entity) -> dict[str, str]:
     """Return the definitions of a type and its nested types from a node's answer: its files if sent, or else made from
     the description.
 
@@ -60,7 +62,7 @@ def sources_in(response: Any, entity: Entity) -> dict[str, str]:
     return {name: files[name] for name in needed}
 
 
-def _field_of(field: Any) -> FieldSaid:
+def _field_of(field: Field) -> FieldSaid:
     kind = field.type
     return FieldSaid(field.name, kind.type_id, kind.capacity, kind.string_capacity, kind.nested_type_name)
 

@@ -28,7 +28,7 @@ def plain(value: Any, limit: int | None = None) -> Any:
     return value
 
 
-def truncated(value: Any, limit: int | None = TRUNCATE) -> Any:
+def truncated(value: object, limit: int | None = TRUNCATE) -> Any:
     """Cut long lists and strings in plain data; cuts are marked by `...`."""
     if limit is None:
         return value
@@ -42,7 +42,7 @@ def truncated(value: Any, limit: int | None = TRUNCATE) -> Any:
     return value
 
 
-def block(data: Any, indent: int = 0) -> str:
+def block(data: object, indent: int = 0) -> str:
     """Format plain data as YAML in block style."""
     pad = "  " * indent
     if isinstance(data, dict):
@@ -54,7 +54,7 @@ def block(data: Any, indent: int = 0) -> str:
     return pad + scalar(data)
 
 
-def _entry(head: str, value: Any, indent: int) -> str:
+def _entry(head: str, value: object, indent: int) -> str:
     if isinstance(value, dict) and value:
         return f"{head}\n{block(value, indent + 1)}"
     if isinstance(value, list) and value:
@@ -62,14 +62,14 @@ def _entry(head: str, value: Any, indent: int) -> str:
     return f"{head} {flow(value)}"
 
 
-def _item(value: Any, indent: int) -> str:
+def _item(value: object, indent: int) -> str:
     pad = "  " * indent
     if isinstance(value, (dict, list)) and value:
         return f"{pad}- {block(value, indent + 1).lstrip()}"
     return f"{pad}- {flow(value)}"
 
 
-def flow(data: Any) -> str:
+def flow(data: object) -> str:
     """Format plain data as YAML on one line."""
     if isinstance(data, dict):
         return "{" + ", ".join(f"{k}: {flow(v)}" for k, v in data.items()) + "}"
@@ -78,7 +78,7 @@ def flow(data: Any) -> str:
     return scalar(data)
 
 
-def scalar(value: Any) -> str:
+def scalar(value: object) -> str:
     """Format one value as YAML that parses to the same value."""
     if value is None:
         return "null"
@@ -119,7 +119,7 @@ def _string(text: str) -> str:
     return '"' + text.encode("unicode_escape").decode().replace('"', '\\"') + '"'
 
 
-def csv(data: Any) -> str:
+def csv(data: object) -> str:
     """Format the leaves of plain data, separated by commas."""
     if isinstance(data, dict):
         return ",".join(csv(v) for v in data.values())

@@ -34,7 +34,8 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> GraphRun:
     monkeypatch.setattr(rundir, "running", lambda: [made])
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
     rows = [{"node": "/a", "state": "ready"}, {"node": "/b", "state": "failed"}]
-    monkeypatch.setattr(console, "_rows", lambda _: {"nodes": rows, "consoles": [{"name": "pts/3"}]})
+    monkeypatch.setattr(console, "graph_rows", lambda _: {"nodes": rows, "consoles": [{"name": "pts/3"}]})
+    monkeypatch.setattr(console, "node_rows", lambda _: rows)
     return made
 
 
@@ -87,7 +88,7 @@ def test_without_a_terminal(verb: str, run: GraphRun, capsys: pytest.CaptureFixt
     [
         ("detach", None, 0, "[detached from lab: 2 nodes keep running]   graphflow attach   |   graphflow down"),
         ("detach", 1, 1, "graph lab has ended; its logs are in"),
-        ("failed", None, 1, "the console failed, the graph runs on"),
+        ("failed", None, 1, "the console failed, but the graph keeps running"),
     ],
 )
 def test_how_it_was_left(

@@ -204,7 +204,7 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     both = machine.look("check", "fine.py", "own/a.py", cwd=tmp_path, code=1)
     assert both.endswith("2 paths: 1 deadlock in the source\n")
     (tmp_path / "own/a.py").write_text("import rclpy\n")
-    assert "no deadlocks to be seen" in machine.look("check", "own", cwd=tmp_path)
+    assert "no deadlocks visible" in machine.look("check", "own", cwd=tmp_path)
     polls = "    def tick(self):\n        while not self.there: time.sleep(0.1)\n"
     timer = "        self.t = self.create_timer(1.0, self.tick)\n"
     (tmp_path / "own/a.py").write_text(text.replace("        self.c.call(1)\n", timer + polls))

@@ -46,7 +46,9 @@ def test_for_others(standing: Machine, tmp_path: Path) -> None:
 def test_png(standing: Machine, tmp_path: Path) -> None:
     """By Graphviz; without it what else there is."""
     if shutil.which("dot") is None:
-        assert "which is not installed; --svg FILE needs nothing" in standing.look("graph", "--png", "x.png", code=1)
+        assert "which is not installed; --svg FILE needs no other program" in standing.look(
+            "graph", "--png", "x.png", code=1
+        )
     else:
         standing.look("graph", "--png", "x.png", cwd=tmp_path)
         assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ from graphflow.cli.graphs.graphs import _open_console, _table
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.rundir import GraphRun, start_time
 from tests.cases import slow
+from tests.cli.rows import node_row
 from tests.conftest import Machine, Program
 from tests.supervisor.running import GOOD, make_project, nothing_is_left, rows, supervisor_of, write
 
@@ -77,16 +77,9 @@ def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
 
 def test_the_table_of_ps() -> None:
     """Columns as wide as what stands in them; a node without a process has a dash, and a failed one its reason."""
-    row = {
-        "graph": "lab",
-        "node": "/a",
-        "state": "ready",
-        "detail": "",
-        "pid": 12,
-        "since": 0.0,
-        "class": "nodes.lab:Good",
-    }
-    head, first, second = _table([row, {**row, "node": "/longer", "state": "failed", "detail": "SIGKILL", "pid": None}])
+    run = GraphRun("1", "lab", 0, 1, 0.0, 0.0, "lab.yaml", "", "", "", "")
+    failed = node_row("/longer", "failed", detail="SIGKILL", pid=None)
+    head, first, second = _table([(run, node_row("/a", pid=12)), (run, failed)])
     assert head.split() == ["GRAPH", "NODE", "STATE", "PID", "FOR", "CLASS"]
     assert first.split()[:4] == ["lab", "/a", "ready", "12"]
     assert "  failed (SIGKILL)  -    " in second
@@ -178,7 +171,7 @@ def test_a_supervisor_that_was_killed_before_the_console(
     run = GraphRun("1", "lab", 0, pid, start_time(pid) or 0.0, 0.0, "lab.yaml", "", str(tmp_path), "", "")
     if lives:
         with pytest.raises(SupervisorError, match="it does not answer"):
-            _open_console(asdict(run), lambda: "")
+            _open_console(run, lambda: "")
         return
-    assert _open_console(asdict(run), lambda: "the supervisor was ended by signal SIGKILL") == 1
+    assert _open_console(run, lambda: "the supervisor was ended by signal SIGKILL") == 1
     assert "error: the supervisor was ended by signal SIGKILL\n" in capsys.readouterr().err

@@ -109,4 +109,4 @@ def test_some_lines_of_logs(standing: Machine) -> None:
     """By level and time, of logs named either way; what is no time is told."""
     assert "[INFO]" in standing.look("logs", "tutorial", "--since", "1h", "--level", "info")
     assert "[INFO]" not in standing.look("logs", "--node", "tutorial", "--level", "fatal")
-    assert "write 30s, 5m or 2h for so long ago" in standing.look("logs", "tutorial", "--since", "soon", code=2)
+    assert "write a duration such as 30s, 5m or 2h" in standing.look("logs", "tutorial", "--since", "soon", code=2)

@@ -17,7 +17,7 @@ def test_a_picture(machine: Machine, tmp_path: Path) -> None:
     assert machine.look("snapshot", cwd=tmp_path) == "turtlesim.svg\n"
     assert (tmp_path / "turtlesim.svg").read_text(encoding="utf-8").startswith("<svg")
     assert machine.look("snapshot", "a.svg", "--node", "turtlesim", cwd=tmp_path) == "a.svg\n"
-    assert "give it a name such as a.svg" in machine.look("snapshot", "a.png", code=2)
+    assert "name it a.svg" in machine.look("snapshot", "a.png", code=2)
     assert "/turtle1/leader draws nothing" in machine.look("snapshot", "--node", "/turtle1/leader", code=1)
     assert "did you mean '/turtlesim'?" in machine.look("snapshot", "--node", "turtlesm", code=1)
     assert "/nowhere/a.svg: No such file or directory" in machine.look("snapshot", "/nowhere/a.svg", code=1)

@@ -16,6 +16,7 @@ from graphflow.cli import exits
 from graphflow.cli.graphs.streaming import LogReader, _Stream, how_ended
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, RunDirectory
+from tests.cli.rows import node_row
 from tests.conftest import Machine
 from tests.supervisor.running import make_project, nothing_is_left, rows, supervisor_of, write
 
@@ -90,8 +91,8 @@ def test_colours_are_for_terminals(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
-    run = {"graph": "lab", "domain": 7, "logs": str(tmp_path), "socket": ""}
-    nodes = [{"node": "/a", "class": "nodes.lab:Good", "log": str(tmp_path / "a.log"), "is_named": True}]
+    run = GraphRun("1", "lab", 7, 1, 0.0, 0.0, "lab.yaml", "", str(tmp_path), "", "")
+    nodes = [node_row("/a", log=str(tmp_path / "a.log"))]
     client: Any = ControlClient.__new__(ControlClient)
     return _Stream(run, {"nodes.lab:Good": f"{tmp_path}/lab.py:3"}, nodes, client, detach, [])
 
@@ -104,7 +105,7 @@ def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
         ({"event": "note", "text": "slow"}, "note: slow\n"),
         ({"event": "checked"}, ""),
         ({"event": "error", "message": "gone"}, "error: gone\n"),
-        ({"event": "stopping", "reason": "Ctrl-C"}, "stopping (Ctrl-C); Ctrl-C again kills\n"),
+        ({"event": "stopping", "reason": "Ctrl-C"}, "stopping (Ctrl-C); Ctrl-C again kills it\n"),
         ({"event": "stopping", "reason": "down"}, "stopping (down)\n"),
         ({"event": "exited", "unexpected": False}, ""),
         (

@@ -132,4 +132,4 @@ def test_convert_by_a_file_of_options(machine: Machine, folder: Path) -> None:
     assert "other.yaml: No such file or directory; to make a bag of that name" in machine.look(
         "bag", "convert", "bag", "-o", "other.yaml", cwd=folder, code=2
     )
-    assert "name one bag, or several by -i" in machine.look("bag", "convert", "bag", "all", cwd=folder, code=2)
+    assert "name one bag, or several with -i" in machine.look("bag", "convert", "bag", "all", cwd=folder, code=2)

@@ -57,7 +57,7 @@ def test_xml(machine: Machine, tmp_path: Path) -> None:
     plan = load(target, [], {})
     assert plan.args == {"rate": 1000.0, "on": "12:30"}
     assert plan.nodes[0].params["greeting"].value == "1e3"
-    assert "is there already" in machine.look("launch", "convert", str(file), "-o", str(target), code=2)
+    assert "already exists" in machine.look("launch", "convert", str(file), "-o", str(target), code=2)
 
 
 def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ def test_a_value_is_read_as_the_declared_type_wants_it(text: str, type_: Any, va
     """Texts need no quotes, whole numbers widen to doubles, bools have their usual words; the node judges the rest."""
     found = read_value(text, TYPE_IDS[type_])
     assert (found, type(found)) == (value, type(value))
-    if isinstance(value, list):
+    if isinstance(found, list):
         assert [type(item) for item in found] == [type(item) for item in value]
 
 

@@ -18,8 +18,8 @@ def test_python_is_let_import_it_and_not(machine: Machine, tmp_path: Path, monke
     assert str(file) in machine.look("rclpy", "enable")
     assert file.read_text() == enabling.LINES
     assert machine.look("rclpy", "status").startswith("enabled")
-    assert "is removed" in machine.look("rclpy", "disable")
-    assert "nothing is changed" in machine.look("rclpy", "disable")
+    assert "was removed" in machine.look("rclpy", "disable")
+    assert "nothing was changed" in machine.look("rclpy", "disable")
     assert not file.exists()
 
 

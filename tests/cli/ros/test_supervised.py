@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
 from graphflow.cli.ros import supervised
 from graphflow.cli.ros.supervised import faults, unseen
-
-
-def row(
-    node: str, state: str = "ready", *, pid: int | None = 7, detail: str = "", is_named: bool = True
-) -> dict[str, Any]:
-    return {"node": node, "state": state, "pid": pid, "detail": detail, "is_named": is_named}
+from tests.cli.rows import node_row
 
 
 @pytest.mark.parametrize(
@@ -28,19 +21,19 @@ def row(
 )
 def test_states(state: str, detail: str, told: list[str]) -> None:
     """What has ended well or runs is no fault."""
-    found = faults([row("/a", state, pid=None, detail=detail)])
+    found = faults([node_row("/a", state, pid=None, detail=detail)])
     assert [text[: len(start)] for text, start in zip(found, told, strict=True)] == told
 
 
 def test_a_stopped_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is stopped, whatever its supervisor has noticed of that yet."""
     monkeypatch.setattr(supervised, "is_stopped", lambda pid: pid == 7)
-    rows = [row("/a"), row("/b", "unresponsive"), row("/c", pid=8)]
+    rows = [node_row("/a"), node_row("/b", "unresponsive"), node_row("/c", pid=8)]
     assert faults(rows) == [f"{name} (process 7) is stopped: kill -CONT 7" for name in ("/a", "/b")]
 
 
 def test_nodes_that_the_network_does_not_show() -> None:
     """Only what is ready, and has the name that the file gives it."""
-    rows = [row("/a"), row("/b"), row("/c", "starting"), row("/program", is_named=False)]
+    rows = [node_row("/a"), node_row("/b"), node_row("/c", "starting"), node_row("/program", is_named=False)]
     assert unseen(rows, ["/a"]) == ["not seen on the network, although ready for their supervisor: /b"]
     assert unseen(rows, ["/a", "/b"]) == []

@@ -87,7 +87,7 @@ def test_a_workspace_in_a_workspace(machine: Machine, workspace: Path) -> None:
     inner = workspace / "src/inner"
     (inner / "src/deep").mkdir(parents=True)
     (inner / "src/deep/package.xml").write_text("<package><name>deep</name></package>")
-    assert f"whose packages are not seen from here: {workspace}\n" in machine.look("ws", cwd=inner)
+    assert f"whose packages are not visible from here: {workspace}\n" in machine.look("ws", cwd=inner)
 
 
 def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
