@@ -39,7 +39,7 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
         return sorted(name for name in _started_by(given) if name.startswith(partial))
     mark = partial[:1] if partial[:1] in ("'", '"') else ""
     try:
-        found = _named(what, given, mark or "'")
+        found = _names_for(what, given, mark or "'")
     except GraphflowError:  # no graph is running or reachable, so there are no names to offer
         found = []
     return sorted({name for name in found if name.startswith(partial)})
@@ -98,7 +98,7 @@ def _expected(command: click.Command, words: Sequence[str]) -> tuple[str, list[s
     return argument.make_metavar(click.Context(command)).strip("[].").removesuffix("]...").rstrip("."), given
 
 
-def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
+def _names_for(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
     from graphflow.domain import domain_id
     from graphflow.introspect import completions
     from graphflow.introspect.graph_view import View

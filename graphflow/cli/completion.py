@@ -61,7 +61,7 @@ def install(shell: str | None) -> int:
 @completion.command()
 @click.argument("shell", type=click.Choice(list(SCRIPTS)))
 def show(shell: str) -> None:
-    """Print the completion script, to be evaluated: eval "$(graphflow completion show bash)"."""
+    """Print the completion script. To load it: eval "$(graphflow completion show bash)"."""
     output.data(SCRIPTS[shell])
 
 
@@ -69,11 +69,11 @@ def show(shell: str) -> None:
 @click.argument("line")
 def words(line: str) -> None:
     """Print the completions of the last word of a line."""
-    before, partial = parted(line)
+    before, partial = split_line(line)
     output.lines(choices(before[1:], partial))
 
 
-def parted(line: str) -> tuple[list[str], str]:
+def split_line(line: str) -> tuple[list[str], str]:
     """Split a line as a shell does, except for the last word, which is returned as typed, with its quotation mark."""
     found = re.search(r"""(?:^|\s)((?:'[^']*|"[^"]*|[^\s'"]+)?)\Z""", line)
     partial = found[1] if found else ""

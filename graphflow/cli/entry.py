@@ -30,7 +30,7 @@ def main() -> None:
     is_start = sys.argv[1:2] == ["up"]
     if is_start:
         _announce()
-    if os.environ.get("GRAPHFLOW_ENDS_WITH"):
+    if os.environ.get("GRAPHFLOW_ENDS_WITH"):  # removed from the environment, so that nodes do not inherit it
         from graphflow.system import end_with_parent
 
         end_with_parent(int(os.environ.pop("GRAPHFLOW_ENDS_WITH")), signal.SIGINT)

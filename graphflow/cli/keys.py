@@ -15,7 +15,7 @@ _KEYS = {UP: UP, DOWN: DOWN, RIGHT: RIGHT, "\x1bOA": UP, "\x1bOB": DOWN, "\x1bOC
 
 
 @contextlib.contextmanager
-def pressed(handle: Callable[[str], object]) -> Iterator[bool]:
+def key_presses(handle: Callable[[str], object]) -> Iterator[bool]:
     """Call `handle` with each key pressed inside the block; the context value is whether keys can be read.
 
     The terminal still turns Ctrl-C into a signal; its settings are restored at the end.

@@ -16,7 +16,7 @@ import click
 
 from graphflow import __version__
 from graphflow.cli import exits, output
-from graphflow.cli.net_options import reach, reach_options
+from graphflow.cli.net_options import apply_reach, reach_options
 from graphflow.cli.other_words import option_answer
 from graphflow.cli.placing import OF_GRAPHFLOW, before_the_verb
 from graphflow.cli.variables import misspelt
@@ -95,7 +95,7 @@ class _Verbs(Verbs):
         command: click.Command = getattr(module, cmd_name.replace("-", "_"))
         return command
 
-    def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
+    def order_hint(self, ctx: click.Context, words: Sequence[str]) -> str:
         word, *rest = words
         if word == "ros2":
             return f"leave out ros2: graphflow {' '.join(rest)}".rstrip()
@@ -141,7 +141,7 @@ def cli(ctx: click.Context, /, domain: int | None, wire: str | None, connect: tu
         os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
     if wire is not None:
         os.environ[VARIABLE] = wire
-    reach(connect, net)
+    apply_reach(connect, net)
     try:
         wire_profile()
     except GraphflowError as error:  # report a misspelt variable before doing anything
@@ -196,7 +196,7 @@ def _invoked(args: Sequence[str]) -> object:
     name = "gf" if os.path.basename(sys.argv[0]) == "gf" else "graphflow"
     _refuse_pasted(args)
     try:
-        with cli.make_context(name, list(args)) as context:
+        with cli.make_context(name, list(args)) as context:  # also parses, so it raises usage errors, too
             return cli.invoke(context)
     except click.exceptions.Exit as end:
         return end.exit_code

@@ -33,7 +33,7 @@ def reach_options(command: F) -> F:
     return connect(net(command))
 
 
-def reach(connect: tuple[str, ...], net: str | None) -> None:
+def apply_reach(connect: tuple[str, ...], net: str | None) -> None:
     """Set the environment variables that the transport reads to the options' values.
 
     Raises:

@@ -10,7 +10,6 @@ import io
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 from graphflow.errors import harmless, uncoloured
 
@@ -105,15 +104,15 @@ def columns(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def as_json(value: Any) -> None:
+def as_json(value: object) -> None:
     """Print a command's result as one line of JSON."""
     import json
 
     _write(f"{json.dumps(value, default=_plain)}\n")
 
 
-def _plain(value: Any) -> Any:
-    if hasattr(value, "tolist"):
+def _plain(value: object) -> object:
+    if hasattr(value, "tolist"):  # NumPy's arrays and scalars, without importing NumPy for every command
         return value.tolist()
     return list(value) if isinstance(value, bytes) else str(value)
 

@@ -11,7 +11,7 @@ _NOT_OURS = ("--", "--ros-args")
 """Words after which no word is an option of graphflow's."""
 
 
-def behind(words: Sequence[str]) -> str | None:
+def option_after_verb(words: Sequence[str]) -> str | None:
     """Return the first option of graphflow's own among words after the verb; None if there is none."""
     for word in words:
         if word in _NOT_OURS:

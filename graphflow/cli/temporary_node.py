@@ -16,7 +16,7 @@ from graphflow.runtime.node_core import core_of
 from graphflow.transport.event_loop import loop
 
 
-def visit(
+def run_with_node(
     work: Callable[[Node], Awaitable[int]],
     name: str | None = None,
     *,
@@ -30,7 +30,7 @@ def visit(
         parameters: Values of its parameters, by name.
         has_services: Whether it has the standard services of a node, such as those for parameters and definitions.
     """
-    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services, parameters or {}))
+    return loop.run(_run(work, name or f"_graphflow_{os.getpid()}", has_services, parameters or {}))
 
 
 class _Talk(logging.Handler):
@@ -40,7 +40,7 @@ class _Talk(logging.Handler):
         output.talk(self.format(record))
 
 
-async def _visit(
+async def _run(
     work: Callable[[Node], Awaitable[int]], name: str, has_services: bool, parameters: Mapping[str, Any]
 ) -> int:
     stop = asyncio.Event()
@@ -60,6 +60,7 @@ async def _visit(
         stopped.cancel()
         if task.done():
             return task.result()
+        # Cancelled work may still return an exit code: `action send_goal` first cancels its goal.
         task.cancel()
         await asyncio.wait([task])
         return 0 if task.cancelled() else task.result()

@@ -24,11 +24,11 @@ def _commands(group: click.Group, context: click.Context) -> dict[str, Any]:
     for name in group.list_commands(context):
         command = group.get_command(context, name)
         if command is not None and not command.hidden:
-            found[name] = _described(command, context)
+            found[name] = _describe(command, context)
     return found
 
 
-def _described(command: click.Command, context: click.Context) -> dict[str, Any]:
+def _describe(command: click.Command, context: click.Context) -> dict[str, Any]:
     arguments = [p.make_metavar(context) for p in command.params if isinstance(p, click.Argument)]
     options = {
         name: not (p.is_flag or p.count)

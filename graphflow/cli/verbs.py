@@ -50,6 +50,7 @@ class Verb(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         path = ctx.command_path.partition(" ")[2]
+        # Click raises its own error for surplus words unless they are allowed; they are refused below.
         takes_more, ctx.allow_extra_args = ctx.allow_extra_args, True
         left = super().parse_args(ctx, list(args))
         if left and (flag := flag_before(self, left[0], args)):
@@ -99,10 +100,10 @@ class Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
             path = ctx.command_path.partition(" ")[2]
-            raise click.UsageError(self.turned(ctx, args) or answer(path, args) or self.unknown(ctx, args[0]), ctx)
+            raise click.UsageError(self.order_hint(ctx, args) or answer(path, args) or self.unknown(ctx, args[0]), ctx)
         return super().resolve_command(ctx, args)
 
-    def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
+    def order_hint(self, ctx: click.Context, words: Sequence[str]) -> str:
         """Return the error text for a command whose words are in the wrong order; empty if they are not."""
         return ""
 
@@ -114,7 +115,7 @@ class Verbs(click.Group):
         if ctx.parent is None and word in HABITS:
             return f"no such command {word!r}: {HABITS[word]}"
         hint = did_you_mean(word, self.list_commands(ctx))
-        return f"no such command {word!r}{hint or f'; graphflow {path.removesuffix(word)}--help lists them'}"
+        return f"no such command {word!r}{hint or f'; graphflow {path.removesuffix(word)}--help lists all'}"
 
 
 _STAYING = {"echo", "hz", "bw", "delay", "plot", "pub", "call", "send_goal"}

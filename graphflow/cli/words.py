@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import click
 
@@ -63,11 +63,11 @@ def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[
         word = rest.pop(0)
         name, equals, _ = word.partition("=")
         numbered = _WITH_NUMBER.match(word)
-        if _is_open(values):
+        if _is_open(values):  # inside a message even `-1` and `-r` are values
             values.append(word)
         elif word in flags or (equals and name in valued) or (numbered and numbered[1] in valued):
             options.append(word)
-        elif f"-{word}" in flags | valued and len(word) > 2:
+        elif f"-{word}" in flags | valued and len(word) > 2:  # `-once`; click would read it as `-o -n -c -e`
             raise click.NoSuchOption(word, possibilities=[f"-{word}"])
         elif word in valued:
             options += [word, *rest[:1]]
@@ -120,7 +120,7 @@ def stdin_option(command: F) -> F:
     return option(command)
 
 
-def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
+def message_values(words: Sequence[str], *, from_stdin: bool = False) -> object:
     """Read the values of a message from the words after its type or from standard input; None if there are none.
 
     Raises:
@@ -141,14 +141,14 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
             raise UsageFault(f"{words[whole]!r} is one word too many: {message!r} is complete") from None
         if (lists := _lists(words)) is not None:
             return lists
-        meant = repaired(text)
+        meant = repair(text)
         raise UsageFault(f"{text!r} is not valid YAML; did you mean {meant!r}?" if meant else str(error)) from None
     keys = [values] if isinstance(values, str) else values if isinstance(values, dict) else []
     if any(_TIGHT.search(key) for key in keys):
         raise UsageFault(f"{text!r}: write a space after each colon and quotes around it all, for example '{{x: 2.0}}'")
     if isinstance(values, str) and _is_message(values):
         raise UsageFault(f"{text!r} is a string because of its inner quotes; did you mean {values!r}?")
-    if not _has_fields(values) and (meant := repaired(text)):
+    if not _has_fields(values) and (meant := repair(text)):
         raise UsageFault(f"{text!r} has a key that cannot be the name of a field; did you mean {meant!r}?")
     if not from_stdin and (name := _emptied(values, text)):
         why = "the shell removes double quotes within double quotes"
@@ -158,7 +158,7 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
     return values
 
 
-def _emptied(value: Any, text: str) -> str:
+def _emptied(value: object, text: str) -> str:
     """Return the first key without a value, as `name: ""` becomes within double quotes; empty if there is none."""
     if isinstance(value, list):
         return next((name for inner in value if (name := _emptied(inner, text))), "")
@@ -170,7 +170,7 @@ def _emptied(value: Any, text: str) -> str:
     return ""
 
 
-def _quoted_in(value: Any) -> Iterator[str]:
+def _quoted_in(value: object) -> Iterator[str]:
     """Yield the texts that are within quotation marks of other kinds than YAML's."""
     if isinstance(value, str) and is_quoted(value):
         yield value
@@ -178,7 +178,7 @@ def _quoted_in(value: Any) -> Iterator[str]:
         yield from _quoted_in(inner)
 
 
-def _lists(words: Sequence[str]) -> list[Any] | None:
+def _lists(words: Sequence[str]) -> list[object] | None:
     """Parse words that are one list each, as ROS 1 takes them; None if one is not a list."""
     from graphflow.markup.source import parse_value
 
@@ -189,7 +189,7 @@ def _lists(words: Sequence[str]) -> list[Any] | None:
     return None
 
 
-def repaired(text: str) -> str | None:
+def repair(text: str) -> str | None:
     """Return the values that were probably meant, with a brace, space, comma or sign corrected; None if unclear.
 
     Typographic quotes and dashes are replaced first.
@@ -221,14 +221,14 @@ def _is_message(text: str) -> bool:
     return False
 
 
-def _has_fields(value: Any) -> bool:
+def _has_fields(value: object) -> bool:
     """Whether all keys of a value, at any depth, could be names of fields."""
     if isinstance(value, dict):
         return all(str(key).isidentifier() and _has_fields(inner) for key, inner in value.items())
     return all(map(_has_fields, value)) if isinstance(value, list) else True
 
 
-def messages_in(file: Path) -> list[tuple[str, Any]]:
+def messages_in(file: Path) -> list[tuple[str, object]]:
     """Read the messages in a file, each with its place: documents of YAML, as `topic echo` prints them.
 
     Raises:

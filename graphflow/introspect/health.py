@@ -165,6 +165,7 @@ def _skews(processes: Mapping[str, ProcessToken], look: Look) -> Iterator[str]:
             continue
         if not 0 < time_ns < 1 << 63:
             continue
+        # The answer was made between query and last answer: only a time outside that span proves a skew.
         ahead = max(0, time_ns - look.ended_ns) + min(0, time_ns - look.began_ns)
         if abs(ahead) >= SKEW * 1e9:
             found[token.host] = ahead / 1e9

@@ -57,6 +57,7 @@ class Costs:
     def _cost(self, pid: int) -> Cost | None:
         """Measure one process alone; None if it has ended."""
         try:
+            # psutil computes the CPU share since the previous call on the same object, so the objects are kept.
             process = self._known.setdefault(pid, psutil.Process(pid))
             with process.oneshot():
                 times, memory = process.cpu_times(), process.memory_info().rss

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.cli.completing import SCRIPTS
-from graphflow.cli.completion import parted
+from graphflow.cli.completion import split_line
 from tests.conftest import Machine
 
 
@@ -29,7 +29,7 @@ from tests.conftest import Machine
 )
 def test_a_line_is_parted(line: str, words: list[str], partial: str) -> None:
     """As a shell takes it; a quotation that does not end is the last word."""
-    assert parted(line) == (words, partial)
+    assert split_line(line) == (words, partial)
 
 
 BASH = """

@@ -10,7 +10,7 @@ import termios
 
 import pytest
 
-from graphflow.cli.keys import DOWN, RIGHT, UP, pressed
+from graphflow.cli.keys import DOWN, RIGHT, UP, key_presses
 
 
 def test_keys_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -23,7 +23,7 @@ def test_keys_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
         found: list[str] = []
 
         async def press() -> None:
-            with pressed(found.append) as has_keys:
+            with key_presses(found.append) as has_keys:
                 assert has_keys
                 for text in (" ", "\x1b[A\x1bOBa", "b\x1b[C"):
                     os.write(ours, text.encode())
@@ -39,12 +39,12 @@ def test_without_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     """There are no keys, nor for what runs in the background of one, which would be stopped for asking."""
     with open(os.devnull) as nothing:
         monkeypatch.setattr(sys, "stdin", nothing)
-        with pressed(print) as has_keys:
+        with key_presses(print) as has_keys:
             assert not has_keys
     ours, theirs = pty.openpty()
     with os.fdopen(theirs, "r+b", buffering=0) as terminal:
         monkeypatch.setattr(sys, "stdin", terminal)
         monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
-        with pressed(print) as has_keys:
+        with key_presses(print) as has_keys:
             assert not has_keys
     os.close(ours)

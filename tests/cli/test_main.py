@@ -93,7 +93,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["launch", "x.xml"], "error: x.xml: there is no such file"),
         (["lanch"], "no such command 'lanch'; did you mean 'launch'?"),
         (["kill"], "no such command 'kill'; did you mean 'stop'?"),
-        (["zzz"], "no such command 'zzz'; graphflow --help lists them"),
+        (["zzz"], "no such command 'zzz'; graphflow --help lists all"),
         (["list", "node", "-a"], "no such command 'list'; did you mean: graphflow node list -a"),
         (["node", "kill", "/talker"], "to control nodes: graphflow stop /talker"),
         (["param", "dump", "/talker", "out.yaml"], "to write a file: graphflow param dump /talker > out.yaml"),

@@ -10,7 +10,7 @@ from unittest.mock import patch
 import click
 import pytest
 
-from graphflow.cli.net_options import reach, reach_options
+from graphflow.cli.net_options import apply_reach, reach_options
 from graphflow.errors import UsageFault
 from graphflow.transport.config import CONNECT_VARIABLE, PROFILE_VARIABLE
 
@@ -37,7 +37,7 @@ def test_it_is_put_where_the_transport_looks(tmp_path: Path) -> None:
     """Several endpoints with spaces between them, and the whole path of the profile."""
     profile = tmp_path / "net.yaml"
     profile.touch()
-    reach(**given("--connect", "tcp/robot:7447", "--connect", "tls/10.0.0.2:1", "--net", str(profile)))
+    apply_reach(**given("--connect", "tcp/robot:7447", "--connect", "tls/10.0.0.2:1", "--net", str(profile)))
     assert os.environ[CONNECT_VARIABLE] == "tcp/robot:7447 tls/10.0.0.2:1"
     assert os.environ[PROFILE_VARIABLE] == str(profile)
 
@@ -45,7 +45,7 @@ def test_it_is_put_where_the_transport_looks(tmp_path: Path) -> None:
 def test_without_options_the_environment_stands() -> None:
     """What it says already is not taken away."""
     with patch.dict(os.environ, {CONNECT_VARIABLE: "tcp/robot:7447"}):
-        reach(**given())
+        apply_reach(**given())
         assert os.environ[CONNECT_VARIABLE] == "tcp/robot:7447"
         assert PROFILE_VARIABLE not in os.environ
 
@@ -53,7 +53,7 @@ def test_without_options_the_environment_stands() -> None:
 def test_an_endpoint_that_is_misspelt() -> None:
     """It is wrong usage, told before anybody is asked, and changes nothing."""
     with pytest.raises(UsageFault, match="--connect: "):
-        reach(("tcp/robot:7447", "robot"), None)
+        apply_reach(("tcp/robot:7447", "robot"), None)
     assert CONNECT_VARIABLE not in os.environ
 
 

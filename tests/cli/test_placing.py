@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.cli.placing import before_the_verb, behind
+from graphflow.cli.placing import before_the_verb, option_after_verb
 
 
 @pytest.mark.parametrize(
@@ -20,7 +20,7 @@ from graphflow.cli.placing import before_the_verb, behind
 )
 def test_the_option_that_is_behind(words: str, option: str | None) -> None:
     """Is found among the words that may be graphflow's."""
-    assert behind(words.split()) == option
+    assert option_after_verb(words.split()) == option
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from unittest.mock import patch
 import pytest
 
 from graphflow import Node
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.temporary_node import run_with_node
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -39,7 +39,7 @@ def test_what_the_work_returns_is_the_exit_code() -> None:
         seen.update(e.name for e in cache if e.node_name == name)
         return 4
 
-    assert visit(work) == 4
+    assert run_with_node(work) == 4
     assert seen & {"/rosout", f"{name}/get_parameters"} == set()
     assert f"{name}/get_logger_levels" in seen
 
@@ -50,7 +50,7 @@ def test_a_name_may_be_given() -> None:
     async def work(node: Node) -> int:
         return int(node.full_name == "/visitor")
 
-    assert visit(work, "visitor") == 1
+    assert run_with_node(work, "visitor") == 1
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -66,7 +66,7 @@ def test_a_signal_ends_it_with_0(number: signal.Signals) -> None:
             ended.append("cleaned up")
         raise AssertionError("it was not cancelled")
 
-    assert visit(work) == 0
+    assert run_with_node(work) == 0
     assert ended == ["cleaned up"]
 
 
@@ -81,7 +81,7 @@ def test_work_that_ends_well_when_it_is_stopped_says_how() -> None:
             return 3
         raise AssertionError("it was not cancelled")
 
-    assert visit(work) == 3
+    assert run_with_node(work) == 3
 
 
 def test_an_error_of_the_work_is_raised_and_the_node_is_gone(standing: Machine) -> None:
@@ -92,7 +92,7 @@ def test_an_error_of_the_work_is_raised_and_the_node_is_gone(standing: Machine) 
         raise LookupError("no such thing")
 
     with pytest.raises(LookupError, match="no such thing"):
-        visit(work, "visitor")
+        run_with_node(work, "visitor")
     assert "/visitor" not in standing.look("node", "list")
 
 
@@ -102,7 +102,7 @@ def test_late_imports_are_nobodys_business() -> None:
     async def work(node: Node) -> int:
         return int(node.context.search.watchdog.is_closed)
 
-    assert visit(work) == 1
+    assert run_with_node(work) == 1
 
 
 def test_what_goes_wrong_is_told_plainly(capsys: pytest.CaptureFixture[str]) -> None:
@@ -114,7 +114,7 @@ def test_what_goes_wrong_is_told_plainly(capsys: pytest.CaptureFixture[str]) -> 
         return 0
 
     for _ in range(2):
-        assert visit(work) == 0
+        assert run_with_node(work) == 0
         told = capsys.readouterr().err
         assert told.count("beware of ") == 1
         assert "\x1b" not in told

@@ -24,7 +24,7 @@ def test_what_ros2_has_and_graphflow_does_without(words: str) -> None:
         ("topic ech", "no such command 'ech'; did you mean 'echo'?"),
         ("topi", "no such command 'topi'; did you mean 'topic'?"),
         ("kill", "no such command 'kill'; did you mean 'stop'?"),
-        ("frobnicate", "no such command 'frobnicate'; graphflow --help lists them"),
+        ("frobnicate", "no such command 'frobnicate'; graphflow --help lists all"),
         ("rostopic list", "no such command 'rostopic'; did you mean: graphflow topic list"),
         ("topic list --json true", "--json takes no value; leave out true"),
         ("service x", "no such command 'x'; there is call, echo, find, info, list, type"),

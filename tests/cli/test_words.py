@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from graphflow.cli.ros.param import set_
 from graphflow.cli.ros.topic import pub
-from graphflow.cli.words import message_values, messages_in, repaired, split_values
+from graphflow.cli.words import message_values, messages_in, repair, split_values
 from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import Int32, String
@@ -270,7 +270,7 @@ def test_values_with_a_slip(text: str, meant: str) -> None:
 def test_values_without_one(text: str) -> None:
     """Are as they are."""
     message_values([text])
-    assert repaired("{x: [}") is None
+    assert repair("{x: [}") is None
 
 
 def test_an_option_with_too_few_dashes_or_words() -> None:

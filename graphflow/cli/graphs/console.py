@@ -15,7 +15,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.graphs.node_rows import graph_rows, node_rows
 from graphflow.cli.graphs.streaming import take_down
-from graphflow.cli.net_options import reach, reach_options
+from graphflow.cli.net_options import apply_reach, reach_options
 from graphflow.cli.tree import verbs
 from graphflow.domain import domain_id, go_to
 from graphflow.errors import SupervisorError, UsageFault
@@ -30,7 +30,7 @@ COMMAND = (sys.executable, "-m", "graphflow")
 
 
 def open_console(
-    run: GraphRun | None, domain: int, prefix: str | None = None, layout: dict[str, Any] | None = None
+    run: GraphRun | None, domain: int, prefix: str | None = None, layout: dict[str, object] | None = None
 ) -> Any:
     """Open the console and return how it was left, a `tui.main.Left`.
 
@@ -83,7 +83,7 @@ def attach(graph: str | None, name: str | None, prefix: str | None, connect: tup
     If no graph of yours is running, it shows the nodes that others have started in the domain, such as a robot's
     with --connect, without control of their processes.
     """
-    reach(connect, net)
+    apply_reach(connect, net)
     if not output.is_terminal():
         raise UsageFault("the console needs a terminal; without one, see graphflow ps, logs -f and waits")
     try:

@@ -39,7 +39,7 @@ def demo() -> None:
 @click.option("--from", "first", metavar="STEP", help="Begin with STEP and continue to the last.")
 @click.option("-y", "--yes", is_flag=True, help="Print everything without asking before each step.")
 def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, first: str | None, yes: bool) -> int:
-    """Show eleven deadlocks and races, each explained as it happens and then fixed by a change of its graph file.
+    """Show eleven deadlocks and races, and their remedies. Each is explained, then fixed by a change of its graph file.
 
     In the console you end each deadlock yourself; it shows which keys to press. Without a terminal, or with
     --no-console, the graphs' output is printed. They run in a domain and on a port of their own. Name STEPs to run

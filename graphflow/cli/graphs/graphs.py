@@ -14,7 +14,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.arguments import GraphCommand
 from graphflow.cli.graphs.files import find_graph
-from graphflow.cli.net_options import reach, reach_options
+from graphflow.cli.net_options import apply_reach, reach_options
 from graphflow.cli.verbs import Verb
 from graphflow.domain import ENDPOINT_VARIABLE, domain_id, go_to
 from graphflow.errors import SupervisorError
@@ -80,7 +80,7 @@ def up(
         os.environ[VARIABLE] = wire
     if races:
         os.environ["GRAPHFLOW_RACES"] = "1"
-    reach(connect, net)
+    apply_reach(connect, net)
     path = find_graph(graph)
     if show_args:
         return _show_args(path)

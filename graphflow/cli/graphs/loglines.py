@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import time
 from pathlib import Path
-from typing import Any
 
 from graphflow.errors import UsageFault
 
@@ -48,7 +47,7 @@ class Chosen:
         return found
 
 
-def record(node: str, line: str) -> dict[str, Any]:
+def record(node: str, line: str) -> dict[str, object]:
     """Parse a log line into its level, time, logger and text; only the text if it has no head."""
     head = _HEAD.match(line)
     if head is None:

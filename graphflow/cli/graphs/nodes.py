@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -108,7 +107,7 @@ def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name:
     """
     if ready and ended:
         raise UsageFault("give either --ready or --ended")
-    rows, code, why = _waited(nodes, name, timeout, ended=ended)
+    rows, code, why = _wait_for(nodes, name, timeout, ended=ended)
     if as_json:
         output.as_json(rows)
     if why:
@@ -116,7 +115,7 @@ def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name:
     return code
 
 
-def _waited(
+def _wait_for(
     nodes: tuple[str, ...], graph: str | None, timeout: float, *, ended: bool
 ) -> tuple[list[NodeRow], int, str]:
     """Wait for nodes; return their rows, the exit code and, unless it is 0, the reason."""
@@ -125,7 +124,7 @@ def _waited(
         rows = _rows_if_any(graph)
         if rows is None and ended:
             return [], exits.OK, ""
-        wanted = _wanted(nodes, rows) if rows is not None else []
+        wanted = _select(nodes, rows) if rows is not None else []
         failed = [row for row in wanted if row["state"] in ("failed", "given_up")]
         if failed and not ended:
             text = f"{failed[0]['node']} has failed: {failed[0]['detail']}\n  its log: {failed[0]['log']}"
@@ -153,7 +152,7 @@ def _rows_if_any(graph: str | None) -> list[NodeRow] | None:
         raise
 
 
-def _wanted(nodes: tuple[str, ...], rows: list[NodeRow]) -> list[NodeRow]:
+def _select(nodes: tuple[str, ...], rows: list[NodeRow]) -> list[NodeRow]:
     if not nodes:
         return rows
     known = {row["node"]: row for row in rows}
@@ -168,7 +167,7 @@ def _full(node: str) -> str:
 
 
 def _row(socket: str, node: str) -> NodeRow:
-    return _wanted((node,), node_rows(socket))[0]
+    return _select((node,), node_rows(socket))[0]
 
 
 def _last_lines(log: Path) -> list[str]:
@@ -189,7 +188,7 @@ def restart_node(node: str, graph: str | None, *, threads: list[str] | None = No
     return _ask("restart", node, graph, **({"threads": threads} if threads else {}))
 
 
-def _ask(what: str, node: str, graph: str | None, **more: Any) -> int:
+def _ask(what: str, node: str, graph: str | None, **more: object) -> int:
     node = _full(node)
     try:
         run = choose(graph)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from graphflow.cli import output
-from graphflow.cli.net_options import reach, reach_options
+from graphflow.cli.net_options import apply_reach, reach_options
 from graphflow.domain import rendezvous_endpoint
 
 if TYPE_CHECKING:
@@ -21,14 +21,14 @@ POLL = 0.05
 @click.command()
 @reach_options
 def router(connect: tuple[str, ...], net: str | None) -> int:
-    """Run a Zenoh router as the rendezvous of this machine, until Ctrl-C.
+    """Run a Zenoh router as the rendezvous of this machine. Ctrl-C ends it.
 
     None is needed: the first process of a graph is the rendezvous, and another takes over when it ends. A router
     outlives the graphs, and with --connect or --net keeps the machine linked to others.
     """
-    from graphflow.cli.temporary_node import visit
+    from graphflow.cli.temporary_node import run_with_node
 
-    reach(connect, net)
+    apply_reach(connect, net)
 
     async def work(node: Node) -> int:
         endpoint = rendezvous_endpoint()
@@ -43,4 +43,4 @@ def router(connect: tuple[str, ...], net: str | None) -> int:
         await asyncio.get_running_loop().create_future()
         return 0
 
-    return visit(work)
+    return run_with_node(work)

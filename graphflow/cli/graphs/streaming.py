@@ -76,7 +76,7 @@ class LogReader:
                     offset = file.tell()
             except FileNotFoundError:
                 continue
-            lines, _, rest = data.rpartition(b"\n")
+            lines, _, rest = data.rpartition(b"\n")  # a node may be in the middle of writing the last line
             self._files[path] = (offset, rest)
             if lines:
                 texts = lines.decode(errors="replace").split("\n")
@@ -166,6 +166,7 @@ class _Stream:
         files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
         self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0), as_json=self._as_json)
         while True:
+            # Logs are files, for which nothing wakes this loop; the timeout makes it read them.
             select.select([self._client], [], [], _POLL)
             events = self._client.pending()
             if events is None:
@@ -179,6 +180,7 @@ class _Stream:
                     return code
             if not self._detach:
                 self._logs.show()
+            # Signals only count: the request is sent from here, where the socket is not in use. The second one kills.
             if len(self._interrupts) > self._stop_sent:
                 self._stop_sent = len(self._interrupts)
                 reason = "Ctrl-C" if self._interrupts[-1] == signal.SIGINT else "SIGTERM"
@@ -221,7 +223,7 @@ class _Stream:
         output.as_json({**event, **more})
 
     def _print(self, event: Event) -> None:
-        """Print one event for people. Log lines come first that nodes wrote before the event."""
+        """Print one event as text, after the log lines that nodes wrote before it."""
         match event["event"]:
             case "step":
                 mark = "done" if event["ok"] else "FAILED"
@@ -271,7 +273,7 @@ class _Stream:
             place = self._classes.get(node["class"], "")
             waits = pending.get(node["node"])
             label = node["node"] if node["is_named"] else node["node"].removeprefix("/")  # or a process
-            note = f"waits for {waits}" if waits else _shown(place)
+            note = f"waits for {waits}" if waits else _shown_place(place)
             output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {note}")
         output.talk("")
         output.talk("In another terminal:")
@@ -299,7 +301,7 @@ class _Stream:
 
 def report_loss(run: GraphRun, end: Callable[[], str]) -> int:
     """Report that the supervisor was killed, once its graph has ended; return the exit code of `up`."""
-    lost = run.renewed()
+    lost = run.renewed()  # the guardian may have been replaced since the start
     has_gone = lost.wait_gone(GONE_LIMIT)
     why = guardian_report(lost) or (end() if has_gone else silent(lost))
     output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
@@ -338,7 +340,7 @@ def _supervisor_log(logs: Path) -> list[str]:
         return []
 
 
-def _shown(place: str) -> str:
+def _shown_place(place: str) -> str:
     from graphflow.workspace.project import shown
 
     path, colon, line = place.partition(":")

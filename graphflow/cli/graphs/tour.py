@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
-from typing import Any
 
 from graphflow.cli import exits, output
 from graphflow.cli.graphs.console import COMMAND, open_console
@@ -30,9 +29,9 @@ def tour(steps: Sequence[Step]) -> int:
         root = _copy(Path(folder))
         for i, step in enumerate(steps, 1):
             where = f"{i}/{len(steps)} {step.name}"
-            left = _visit(root, step, "broken", where)
+            left = _run_step(root, step, "broken", where)
             if left == "fixed":
-                left = _visit(root, step, "fixed", where)
+                left = _run_step(root, step, "fixed", where)
             if left != "next":
                 break
     on = f"; to continue later: graphflow demo deadlock --from {step.name}" if left != "next" else ""
@@ -47,11 +46,11 @@ def _copy(folder: Path) -> Path:
     return folder
 
 
-def _visit(root: Path, step: Step, kind: str, where: str) -> str:
+def _run_step(root: Path, step: Step, kind: str, where: str) -> str:
     """Run one graph with the console on it; return how the console was left."""
     file = root / "graphs" / "deadlock" / graph_file(step.name, kind).name
     text = file.read_text(encoding="utf-8")
-    options: dict[str, Any] = {"title": heading(file), "step": where, "seconds": step.seconds}
+    options: dict[str, object] = {"title": heading(file), "step": where, "seconds": step.seconds}
     if kind == "fixed":
         options["fixed"] = text.partition("\n")[2].rstrip()
     with _up(file) as run:
@@ -83,7 +82,7 @@ def _up(file: Path) -> Iterator[GraphRun]:
                 process.wait()
 
 
-def _windows(options: dict[str, Any], has_turtle: bool) -> dict[str, Any]:
+def _windows(options: dict[str, object], has_turtle: bool) -> dict[str, object]:
     """Lay out one window: the guide, and beside it the turtle and the log."""
     beside = [{"view": name} for name in (["turtle"] if has_turtle else []) + ["log"]]
     panes = [{"view": "tour", "options": options, "size": 58}, {"split": "rows", "of": beside, "size": 42}]

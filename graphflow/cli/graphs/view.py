@@ -31,9 +31,9 @@ PORT = 8765
 @click.option("--allow-page", "pages", multiple=True, help="Origin of a web page that may connect: https://HOST.")
 @click.option("--node-name", default=NODE, show_default=True, help="Name of the serving node.")
 def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tuple[str, ...], node_name: str) -> int:
-    """Serve the running graph to Foxglove, Lichtblick and PlotJuggler, until Ctrl-C.
+    """Serve the running graph to Foxglove, Lichtblick and PlotJuggler. Ctrl-C ends it.
 
-    Topics, services, parameters and connections are served over Foxglove's WebSocket protocol. --host 0.0.0.0
+    Topics, services, parameters and connections are served over Foxglove's WebSocket protocol. --host 0.0.0.0 serves
     other machines, too; they can only watch, unless --allow-commands is given.
     """
     if find_spec("websockets") is None:
@@ -41,7 +41,7 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
 
         raise UsageFault(f"viewers need the extra `view`: pip install {requirement('view')}")
     from graphflow.cli.messages.types import use_project
-    from graphflow.cli.temporary_node import visit
+    from graphflow.cli.temporary_node import run_with_node
 
     use_project()
     is_read_only = read_only or not (allow_commands or _is_loopback(host))
@@ -53,17 +53,17 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
         bridge = Bridge(node, name, is_read_only=is_read_only, pages=frozenset(pages))
         try:
             found = await bridge.open(host, port)
-            output.data(f"Serving viewers on ws://{_shown(host)}:{found}{', read-only' if is_read_only else ''}")
+            output.data(f"Serving viewers on ws://{_url_host(host)}:{found}{', read-only' if is_read_only else ''}")
             output.talk("In Foxglove or Lichtblick: Open connection, Foxglove WebSocket. Ctrl-C ends it")
             await asyncio.get_running_loop().create_future()
         finally:
             await bridge.close()
         return exits.OK
 
-    return visit(work, node_name)
+    return run_with_node(work, node_name)
 
 
-def _shown(host: str) -> str:
+def _url_host(host: str) -> str:
     """Format a host for an address that viewers can open."""
     try:
         address = ipaddress.ip_address(host)

@@ -122,7 +122,7 @@ def _show(node: str, known: list[found.GroupRow], *, as_json: bool) -> None:
 
 
 _timeout = click.option(
-    "--timeout", type=click.FloatRange(0, min_open=True), default=2.0, show_default=True, help="Seconds."
+    "--timeout", type=click.FloatRange(0, min_open=True), default=2.0, show_default=True, help="Seconds to wait."
 )
 _as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
@@ -134,7 +134,7 @@ _as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @_timeout
 @_as_json
 def move(node: str, handlers: tuple[str, ...], group: str, timeout: float, as_json: bool) -> None:
-    """Move handlers of a running node into another group, created if missing; `none` for no group.
+    """Move handlers of a running node into another group. It is created if missing; `none` is no group.
 
     Print the lines of a graph file that make the move permanent.
     """
@@ -148,7 +148,7 @@ def move(node: str, handlers: tuple[str, ...], group: str, timeout: float, as_js
 @_timeout
 @_as_json
 def limit(node: str, group: str, number: str, timeout: float, as_json: bool) -> None:
-    """Set how many handlers of a running node's group may run at a time; `none` for any number.
+    """Set how many handlers of a group may run at a time. `none` removes the limit.
 
     Print the lines of a graph file that make the change permanent.
     """
@@ -163,7 +163,7 @@ def limit(node: str, group: str, number: str, timeout: float, as_json: bool) -> 
 @click.argument("handlers", metavar="HANDLER...", nargs=-1, required=True)
 @click.option("--graph", "name", metavar="NAME", help="Name of the running graph, if there are several.")
 def thread(node: str, handlers: tuple[str, ...], name: str | None) -> int:
-    """Restart a node with these handlers in threads, where they may block without blocking the event loop.
+    """Restart a node with some handlers in threads. They may block there without blocking the event loop.
 
     Only `def` handlers can run in threads. The change lasts until the graph stops.
     """
@@ -194,5 +194,5 @@ def _change(node: str, requests: list[dict[str, object]], timeout: float, *, as_
         output.as_json({"node": full, **answer})
         return
     _show(full, answer["groups"], as_json=False)
-    output.data(f"\nTo keep it so, {answer['where']}")
+    output.data(f"\nTo make this permanent, {answer['where']}")
     output.lines(answer["yaml"])

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from graphflow.errors import UsageFault
 
 
-def compiled(expression: str) -> Callable[[Any], bool]:
+def compile_condition(expression: str) -> Callable[[object], bool]:
     """Compile a condition on a message `m`, a Python expression that is evaluated as in ROS 2.
 
     Raises:
@@ -19,7 +18,7 @@ def compiled(expression: str) -> Callable[[Any], bool]:
     except (SyntaxError, ValueError) as error:
         raise UsageFault(f"--filter {expression!r} is not an expression: {error}; example: 'm.data > 3'") from None
 
-    def holds(message: Any) -> bool:
+    def holds(message: object) -> bool:
         try:
             return bool(eval(code, {"m": message}))  # noqa: S307 - typed by the user who runs it
         except NameError as error:

@@ -66,7 +66,7 @@ def echo_options(command: F) -> F:
     return command
 
 
-def taken(options: dict[str, Any]) -> EchoOptions:
+def collect_options(options: dict[str, Any]) -> EchoOptions:
     """Collect the options from click's; by default, the QoS is compatible with all current publishers."""
     if (options["node_name"] or "").isdigit():
         raise UsageFault("-n is the name of the listening node; to end after the first message: --once")

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 from graphflow.cli import exits, output
-from graphflow.cli.messages.conditions import compiled
+from graphflow.cli.messages.conditions import compile_condition
 from graphflow.cli.messages.echo_options import EchoOptions
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.introspect.messages.echo import block, csv, flow, plain, truncated
 from graphflow.introspect.messages.fields import Path, field_path, value_at
 from graphflow.msgs import registry
@@ -31,12 +31,12 @@ DISCOVERY = 0.2
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
     """Print messages until done or stopped; return the exit code."""
     path = field_path(options.field, type_name) if options.field else []
-    wanted = compiled(options.condition) if options.condition else None
+    wanted = compile_condition(options.condition) if options.condition else None
 
     async def work(node: Node) -> int:
         return await _echo(node, topic, type_name, options, path, wanted)
 
-    return visit(work, options.node_name)
+    return run_with_node(work, options.node_name)
 
 
 async def _echo(
@@ -45,7 +45,7 @@ async def _echo(
     type_name: str,
     options: EchoOptions,
     path: Path,
-    wanted: Callable[[Any], bool] | None,
+    wanted: Callable[[object], bool] | None,
 ) -> int:
     await _discover(node, topic)
     on_event = None if options.no_lost_messages else _report_loss
@@ -79,7 +79,9 @@ class _Raw:
         wanted: Filter of messages; None for all.
     """
 
-    def __init__(self, node: Node, type_name: str, topic: str, qos: Qos, wanted: Callable[[Any], bool] | None) -> None:
+    def __init__(
+        self, node: Node, type_name: str, topic: str, qos: Qos, wanted: Callable[[object], bool] | None
+    ) -> None:
         self._queue: asyncio.Queue[tuple[bytes, MessageInfo]] = asyncio.Queue(qos.depth)
         self._decode = None if wanted is None else registry.codec(type_name).decode
         self._wanted = wanted

@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from graphflow.cli import output
-from graphflow.cli.messages.conditions import compiled
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.messages.conditions import compile_condition
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.domain import domain_id
 from graphflow.errors import DecodeError, UsageFault
 from graphflow.introspect.empty_hint import nothing_here
@@ -37,7 +37,7 @@ Take = Callable[[bytes, int, int], object]
 
 def hz(topics: list[str], window: int, expression: str, *, as_json: bool) -> int:
     """Print how often messages arrive; return the exit code."""
-    condition = compiled(expression) if expression else None
+    condition = compile_condition(expression) if expression else None
     rates = {topic: Arrivals(window) for topic in topics}
 
     def meter(topic: str, type_name: str) -> Take:
@@ -53,7 +53,7 @@ def hz(topics: list[str], window: int, expression: str, *, as_json: bool) -> int
         else:
             _print_text(table(rates) if len(topics) > 1 else rates[topics[0]].text())
 
-    return visit(lambda node: _measure(node, topics, meter, report))
+    return run_with_node(lambda node: _measure(node, topics, meter, report))
 
 
 def bw(topics: list[str], window: int, *, as_json: bool) -> int:
@@ -73,7 +73,7 @@ def bw(topics: list[str], window: int, *, as_json: bool) -> int:
         texts = {topic: words for topic, one in weights.items() if (words := one.text(now_ns))}
         _print_text("\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items()))
 
-    return visit(lambda node: _measure(node, topics, meter, report))
+    return run_with_node(lambda node: _measure(node, topics, meter, report))
 
 
 def delay(topic: str, window: int, *, as_json: bool) -> int:
@@ -95,7 +95,7 @@ def delay(topic: str, window: int, *, as_json: bool) -> int:
     def report(_: int) -> None:
         _print_numbers({topic: delays.numbers()}) if as_json else _print_text(delays.text())
 
-    return visit(lambda node: _measure(node, [topic], meter, report))
+    return run_with_node(lambda node: _measure(node, [topic], meter, report))
 
 
 def _print_text(text: str) -> None:

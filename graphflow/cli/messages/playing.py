@@ -7,14 +7,14 @@ import contextlib
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 from graphflow.bag.info import topics_of
 from graphflow.bag.player import MAX_RATE, MIN_RATE, Player, PlayOptions
 from graphflow.bag.reader import Bag
 from graphflow.cli import exits, output
-from graphflow.cli.keys import DOWN, RIGHT, UP, pressed
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.keys import DOWN, RIGHT, UP, key_presses
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.msgs.rosbag2_interfaces.srv import (
     Burst,
     GetRate,
@@ -27,6 +27,8 @@ from graphflow.msgs.rosbag2_interfaces.srv import (
     TogglePaused,
 )
 from graphflow.runtime.node import Node
+
+R = TypeVar("R")
 
 STAY = 0.2
 """Seconds that the publishers stay after the last message, so that it is delivered."""
@@ -47,7 +49,7 @@ def run(path: Path, options: PlayOptions, name: str, *, keys: bool = True, burst
     async def work(node: Node) -> int:
         return await _play(node, bag, options, burst, keys=keys)
 
-    return visit(work, name, has_services=True)
+    return run_with_node(work, name, has_services=True)
 
 
 async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *, keys: bool) -> int:
@@ -67,7 +69,7 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
             player.rate = min(max(player.rate * (1.1 if key == UP else 1 / 1.1), MIN_RATE), MAX_RATE)
 
     began = time.monotonic()
-    with pressed(handle) if keys else contextlib.nullcontext(False) as has_keys:
+    with key_presses(handle) if keys else contextlib.nullcontext(False) as has_keys:
         hint = " SPACE pauses, RIGHT steps, UP and DOWN change the rate, Ctrl-C ends it." if has_keys else ""
         output.talk(f"playing {topics_of(len(player.topics))} of {bag.path}.{hint}")
         shown = asyncio.ensure_future(_show(player, bag)) if sys.stderr.isatty() else None
@@ -96,11 +98,11 @@ async def _show(player: Player, bag: Bag) -> None:
 def _serve(node: Node, player: Player) -> None:
     """Provide the services of ROS 2's player."""
 
-    def paused(value: bool | None, answer: Any) -> Any:
+    def paused(value: bool | None, answer: R) -> R:
         player.is_paused = not player.is_paused if value is None else value
         return answer
 
-    def set_rate(request: SetRate.Request) -> Any:
+    def set_rate(request: SetRate.Request) -> SetRate.Response:
         is_good = MIN_RATE <= request.rate <= MAX_RATE
         if is_good:
             player.rate = request.rate
@@ -110,7 +112,7 @@ def _serve(node: Node, player: Player) -> None:
         player.step(count)
         return player.is_paused
 
-    def seek(request: Seek.Request) -> Any:
+    def seek(request: Seek.Request) -> Seek.Response:
         wanted = request.time.sec * 10**9 + request.time.nanosec
         is_there = wanted <= player.end_ns
         if is_there:

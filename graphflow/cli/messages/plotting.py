@@ -9,12 +9,12 @@ import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.bag import typed
 from graphflow.bag.reader import Bag
 from graphflow.cli import exits, output
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.errors import CallError, UsageFault
 from graphflow.introspect.drawing.curves import COLOURS, CURVES, Curve, chart
 from graphflow.introspect.messages.fields import numbers
@@ -22,6 +22,9 @@ from graphflow.msgs import registry
 from graphflow.names import did_you_mean, expand
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime.node import Node
+
+if TYPE_CHECKING:
+    from graphflow.msgs.base import Message
 
 EVERY = 0.2
 """Seconds between two pictures on a terminal."""
@@ -65,7 +68,7 @@ class PlotOptions:
         return not (self.svg or self.png or self.as_csv) and sys.stdout.isatty()
 
 
-def wanted(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]]:
+def parse_fields(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]]:
     """Parse words into topics and the fields of each; no fields stand for all numbers.
 
     Args:
@@ -109,17 +112,17 @@ def curves_of(meant: Mapping[str, list[str]], types: Mapping[str, str]) -> dict[
     return found
 
 
-def live(meant: Mapping[str, list[str]], types: Mapping[str, str], options: PlotOptions) -> int:
+def plot_live(meant: Mapping[str, list[str]], types: Mapping[str, str], options: PlotOptions) -> int:
     """Draw topics as their messages arrive; return the exit code."""
     curves = curves_of(meant, types)
-    return visit(lambda node: _listen(node, curves, types, options))
+    return run_with_node(lambda node: _listen(node, curves, types, options))
 
 
-def recorded(path: Path, words: Sequence[str], start: float, end: float | None, options: PlotOptions) -> int:
+def plot_bag(path: Path, words: Sequence[str], start: float, end: float | None, options: PlotOptions) -> int:
     """Draw topics of a bag over the seconds since its beginning; return the exit code."""
     bag = Bag(path)
     topics = bag.contents.topics
-    meant = wanted(words, topics)
+    meant = parse_fields(words, topics)
     for topic in meant:
         if topic not in topics:
             raise CallError(f"{path} has no topic {topic}{did_you_mean(topic, topics)}")
@@ -138,7 +141,7 @@ async def _listen(node: Node, curves: Mapping[str, list[Curve]], types: Mapping[
     zero = node.clock.monotonic_ns() / 1e9
 
     def listen(topic: str) -> None:
-        def arrived(message: Any) -> None:
+        def arrived(message: Message) -> None:
             at = node.clock.monotonic_ns() / 1e9 - zero
             for curve in curves[topic]:
                 curve.add(at, message)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from graphflow.cli import exits, output
 from graphflow.cli.messages.stamps import Path, stamp
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.msgs.base import Message
 from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, Qos
@@ -56,7 +56,7 @@ def run(topic: str, drafts: Sequence[Draft], options: PubOptions) -> int:
     async def work(node: Node) -> int:
         return await _publish(node, topic, drafts, options)
 
-    return visit(work, options.node_name)
+    return run_with_node(work, options.node_name)
 
 
 async def _publish(node: Node, topic: str, drafts: Sequence[Draft], options: PubOptions) -> int:

@@ -9,7 +9,6 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from graphflow.bag.info import size, topics_of
 from graphflow.bag.overrides import read as read_overrides
@@ -18,8 +17,8 @@ from graphflow.bag.recording.recorder import CACHE, Recorder
 from graphflow.bag.topic_choice import EVENTS, Choice
 from graphflow.bag.writer import BagWriter
 from graphflow.cli import exits, output
-from graphflow.cli.keys import pressed
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.keys import key_presses
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.errors import BagError, UsageFault
 from graphflow.introspect.empty_hint import nothing_here
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
@@ -69,7 +68,6 @@ def run(choice: Choice, options: RecordOptions) -> int:
     qos = {} if options.qos_path is None else read_overrides(options.qos_path)
     custom = dict(_pair(word) for word in options.custom_data)
     folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
-    split = {"max_size": options.max_bag_size, "max_seconds": options.max_bag_duration}
     rates = _rates(options.topic_throttle_frequency)
     repeats = Repeats(
         _by_topic("--repeat-transient-local", options.repeat_transient_local), options.repeat_all_transient_local
@@ -80,14 +78,15 @@ def run(choice: Choice, options: RecordOptions) -> int:
         compression=options.compression,
         custom=custom,
         repeats=repeats,
-        **split,  # type: ignore[arg-type]
+        max_size=options.max_bag_size,
+        max_seconds=options.max_bag_duration,
     )
 
     async def work(node: Node) -> int:
         return await _record(node, writer, choice, options, qos, rates)
 
     given = {"use_sim_time": True} if options.use_sim_time else {}
-    return visit(work, options.node_name, has_services=True, parameters=given)
+    return run_with_node(work, options.node_name, has_services=True, parameters=given)
 
 
 def _pair(word: str) -> tuple[str, str]:
@@ -157,7 +156,7 @@ async def _record(
             _report(node, "Snapshot taken")
 
     began = time.monotonic()
-    with contextlib.nullcontext(False) if options.disable_keyboard_controls else pressed(key) as has_keys:
+    with contextlib.nullcontext(False) if options.disable_keyboard_controls else key_presses(key) as has_keys:
         if has_keys:
             keys = "SPACE pauses, S takes a snapshot" if options.snapshot_mode else "SPACE pauses"
             _report(node, f"Recording into {writer.folder}. {keys}, Ctrl-C ends it")
@@ -228,15 +227,15 @@ async def _show(recorder: Recorder, began: float) -> None:
 def _serve(node: Node, recorder: Recorder) -> None:
     """Provide the services of ROS 2's recorder."""
 
-    def pause(_: Any) -> Any:
+    def pause(_: Pause.Request) -> Pause.Response:
         recorder.is_paused = True
         return Pause.Response()
 
-    def resume(_: Any) -> Any:
+    def resume(_: Resume.Request) -> Resume.Response:
         recorder.is_paused = False
         return Resume.Response()
 
-    def split(_: Any) -> Any:
+    def split(_: SplitBagfile.Request) -> SplitBagfile.Response:
         recorder.split()
         return SplitBagfile.Response()
 

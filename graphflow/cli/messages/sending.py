@@ -8,7 +8,7 @@ from textwrap import indent
 from typing import Any, NamedTuple
 
 from graphflow.cli import exits, output
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected, ServiceUnavailable
 from graphflow.introspect.messages.echo import block, plain
 from graphflow.msgs.base import Message
@@ -24,7 +24,7 @@ class _Reporter(NamedTuple):
 
     as_json: bool
 
-    def report(self, text: str, event: str = "", **more: Any) -> None:
+    def report(self, text: str, event: str = "", **more: object) -> None:
         """Print the text or, as JSON, the event; a text without an event is left out of JSON."""
         if not self.as_json:
             output.data(text)
@@ -44,7 +44,7 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
         except ServiceUnavailable as error:
             output.error(str(error))
             return exits.TIMEOUT
-        reporter.report(f"Sending goal:\n{_shown(goal)}")
+        reporter.report(f"Sending goal:\n{_indented(goal)}")
         try:
             return await _follow(client.send(goal, timeout=timeout), show_feedback, reporter)
         except GoalRejected as error:
@@ -52,7 +52,7 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
             output.talk(str(error))
             return exits.FAILED
 
-    return visit(work)
+    return run_with_node(work)
 
 
 async def _follow(sending: Any, show_feedback: bool, reporter: _Reporter) -> int:
@@ -84,7 +84,7 @@ async def _follow(sending: Any, show_feedback: bool, reporter: _Reporter) -> int
 
 async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter) -> None:
     async for feedback in sent.feedback():
-        reporter.report(f"Feedback:\n{_shown(feedback)}", "feedback", feedback=plain(feedback))
+        reporter.report(f"Feedback:\n{_indented(feedback)}", "feedback", feedback=plain(feedback))
 
 
 async def _result(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter) -> int:
@@ -98,10 +98,10 @@ async def _result(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter) ->
     except GoalLost as error:
         output.error(str(error))
         return exits.FAILED
-    reporter.report(f"Result:\n{_shown(result)}", "result", result=plain(result))
+    reporter.report(f"Result:\n{_indented(result)}", "result", result=plain(result))
     reporter.report(f"Goal finished with status: {sent.status.name}", "end", status=sent.status.name)
     return code
 
 
-def _shown(message: Any) -> str:
+def _indented(message: Message) -> str:
     return indent(block(plain(message)).rstrip("\n"), "    ") + "\n"

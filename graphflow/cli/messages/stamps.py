@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.msgs import registry
+
+if TYPE_CHECKING:
+    from graphflow.msgs.base import Message
 
 HEADER, TIME = "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
 Path = tuple[str, ...]
 
 
-def taken(type_name: str, values: Any) -> tuple[Any, list[Path]]:
+def split_stamps(type_name: str, values: object) -> tuple[object, list[Path]]:
     """Remove `auto` and `now` from the values of a message; return the rest and the fields to stamp.
 
     Args:
@@ -31,15 +34,15 @@ def taken(type_name: str, values: Any) -> tuple[Any, list[Path]]:
         elif value == "now" and type_.base == TIME:
             stamps.append((name,))
         else:
-            kept[name], inner = taken(type_.base, value)
+            kept[name], inner = split_stamps(type_.base, value)
             stamps += [(name, *path) for path in inner]
     return kept, stamps
 
 
-def stamp(message: Any, paths: Iterable[Path], time_ns: int) -> None:
+def stamp(message: Message, paths: Iterable[Path], time_ns: int) -> None:
     """Set fields of a message to a time."""
     for path in paths:
-        field = message
+        field: Any = message
         for name in path:
             field = getattr(field, name)
         field.sec, field.nanosec = divmod(time_ns, 10**9)

@@ -88,7 +88,7 @@ def check_kind(type_name: str, kind: str) -> None:
     raise UsageFault(f"{type_name} is {CALLED[actual]}, not {CALLED[kind]}; graphflow {verb} takes such types")
 
 
-def refuse_turned(name: str, type_name: str | None, command: str) -> None:
+def check_order(name: str, type_name: str | None, command: str) -> None:
     """Check that the name comes first and the type after it.
 
     Args:

@@ -60,12 +60,12 @@ class _Create(click.Command):
 @click.option("--library-name", help="Name of a first library.")
 @click.option("--dependencies", multiple=True, metavar="PACKAGE...", help="Packages that it needs.")
 @click.option("--package-format", type=click.Choice(("2", "3")), help="Format of package.xml. [3]")
-@click.option("--description", help="For package.xml.")
-@click.option("--license", help="For package.xml; a known license's text is written, too. ? lists those.")
-@click.option("--maintainer-name", help="For package.xml.")
-@click.option("--maintainer-email", help="For package.xml.")
+@click.option("--description", help="Description for package.xml.")
+@click.option("--license", help="License for package.xml; the text of a known one is written, too. ? lists those.")
+@click.option("--maintainer-name", help="Maintainer for package.xml.")
+@click.option("--maintainer-email", help="The maintainer's address for package.xml.")
 def create(name: str, destination_directory: Path, build_type: str | None, template: str | None, **given: Any) -> None:
-    """Write a ROS 2 package with --build-type, or else a starter project, as `graphflow init NAME` does."""
+    """Write a package or project. With --build-type it is a ROS 2 package, or else as by `graphflow init NAME`."""
     if given["license"] == "?":
         output.lines(["Supported licenses:", *known_licenses()])
         return
@@ -81,13 +81,13 @@ def create(name: str, destination_directory: Path, build_type: str | None, templ
 
 
 def _project(name: str, destination: Path, unused: Mapping[str, object]) -> None:
-    from graphflow.cli.projects.init import check_new, written
+    from graphflow.cli.projects.init import check_new, write_project
 
     folder = destination / name
     check_new(folder)
     _print_new(name, destination)
     output.data(f"creating folder {_joined(destination, name)}")
-    output.lines(f"creating {_joined(destination, file.relative_to(destination))}" for file in written(folder))
+    output.lines(f"creating {_joined(destination, file.relative_to(destination))}" for file in write_project(folder))
     if unused:
         options = ", ".join(f"--{option.replace('_', '-')}" for option in unused)
         output.talk(f"note: {options}: not used by a graphflow project; --build-type writes a ROS 2 package")
@@ -97,7 +97,7 @@ def _project(name: str, destination: Path, unused: Mapping[str, object]) -> None
 def _ros_package(
     name: str, destination: Path, build_type: str | None, template: str | None, settings: dict[str, Any]
 ) -> None:
-    new = _described(name, build_type, template, settings)
+    new = _complete(name, build_type, template, settings)
     folder = destination / name
     if folder.exists():
         raise UsageFault(f"{folder} already exists; choose another name or remove it")
@@ -125,7 +125,7 @@ def _ros_package(
     output.talk(f"next:\n  {_next(new, folder)}")
 
 
-def _described(name: str, build_type: str | None, template: str | None, settings: dict[str, Any]) -> Description:
+def _complete(name: str, build_type: str | None, template: str | None, settings: dict[str, Any]) -> Description:
     """Complete the settings of a new package with ROS 2's defaults.
 
     Raises:

@@ -132,7 +132,7 @@ def init(name: str) -> None:
     """
     folder = Path(name)
     check_new(folder)
-    for file in written(folder):
+    for file in write_project(folder):
         output.data(f"  {file}")
     go_there = "" if folder == Path() else f"  cd {folder}\n"
     output.talk(f"next:\n{go_there}  graphflow up graphs/{folder.resolve().name}.yaml")
@@ -158,7 +158,7 @@ def check_new(folder: Path) -> None:
         raise UsageFault(f"{word!r} is {owner}, which yours would hide; did you mean {meant!r}?")
 
 
-def written(folder: Path) -> Iterator[Path]:
+def write_project(folder: Path) -> Iterator[Path]:
     """Write a project and yield each of its files."""
     from graphflow.graph.schema import schema_text
     from graphflow.introspect.installation import requirement

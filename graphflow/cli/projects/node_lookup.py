@@ -42,7 +42,7 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
         UsageFault: There is none, or there are several, which the text lists.
         RunsWhenImported: The file is a program that runs its nodes itself.
     """
-    _refuse_turned(what, words)
+    _check_order(what, words)
     if what.endswith((".yaml", ".yml")):
         raise UsageFault(f"{what} is a graph file: graphflow up {what}")
     named, _, class_name = what.rpartition(":")
@@ -87,7 +87,7 @@ def _by_name(what: str, root: Path, words: Sequence[str]) -> type[Node]:
         module, _, name = what.rpartition(".")
         meant = nearest_module(module or name.lower(), str(root)) or module or f"nodes.{name.lower()}"
         raise UsageFault(f"{what!r}: write MODULE:CLASS, {meant}:{name}")
-    return _dotted(what) if "." in what else _named(what, root, words)
+    return _dotted(what) if "." in what else _node_by_name(what, root, words)
 
 
 def _source_line(error: BaseException | None) -> str:
@@ -98,7 +98,7 @@ def _source_line(error: BaseException | None) -> str:
     return "".join(["\n", *lines]).rstrip()
 
 
-def _refuse_turned(executable: str, words: Sequence[str]) -> None:
+def _check_order(executable: str, words: Sequence[str]) -> None:
     """Check that an executable does not come before its package.
 
     Raises:
@@ -133,7 +133,7 @@ def _executables_of(package: str) -> list[str]:
     return names + (own.executables if own is not None else [])
 
 
-def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
+def _node_by_name(what: str, root: Path, words: Sequence[str]) -> type[Node]:
     """Find a node by name: in the project, in installed distributions, or in graphflow."""
     own = project_nodes(root)
     if what in own:

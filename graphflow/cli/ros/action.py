@@ -7,8 +7,8 @@ from typing import Any
 import click
 
 from graphflow.cli import output
-from graphflow.cli.messages.echo_options import echo_options, taken
-from graphflow.cli.messages.types import agree, check_kind, names_of_type, refuse_turned, type_of_word, use_project
+from graphflow.cli.messages.echo_options import collect_options, echo_options
+from graphflow.cli.messages.types import agree, check_kind, check_order, names_of_type, type_of_word, use_project
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
@@ -94,7 +94,7 @@ def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
 @click.argument("name", metavar="ACTION")
 @echo_options
 def echo(name: str, **options: Any) -> int:
-    """Show the feedback of an action's goals as it arrives, until Ctrl-C."""
+    """Show the feedback of an action's goals. Ctrl-C stops it."""
     from graphflow.cli.messages import echoing
     from graphflow.introspect.messages.definitions import learn
 
@@ -103,7 +103,7 @@ def echo(name: str, **options: Any) -> int:
     with View(domain_id()) as view:
         [type_name, *_] = _types(view, full)
         learn(view, full, type_name)
-    return echoing.run(f"{full}{ACTION_FEEDBACK}", f"{type_name}{ACTION_FEEDBACK_TYPE}", taken(options))
+    return echoing.run(f"{full}{ACTION_FEEDBACK}", f"{type_name}{ACTION_FEEDBACK_TYPE}", collect_options(options))
 
 
 def _types(view: View, name: str) -> list[str]:
@@ -149,7 +149,7 @@ def send_goal(
     from graphflow.msgs.values import from_plain
 
     use_project()
-    refuse_turned(name, type_name, "action send_goal")
+    check_order(name, type_name, "action send_goal")
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         actions = view.cache.actions()

@@ -303,7 +303,7 @@ def plot(path: Path, names: tuple[str, ...], start: float, end: float | None, **
     use_project()
     chosen = plotting.PlotOptions(**options)
     chosen.check()
-    return plotting.recorded(path, names, start, end, chosen)
+    return plotting.plot_bag(path, names, start, end, chosen)
 
 
 @bag.command()
@@ -311,7 +311,7 @@ def plot(path: Path, names: tuple[str, ...], start: float, end: float | None, **
 @new_bag_options
 def recover(path: Path, **options: Any) -> int:
     """Repair a bag that was not closed properly, into a new one."""
-    return _copied((path,), "recovered", options)
+    return _copy_bags((path,), "recovered", options)
 
 
 bag.add_command(recover, "reindex")
@@ -325,9 +325,10 @@ bag.add_command(recover, "reindex")
 )
 @new_bag_options
 def convert(words: tuple[str, ...], inputs: tuple[str, ...], output_options: Path | None, **options: Any) -> int:
-    """Convert a bag: a .db3 file or a ROS 1 .bag to MCAP, to another compression, into one file or several.
+    """Convert a bag to another format, compression or file size.
 
-    If -o names an existing file, it is read as --output-options.
+    .db3 files and ROS 1 .bags become MCAP unless -s is given. If -o names an existing file, it is read as
+    --output-options.
     """
     from graphflow.bag import output_options as outputs
 
@@ -338,14 +339,14 @@ def convert(words: tuple[str, ...], inputs: tuple[str, ...], output_options: Pat
     if output_options is None and options["folder"] is not None and outputs.is_options(options["folder"]):
         output_options = options["folder"]
     if output_options is None:
-        return _copied(paths, "converted", options)
+        return _copy_bags(paths, "converted", options)
     for wanted in outputs.read(output_options):
         _note(output_options, wanted.remarks)
         options.update(folder=wanted.folder, storage=wanted.storage, compression=wanted.compression)
         options.update(
             max_bag_size=wanted.max_size, max_seconds=wanted.max_seconds, times=(wanted.start_ns, wanted.end_ns)
         )
-        _copied(paths, "converted", options, wanted.choice)
+        _copy_bags(paths, "converted", options, wanted.choice)
     return exits.OK
 
 
@@ -363,7 +364,7 @@ def filter_(path: Path, **options: Any) -> int:
     choice = take_choice(options, hidden=True)
     if choice.all:
         choice = replace(choice, all_services=True)
-    return _copied((path,), "filtered", options, choice)
+    return _copy_bags((path,), "filtered", options, choice)
 
 
 @bag.command()
@@ -371,7 +372,7 @@ def filter_(path: Path, **options: Any) -> int:
 @new_bag_options
 def merge(paths: tuple[Path, ...], **options: Any) -> int:
     """Merge several bags into a new one, in the order of time."""
-    return _copied(paths, "merged", options)
+    return _copy_bags(paths, "merged", options)
 
 
 def _note(path: Path, absent: list[str]) -> None:
@@ -396,7 +397,7 @@ def _progress(folder: Path) -> Callable[[int, int | None], None]:
     return show
 
 
-def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Choice | None = None) -> int:
+def _copy_bags(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Choice | None = None) -> int:
     from graphflow.bag.copying import beside, copy, times
     from graphflow.bag.info import size, topics_of
     from graphflow.bag.missing import check_messages, remarks

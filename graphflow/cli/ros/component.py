@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,6 +16,9 @@ from graphflow.names import did_you_mean
 from graphflow.supervisor.control.choosing import choose
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.workspace.executables import EXECUTABLES
+
+if TYPE_CHECKING:
+    from graphflow.supervisor.control.clients import Event
 
 ANSWER_LIMIT = 30.0
 """Seconds that the supervisor has to answer."""
@@ -138,7 +141,7 @@ def standalone(package: str, plugin: str, **options: Any) -> None:
 @click.argument("words", metavar="NUMBER|NODE...", nargs=-1, required=True)
 @_graph
 def unload(container: str, words: tuple[str, ...], graph: str | None) -> None:
-    """Unload nodes from a running process, by the numbers or names that `component list` shows."""
+    """Unload nodes from a running process. `component list` shows their numbers and names."""
     run = choose(graph)
     numbers = [int(word) if word.isdecimal() else _number_of(word, container, run.socket) for word in words]
     for number in numbers:
@@ -184,7 +187,7 @@ def _number_of(node: str, container: str, socket: str) -> int:
     return rows[name]
 
 
-def _ask(socket: str, **request: Any) -> dict[str, Any]:
+def _ask(socket: str, **request: object) -> Event:
     with ControlClient(socket) as client:
         client.send(**request)
         answer = next(client.receive(ANSWER_LIMIT), {"event": "error", "message": "the supervisor has gone"})

@@ -170,7 +170,7 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
 def _verdict(notes: Findings) -> str:
     """Return the last line if there is no fault; it must not vouch for what could not be seen."""
     if any(notes[kind] for kind in ("silent", "unreadable", "unseen", "kept_back")):
-        return "nothing wrong in what could be seen; the lines above say what could not"
+        return "no fault in what could be checked; the lines above list what could not"
     return "no fault; the lines above may be intended" if notes["hints"] else "nothing wrong"
 
 

@@ -7,7 +7,7 @@ import socket
 from collections import Counter
 
 from graphflow.cli import exits, output
-from graphflow.cli.temporary_node import visit
+from graphflow.cli.temporary_node import run_with_node
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.names import expand
 from graphflow.runtime.node import Node
@@ -26,7 +26,7 @@ def greet(topic: str, emit_period: float, print_period: float, *, once: bool) ->
     async def work(node: Node) -> int:
         return await _greet(node, full, emit_period, print_period, once=once)
 
-    return visit(work)
+    return run_with_node(work)
 
 
 async def _greet(node: Node, topic: str, emit_period: float, print_period: float, *, once: bool) -> int:

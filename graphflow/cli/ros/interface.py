@@ -52,7 +52,7 @@ class _Show(Verb):
 @click.option("--all-comments", is_flag=True, help="Show comments of nested types, too.")
 @click.option("--no-comments", is_flag=True, help="Leave out comments and empty lines.")
 def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
-    """Show a definition, with the fields of nested types indented below. `-` reads the type from standard input.
+    """Show the definition of a type. Fields of nested types are indented below; `-` reads the type from standard input.
 
     Your own definitions are shown with their comments; those that come with graphflow have none.
     """
@@ -147,7 +147,7 @@ interface.add_command(show, "info")
 @click.argument("type_name", metavar="TYPE")
 @click.option("--no-quotes", is_flag=True, help="Leave out the quotes around the message.")
 def proto(type_name: str, no_quotes: bool) -> None:
-    """Print a message, a service's request or an action's goal with all its fields, to be filled in."""
+    """Print a message with all its fields, to be filled in. Of a service it is the request, of an action the goal."""
     from graphflow.introspect.messages.echo import block, plain
     from graphflow.msgs import registry
 
@@ -191,7 +191,7 @@ def packages(only: str | None, as_json: bool) -> None:
 @interface.command()
 @click.option("--output", "-o", "folder", default="typings", show_default=True, help="Folder in the project.")
 def stubs(folder: str) -> int:
-    """Write stubs of a project's or workspace's types for editors and type checkers. Repeat after changing a type."""
+    """Write stubs of your types for editors and type checkers. Repeat after changing a type."""
     from graphflow.msgs import registry
     from graphflow.msgs import stubs as writer
     from graphflow.rclpy.messages.stubs import stubs as ros_stubs

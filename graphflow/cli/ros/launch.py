@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.arguments import GraphCommand
 from graphflow.cli.verbs import Verbs
-from graphflow.errors import Problem, UsageFault
+from graphflow.errors import Place, Problem, UsageFault
 from graphflow.names import did_you_mean
 from graphflow.workspace.packages import FOLDERS_BOUND
 
@@ -49,7 +49,7 @@ def launch() -> None:
 @click.option("-n", "--noninteractive", "--no-console", is_flag=True, help="Show logs instead of the console.")
 @click.option("--detach", is_flag=True, help="Leave it running in the background, as `up -d` does.")
 @click.option("--json", is_flag=True, help="Print events as lines of JSON, as `up --json` does.")
-@click.option("-d", "--debug", is_flag=True, help="Accepted for ROS 2; it shows no more.")
+@click.option("-d", "--debug", is_flag=True, help="Accepted for ROS 2; it has no effect.")
 @click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="Accepted for ROS 2; it is always shown.")
 def start(words: tuple[str, ...], **options: bool) -> int:
     """Start a launch file, of a package if one is named."""
@@ -72,6 +72,7 @@ def start(words: tuple[str, ...], **options: bool) -> int:
         }
     )
     verb, top = plan if is_shown else up, click.get_current_context().find_root()
+    # Run as `up` or `plan` below the top command, so that errors show that verb's usage.
     code = verb.main(
         [*(flag for flag, is_on in flags.items() if is_on), file, *given],
         prog_name=verb.name,
@@ -172,7 +173,7 @@ def convert(file: Path, target: Path | None) -> int:
 
     problems: list[Problem] = []
 
-    def complain(place: Any, message: str) -> None:
+    def complain(place: Place, message: str) -> None:
         problems.append(Problem(place, message))
 
     if target is not None and target.exists():
@@ -199,7 +200,7 @@ def _yaml(top: Item) -> str:
     class Dumper(yaml.SafeDumper):
         """A dumper that quotes every text that YAML 1.2 would read as another type."""
 
-        def ignore_aliases(self, data: Any) -> bool:
+        def ignore_aliases(self, data: object) -> bool:
             return True
 
     def text(dumper: yaml.SafeDumper, value: str) -> yaml.ScalarNode:

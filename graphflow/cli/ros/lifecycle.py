@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,6 +14,9 @@ from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
 from graphflow.names import did_you_mean, is_hidden
+
+if TYPE_CHECKING:
+    from graphflow.msgs.lifecycle_msgs.msg import State
 
 
 @click.group(cls=GraphVerbs)
@@ -50,7 +53,7 @@ def nodes(hidden: bool, count_nodes: bool, as_json: bool) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
     """Show the state of one lifecycle node or of all."""
-    found: dict[str, Any] = {}
+    found: dict[str, State] = {}
     with View(domain_id()) as view:
         for node in [_node(view, name)] if name else _managed(view, hidden=hidden):
             try:
@@ -89,16 +92,18 @@ def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
 @lifecycle.command(name="set")
 @click.argument("name", metavar="NODE")
 @click.argument("transition", metavar="TRANSITION")
-@click.option("--timeout", type=click.FloatRange(0, min_open=True), default=60.0, show_default=True, help="Seconds.")
+@click.option(
+    "--timeout", type=click.FloatRange(0, min_open=True), default=60.0, show_default=True, help="Seconds to wait."
+)
 def set_(name: str, transition: str, timeout: float) -> int:
-    """Trigger a transition: configure, activate, deactivate, cleanup or shutdown, or its number."""
+    """Trigger a transition. It is configure, activate, deactivate, cleanup or shutdown, or its number."""
     with View(domain_id()) as view:
         node = _node(view, name)
         ways = {t.transition.label: t.transition for t in transitions(view, node, timeout)}
         wanted = ways.get(transition) or next((t for t in ways.values() if str(t.id) == transition), None)
         if wanted is None:
             output.error(
-                f"{node} is {state(view, node, timeout).label}, and there is no transition {transition!r} from there"
+                f"{node} is {state(view, node, timeout).label}, which has no transition {transition!r}"
                 f"{did_you_mean(transition, ways)}"
             )
             output.talk("Unknown transition requested, available ones are:")

@@ -27,7 +27,7 @@ _ACTION_SECTIONS = (("Action Servers", Kind.PUBLISHER), ("Action Clients", Kind.
 
 
 class _NodeVerbs(GraphVerbs):
-    def turned(self, ctx: click.Context, words: Sequence[str]) -> str:
+    def order_hint(self, ctx: click.Context, words: Sequence[str]) -> str:
         word, *rest = words
         if word not in ("kill", "stop", "start", "restart", "status"):
             return ""

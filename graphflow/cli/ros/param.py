@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -21,7 +22,8 @@ from graphflow.names import did_you_mean, is_hidden
 from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
-    from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
+    from graphflow.graph.plan import Setting
+    from graphflow.msgs.rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
 
 
 @click.group(cls=GraphVerbs)
@@ -230,7 +232,7 @@ def delete(name: str, parameter: str, timeout: float) -> int:
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bool) -> int:
-    """Show the type, description and limits of parameters, of all if none is named."""
+    """Show the type, description and limits of parameters. Without PARAMETER, all are shown."""
     from graphflow.introspect.messages.echo import plain
 
     with View(domain_id()) as view:
@@ -243,13 +245,13 @@ def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bo
     if as_json:
         output.as_json([plain(found[n]) for n in wanted if n in found])
     else:
-        output.lines(_described(found[n]) for n in wanted if n in found)
+        output.lines(_describe(found[n]) for n in wanted if n in found)
     for text in missing:
         output.error(text)
     return exits.FAILED if missing else exits.OK
 
 
-def _described(d: ParameterDescriptor) -> str:
+def _describe(d: ParameterDescriptor) -> str:
     from graphflow.interface import TYPE_NAMES
 
     lines = [f"Parameter name: {d.name}", f"  Type: {TYPE_NAMES[d.type]}"]
@@ -257,7 +259,7 @@ def _described(d: ParameterDescriptor) -> str:
     lines.append("  Constraints:")
     lines += ["    Read only: true"] if d.read_only else []
     lines += ["    Dynamic typing: true"] if d.dynamic_typing else []
-    ranges: list[Any] = [*d.integer_range, *d.floating_point_range]
+    ranges: list[FloatingPointRange | IntegerRange] = [*d.integer_range, *d.floating_point_range]
     for limits in ranges:
         lines += [f"    Min value: {limits.from_value}", f"    Max value: {limits.to_value}"]
         lines += [f"    Step: {limits.step}"] if limits.step else []
@@ -272,7 +274,7 @@ def _described(d: ParameterDescriptor) -> str:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.argument("file", default="", metavar="")
 def dump(name: str, timeout: float, as_json: bool, file: str) -> None:
-    """Print the parameters of a node as a file for `param load`, `--params-file` and ROS 2."""
+    """Print the parameters of a node as a parameter file. `param load`, `--params-file` and ROS 2 read it."""
     from graphflow.graph.params_file import write
     from graphflow.runtime.parameters.values import from_message
 
@@ -324,7 +326,7 @@ def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
     return exits.FAILED if failed else exits.OK
 
 
-def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
+def _load(remote: RemoteParameters, settings: Mapping[str, Setting]) -> bool:
     """Set parameters, as far as possible; return whether any could not be set."""
     described = remote.describe(list(settings))
     present = dict(zip(described, remote.get(list(described)), strict=True))
@@ -347,7 +349,7 @@ def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
     return failed
 
 
-def _message(value: Any, declared: ParameterDescriptor) -> ParameterValue:
+def _message(value: object, declared: ParameterDescriptor) -> ParameterValue:
     """Convert a value to a message; an empty list gets the declared type."""
     from graphflow.interface import type_id
     from graphflow.runtime.parameters.values import to_message

@@ -62,7 +62,7 @@ def list_(as_json: bool) -> None:
 @click.option("--full-path", is_flag=True, help="Print the path of each.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def executables(package: str, full_path: bool, as_json: bool) -> int:
-    """List the executables that `graphflow run PACKAGE EXECUTABLE` can start."""
+    """List the executables of packages. `graphflow run PACKAGE EXECUTABLE` starts one."""
     from graphflow.workspace.executables import all_executables
     from graphflow.workspace.packages import find_workspace
 

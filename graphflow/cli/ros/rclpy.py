@@ -16,7 +16,7 @@ def rclpy() -> None:
 
 @rclpy.command()
 def enable() -> None:
-    """Make rclpy importable from this Python, also outside graphflow's commands."""
+    """Make rclpy importable from this Python. It is otherwise only in graphflow's own commands."""
     try:
         file = enabling.enable()
     except OSError as error:

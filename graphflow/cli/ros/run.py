@@ -13,7 +13,7 @@ from typing import NoReturn
 import click
 
 from graphflow.cli import output
-from graphflow.cli.placing import before_the_verb, behind
+from graphflow.cli.placing import before_the_verb, option_after_verb
 from graphflow.errors import GraphflowError, RunsWhenImported, UsageFault
 from graphflow.reading import found_text
 
@@ -50,10 +50,10 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
 
     if what.startswith("-"):
         raise UsageFault(f"run has no option {what!r}; the node's options come after its name")
-    if (option := behind(words)) is not None and not _mentions(what, option):
+    if (option := option_after_verb(words)) is not None and not _mentions(what, option):
         placed = before_the_verb(option, ["run", what, *words])
         output.talk(f"note: {option} after the node is passed to its program; graphflow's {placed}")
-    verb = _VERBS.get((what, *words[:1]))  # type: ignore[arg-type]
+    verb = _VERBS.get((what, words[0] if words else ""))
     command = [verb, *words[1:]] if verb else ["run", what, *words]
     if prefix or verb:
         try:

@@ -11,8 +11,8 @@ from typing import Any
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.messages.echo_options import echo_options, taken
-from graphflow.cli.messages.types import agree, check_kind, names_of_type, refuse_turned, type_of_word, use_project
+from graphflow.cli.messages.echo_options import collect_options, echo_options
+from graphflow.cli.messages.types import agree, check_kind, check_order, names_of_type, type_of_word, use_project
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
@@ -96,7 +96,7 @@ def _warn_if_shared(view: View, name: str) -> None:
 @click.argument("name", metavar="SERVICE")
 @echo_options
 def echo(name: str, **options: Any) -> int:
-    """Show the calls of a service with introspection as they are made, until Ctrl-C."""
+    """Show the calls of a service with introspection. Ctrl-C stops it."""
     from graphflow.cli.messages import echoing
     from graphflow.introspect.messages.definitions import learn
 
@@ -109,7 +109,7 @@ def echo(name: str, **options: Any) -> int:
         learn(view, full, type_name, (Kind.SERVICE,))
         if not view.cache.endpoints(Kind.PUBLISHER, f"{full}/_service_event"):
             output.talk(f"WARNING: {view.cache.without_events(full)}")
-    return echoing.run(f"{full}/_service_event", f"{type_name}_Event", taken(options))
+    return echoing.run(f"{full}/_service_event", f"{type_name}_Event", collect_options(options))
 
 
 @service.command(cls=ValueCommand, short_help="Call a service with a request in YAML.")
@@ -117,7 +117,9 @@ def echo(name: str, **options: Any) -> int:
 @click.argument("type_name", metavar="TYPE", required=False)
 @click.argument("values", nargs=-1)
 @click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call repeatedly at this rate, in Hz.")
-@click.option("--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds.")
+@click.option(
+    "--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds to wait."
+)
 @stdin_option
 @click.option("--json", "as_json", is_flag=True, help="Print the response as JSON.")
 def call(
@@ -136,7 +138,7 @@ def call(
     from graphflow.msgs.values import from_plain
 
     use_project()
-    refuse_turned(name, type_name, "service call")
+    check_order(name, type_name, "service call")
     full = expand(name, "/", "cli")
     if type_name is None:
         with View(domain_id()) as view:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.messages.echo_options import echo_options, taken
+from graphflow.cli.messages.echo_options import collect_options, echo_options
 from graphflow.cli.messages.plot_options import plot_options
 from graphflow.cli.messages.profiles import qos_options, take_qos
 from graphflow.cli.messages.types import names_of_type
@@ -89,11 +89,11 @@ def info(name: str, verbose: bool, as_json: bool) -> int:
     for title, endpoints_of_kind in (("Publisher count", publishers), ("Subscription count", subscriptions)):
         output.data(f"{chr(10) if verbose else ''}{title}: {len(endpoints_of_kind)}")
         if verbose:
-            output.lines(f"\n{_described(e, cache)}" for e in endpoints_of_kind)
+            output.lines(f"\n{_describe_endpoint(e, cache)}" for e in endpoints_of_kind)
     return exits.OK
 
 
-def _misfits(e: Entity, cache: GraphCache) -> list[str]:
+def _incompatibilities(e: Entity, cache: GraphCache) -> list[str]:
     """Describe why an endpoint does not connect to others on its topic, here or over DDS."""
     judged = [(other, verdict(e, other)) for other in cache.named(e.name)]
     return [
@@ -119,11 +119,11 @@ def _row(e: Entity, cache: GraphCache) -> dict[str, object]:
             "history": e.qos.history.name,
             "depth": e.qos.depth,
         },
-        "incompatible": _misfits(e, cache),
+        "incompatible": _incompatibilities(e, cache),
     }
 
 
-def _described(e: Entity, cache: GraphCache) -> str:
+def _describe_endpoint(e: Entity, cache: GraphCache) -> str:
     def span(ns: int) -> str:
         return "Infinite" if ns == INFINITE_NS else f"{ns} nanoseconds"
 
@@ -144,7 +144,7 @@ def _described(e: Entity, cache: GraphCache) -> str:
             f"  Deadline: {span(e.qos.deadline_ns)}",
             f"  Liveliness: {e.qos.liveliness.name}",
             f"  Liveliness lease duration: {span(e.qos.lease_ns)}",
-            *_misfits(e, cache),
+            *_incompatibilities(e, cache),
         ]
     )
 
@@ -154,17 +154,17 @@ def _described(e: Entity, cache: GraphCache) -> str:
 @click.argument("type_name", metavar="[TYPE]", required=False)
 @echo_options
 def echo(name: str, type_name: str | None, **options: Any) -> int:
-    """Show the messages of a topic as they arrive, until Ctrl-C."""
+    """Show the messages of a topic as they arrive. Ctrl-C stops it."""
     from graphflow.cli.messages import echoing
-    from graphflow.cli.messages.types import refuse_turned, use_project
+    from graphflow.cli.messages.types import check_order, use_project
 
     use_project()
-    refuse_turned(name, type_name, "topic echo")
+    check_order(name, type_name, "topic echo")
     whole, dot, field = name.partition(".")
     if dot:
         raise UsageFault(f"to show a field: graphflow topic echo {whole} --field {field}")
     full = expand(name, "/", "cli")
-    return echoing.run(full, _echo_type(full, type_name), taken(options))
+    return echoing.run(full, _echo_type(full, type_name), collect_options(options))
 
 
 def _warn_of_profile(view: View, full: str) -> None:
@@ -259,7 +259,7 @@ def find(type_name: str, count_topics: bool, include_hidden_topics: bool, as_jso
 @click.option("--wall-time", is_flag=True, help="Accepted for ROS 2; the wall clock is always used.")
 @click.option("--json", "as_json", is_flag=True, help="Print a line of JSON every second for each topic.")
 def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool, as_json: bool) -> int:  # noqa: ARG001 - ROS 2's word
-    """Show how often messages arrive, until Ctrl-C."""
+    """Show how often messages arrive. Ctrl-C stops it."""
     from graphflow.cli.messages import measuring
 
     topics = list(dict.fromkeys(expand(name, "/", "cli") for name in names))
@@ -272,7 +272,7 @@ def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool, as
 @click.option("-w", "--window", type=click.IntRange(1), default=100, show_default=True, help="Messages to average.")
 @click.option("--json", "as_json", is_flag=True, help="Print a line of JSON every second for each topic.")
 def bw(names: tuple[str, ...], window: int, as_json: bool) -> int:
-    """Show how many bytes arrive, until Ctrl-C."""
+    """Show how many bytes arrive. Ctrl-C stops it."""
     from graphflow.cli.messages import measuring
 
     return measuring.bw(list(dict.fromkeys(expand(name, "/", "cli") for name in names)), window, as_json=as_json)
@@ -283,7 +283,7 @@ def bw(names: tuple[str, ...], window: int, as_json: bool) -> int:
 @click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
 @click.option("--json", "as_json", is_flag=True, help="Print a line of JSON every second.")
 def delay(name: str, window: int, as_json: bool) -> int:
-    """Show how old messages are on arrival, by the stamps in their headers, until Ctrl-C."""
+    """Show how old messages are on arrival. Their headers' stamps give the age. Ctrl-C stops it."""
     from graphflow.cli.messages import measuring
 
     full = expand(name, "/", "cli")
@@ -297,7 +297,7 @@ def delay(name: str, window: int, as_json: bool) -> int:
 @click.option("--duration", type=click.FloatRange(0, min_open=True), help="Seconds to listen. [until Ctrl-C]")
 @plot_options
 def plot(names: tuple[str, ...], seconds: float, duration: float | None, **options: Any) -> int:
-    """Draw numbers of messages as curves, in the terminal or into a file, until Ctrl-C.
+    """Draw numbers of messages as curves, in the terminal or into a file. Ctrl-C stops it.
 
     \b
     graphflow topic plot /turtle1/pose.x,y
@@ -309,13 +309,13 @@ def plot(names: tuple[str, ...], seconds: float, duration: float | None, **optio
     chosen.check()
     with View(domain_id()) as view:
         cache, topics = view.cache, view.cache.topics(hidden=True)
-    meant = plotting.wanted(names, topics)
+    meant = plotting.parse_fields(names, topics)
     for full in meant:
         if full not in topics:
             near = cache.instead(full, [t for t in topics if not is_hidden(t)])
             raise CallError(f"topic {full} does not appear to be published yet{near}")
     _learn(*meant)
-    return plotting.live(meant, {full: topics[full][0] for full in meant}, chosen)
+    return plotting.plot_live(meant, {full: topics[full][0] for full in meant}, chosen)
 
 
 def _learn(*topics: str) -> None:
@@ -340,14 +340,18 @@ def _learn(*topics: str) -> None:
 @click.argument("name", metavar="TOPIC")
 @click.argument("type_name", metavar="TYPE", default="")
 @click.argument("values", nargs=-1)
-@click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Hz.")
+@click.option(
+    "-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Rate in Hz."
+)
 @click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
 @click.option("-t", "--times", type=click.IntRange(1), help="Publish this many messages and exit.")
 @click.option("-p", "--print", "print_every", type=click.IntRange(0), default=1, help="Print only every N-th message.")
 @click.option(
     "-w", "--wait-matching-subscriptions", type=click.IntRange(0), help="Wait for this many first. [1 with -1 or -t]"
 )
-@click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Most seconds to wait for them.")
+@click.option(
+    "--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Longest wait for them, in seconds."
+)
 @click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
 @click.option("-n", "--node-name", help="Name of the publishing node.")
 @stdin_option
@@ -360,12 +364,12 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     them, separated by `---`; each is published once.
     """
     from graphflow.cli.messages import publishing
-    from graphflow.cli.messages.types import agree, check_kind, refuse_turned, type_of_word, use_project
+    from graphflow.cli.messages.types import agree, check_kind, check_order, type_of_word, use_project
     from graphflow.errors import SupervisorError
     from graphflow.introspect.messages.definitions import learn
 
     use_project()
-    refuse_turned(name, type_name, "topic pub")
+    check_order(name, type_name, "topic pub")
     full = expand(name, "/", "cli")
     try:
         with View(domain_id()) as view:
@@ -391,7 +395,7 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     return publishing.run(full, drafts, publishing.PubOptions(**options, is_series=file is not None))
 
 
-def _draft(type_name: str, data: Any, place: str) -> Draft:
+def _draft(type_name: str, data: object, place: str) -> Draft:
     """Convert plain values to a message.
 
     Args:
@@ -401,11 +405,11 @@ def _draft(type_name: str, data: Any, place: str) -> Draft:
         UsageFault: The values do not fit.
     """
     from graphflow.cli.messages.publishing import Draft
-    from graphflow.cli.messages.stamps import taken as taken_stamps
+    from graphflow.cli.messages.stamps import split_stamps
     from graphflow.msgs import registry
     from graphflow.msgs.values import from_plain
 
-    values, stamps = taken_stamps(type_name, data)
+    values, stamps = split_stamps(type_name, data)
     try:
         return Draft(from_plain(registry.interface_class(type_name), values), stamps)
     except EncodeError as error:

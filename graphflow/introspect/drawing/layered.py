@@ -281,6 +281,7 @@ def _back_edges(names: Sequence[str], edges: Sequence[tuple[str, str]]) -> dict[
     back: dict[tuple[str, str], None] = {}
     done: set[str] = set()
     for start in starts:
+        # An explicit stack of nodes and next edges: a long chain of nodes would exceed Python's recursion limit.
         path: list[tuple[str, int]] = [(start, 0)] if start not in done else []
         open_ = {start}
         while path:

@@ -57,7 +57,7 @@ class Arrivals:
     def numbers(self) -> dict[str, float] | None:
         """Return messages per second and seconds between them; None while there are fewer than two messages."""
         gaps = self.gaps()
-        return None if gaps is None else {"rate": self.rate(gaps), **_named(gaps)}
+        return None if gaps is None else {"rate": self.rate(gaps), **_as_dict(gaps)}
 
     def text(self) -> str:
         """Format the rate as `ros2 topic hz` does; empty while there are fewer than two messages."""
@@ -87,7 +87,7 @@ class Delays:
     def numbers(self) -> dict[str, float] | None:
         """Return seconds of delay by statistic; None while there is no message."""
         spread = self.spread()
-        return None if spread is None else {"delay": spread.mean, **_named(spread)}
+        return None if spread is None else {"delay": spread.mean, **_as_dict(spread)}
 
     def text(self) -> str:
         """Format the delay as `ros2 topic delay` does; empty while there is no message."""
@@ -126,7 +126,7 @@ class Weights:
         sizes = self.sizes()
         if sizes is None:
             return None
-        return {"bytes_per_second": self.per_second(now_ns), "mean": sizes.mean, **_named(sizes)}
+        return {"bytes_per_second": self.per_second(now_ns), "mean": sizes.mean, **_as_dict(sizes)}
 
     def text(self, now_ns: int) -> str:
         """Format the bandwidth as `ros2 topic bw` does; empty while there are fewer than two messages."""
@@ -138,7 +138,7 @@ class Weights:
         return f"{total}/s from {sizes.window} messages\n\tMessage size mean: {mean} min: {least} max: {most}"
 
 
-def _named(spread: Spread) -> dict[str, float]:
+def _as_dict(spread: Spread) -> dict[str, float]:
     return {"min": spread.least, "max": spread.most, "std_dev": spread.deviation, "window": spread.window}
 
 

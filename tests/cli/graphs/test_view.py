@@ -11,7 +11,7 @@ from importlib.machinery import ModuleSpec
 import pytest
 
 from graphflow.cli.graphs import view as module
-from graphflow.cli.graphs.view import _is_loopback, _shown
+from graphflow.cli.graphs.view import _is_loopback, _url_host
 from graphflow.introspect.installation import requirement
 from tests.cases import slow
 from tests.conftest import Machine
@@ -26,7 +26,7 @@ def test_addresses() -> None:
 
 def test_addresses_that_viewers_can_open() -> None:
     """IPv6 in brackets, and for all addresses the name of this machine."""
-    assert [_shown(host) for host in ("127.0.0.1", "::1", "0.0.0.0", "localhost")] == [
+    assert [_url_host(host) for host in ("127.0.0.1", "::1", "0.0.0.0", "localhost")] == [
         *("127.0.0.1", "[::1]"),
         *(socket.gethostname(), "localhost"),
     ]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.cli.messages.conditions import compiled
+from graphflow.cli.messages.conditions import compile_condition
 from graphflow.errors import UsageFault
 from graphflow.msgs.std_msgs.msg import Int32
 
 
 def test_a_condition() -> None:
     """Is Python, of a message m."""
-    holds = compiled("m.data % 3 == 1")
+    holds = compile_condition("m.data % 3 == 1")
     assert [n for n in range(7) if holds(Int32(data=n))] == [1, 4]
 
 
@@ -19,18 +19,18 @@ def test_a_condition() -> None:
 def test_what_is_no_condition(text: str) -> None:
     """Says how one is written."""
     with pytest.raises(UsageFault, match=r"is not an expression: .*; example: 'm\.data > 3'"):
-        compiled(text)
+        compile_condition(text)
 
 
 def test_a_condition_that_fails() -> None:
     """Says why."""
     with pytest.raises(UsageFault, match=r"'m\.dat': AttributeError: .*dat"):
-        compiled("m.dat")(Int32())
+        compile_condition("m.dat")(Int32())
 
 
 def test_a_field_without_its_message() -> None:
     """Is answered with both; another name with how a message is called."""
     with pytest.raises(UsageFault, match=r"name 'data' is not defined; write m\.data$"):
-        compiled("data > 3")(Int32())
+        compile_condition("data > 3")(Int32())
     with pytest.raises(UsageFault, match=r"name 'msg' is not defined; the message is m, as in m\.data > 3$"):
-        compiled("msg.data > 3")(Int32())
+        compile_condition("msg.data > 3")(Int32())

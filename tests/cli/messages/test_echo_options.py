@@ -7,7 +7,7 @@ from typing import Any
 import click
 from click.testing import CliRunner
 
-from graphflow.cli.messages.echo_options import EchoOptions, echo_options, taken
+from graphflow.cli.messages.echo_options import EchoOptions, collect_options, echo_options
 from graphflow.qos import BEST_AVAILABLE, Reliability
 
 
@@ -18,7 +18,7 @@ def test_every_option_has_its_place() -> None:
     @click.command()
     @echo_options
     def echo(**options: Any) -> None:
-        found.append(taken(options))
+        found.append(collect_options(options))
 
     runner = CliRunner()
     assert runner.invoke(echo, []).exit_code == 0

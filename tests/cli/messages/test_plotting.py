@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.bag.contents import Topic
-from graphflow.cli.messages.plotting import PlotOptions, _finished, _show, curves_of, wanted
+from graphflow.cli.messages.plotting import PlotOptions, _finished, _show, curves_of, parse_fields
 from graphflow.errors import UsageFault
 from graphflow.introspect.drawing.curves import Curve
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
@@ -39,7 +39,7 @@ TOPICS = {"/pose": ["turtlesim/msg/Pose"], "/a": [], "/a/b": []}
 )
 def test_words(words: list[str], meant: dict[str, list[str]]) -> None:
     """A field follows a dot, or a slash where a topic is above it."""
-    assert wanted(words, TOPICS) == meant
+    assert parse_fields(words, TOPICS) == meant
 
 
 def test_labels() -> None:

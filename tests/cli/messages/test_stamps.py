@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.cli.messages.stamps import stamp, taken
+from graphflow.cli.messages.stamps import split_stamps, stamp
 from graphflow.msgs.geometry_msgs.msg import PoseStamped
 
 POSE = "geometry_msgs/msg/PoseStamped"
@@ -28,7 +28,7 @@ POSE = "geometry_msgs/msg/PoseStamped"
 )
 def test_words_for_times(type_name: str, values: Any, kept: Any, paths: list[tuple[str, ...]]) -> None:
     """Only where the field is a header or a time; elsewhere they are values, and may be wrong ones."""
-    assert taken(type_name, values) == (kept, paths)
+    assert split_stamps(type_name, values) == (kept, paths)
 
 
 def test_stamping() -> None:

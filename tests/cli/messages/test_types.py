@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.messages.types import agree, check_kind, names_of_type, refuse_turned, use_project
+from graphflow.cli.messages.types import agree, check_kind, check_order, names_of_type, use_project
 from graphflow.errors import UsageFault
 from graphflow.msgs import registry
 
@@ -80,11 +80,11 @@ def test_words_in_another_order() -> None:
     with pytest.raises(
         UsageFault, match=r"^the name comes first, then its type: graphflow topic pub /t a/msg/B \.\.\.$"
     ):
-        refuse_turned("a/msg/B", "/t", "topic pub")
+        check_order("a/msg/B", "/t", "topic pub")
     with pytest.raises(UsageFault, match=r"^the values come last, .*: graphflow service call /t TYPE '\{x: 1\}'$"):
-        refuse_turned("{x: 1}", "/t", "service call")
+        check_order("{x: 1}", "/t", "service call")
     for name, type_name in (("/t", "a/msg/B"), ("t", "/x"), ("t", None), ("a/t", "a/B")):
-        refuse_turned(name, type_name, "topic pub")
+        check_order(name, type_name, "topic pub")
 
 
 def test_a_type_by_its_last_part(capsys: pytest.CaptureFixture[str]) -> None:
