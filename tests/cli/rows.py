@@ -1,4 +1,4 @@
-"""A node's row of `ps`, for tests of what is made of such rows."""
+"""Rows of `ps` for tests."""
 
 from __future__ import annotations
 

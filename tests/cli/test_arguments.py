@@ -26,7 +26,7 @@ def test_options_as_arguments(option: str, words: list[str], argument: str | Non
 
 @pytest.mark.parametrize("verb", ["up", "launch", "check", "plan", "explain"])
 def test_an_argument_as_an_option(machine: Machine, verb: str) -> None:
-    """Is told as it is written."""
+    """An argument written as an option is corrected."""
     text = machine.look(verb, "talker_listener", "--rate", "2.0", code=2)
     assert "No such option '--rate'. An argument of the graph is written as rate:=2.0; up GRAPH --show-args" in text
 
@@ -39,16 +39,16 @@ def test_an_argument_as_an_option(machine: Machine, verb: str) -> None:
     ],
 )
 def test_options_of_nodes(machine: Machine, words: list[str], told: str) -> None:
-    """What a graph file has in their place is told."""
+    """The error for a node's option has the entry of the graph file that replaces it."""
     assert told in machine.look("check", "talker_listener", *words, code=2)
 
 
 def test_a_misspelt_option(machine: Machine) -> None:
-    """Is one."""
+    """A misspelt option is not mistaken for an argument."""
     assert "Did you mean '--json'?" in machine.look("up", "talker_listener", "--jso", code=2)
 
 
 def test_an_argument_behind_a_dash() -> None:
-    """It is told as a whole, though options of one dash end after a letter."""
+    """An argument behind one dash is corrected as a whole, although click reads only one letter."""
     assert as_argument("-r", ["a.launch.py", "-rate:=3"]) == "rate:=3"
     assert as_argument("-r", ["a.launch.py", "-r", "3"]) == "r:=3"

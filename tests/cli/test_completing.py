@@ -1,4 +1,4 @@
-"""What TAB completes: words of the command tree, live names, types and messages."""
+"""TAB completion of verbs, live names, types and messages."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_without_a_graph(machine: Machine, words: str, partial: str, found: list
 
 @pytest.fixture
 def there(standing: Machine) -> Iterator[None]:
-    """The graph that stands is the one that is asked."""
+    """Completions come from the standing graph."""
     with patch.dict(os.environ, standing.env):
         yield
 
@@ -76,7 +76,7 @@ def test_live_names(words: str, partial: str, found: list[str]) -> None:
 
 
 def test_types_of_a_project(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Are among the others."""
+    """A project's types are among the completions."""
     folder = tmp_path / "interfaces" / "completed_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Thing.msg").write_text("int32 x\n")

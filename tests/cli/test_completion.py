@@ -28,7 +28,7 @@ from tests.conftest import Machine
     ],
 )
 def test_a_line_is_parted(line: str, words: list[str], partial: str) -> None:
-    """As a shell takes it; a quotation that does not end is the last word."""
+    """A line is split as by a shell; an unclosed quotation is the last word."""
     assert split_line(line) == (words, partial)
 
 
@@ -53,7 +53,7 @@ COMP_CWORD=$((${{#COMP_WORDS[@]}}-1)); _graphflow; printf '%s\\n' "${{COMPREPLY[
     ],
 )
 def test_bash(machine: Machine, tmp_path: Path, line: str, found: list[str]) -> None:
-    """The script asks, and takes what it is told as it is, spaces and all."""
+    """The script passes completions on unchanged, including spaces."""
     script = tmp_path / "script"
     script.write_text(SCRIPTS["bash"])
     text = BASH.format(path=Path(sys.executable).parent, script=script, line=line)
@@ -63,7 +63,7 @@ def test_bash(machine: Machine, tmp_path: Path, line: str, found: list[str]) -> 
 
 @pytest.mark.parametrize("shell", ["zsh", "fish"])
 def test_other_shells_read_theirs(shell: str, tmp_path: Path) -> None:
-    """Without a word, where the shell is installed."""
+    """zsh and fish load the script without errors, where they are installed."""
     if shutil.which(shell) is None:
         pytest.skip(f"there is no {shell}")
     (tmp_path / "script").write_text(SCRIPTS[shell])
@@ -72,7 +72,7 @@ def test_other_shells_read_theirs(shell: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("shell", list(SCRIPTS))
 def test_install(machine: Machine, tmp_path: Path, shell: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One command; the shell is known from the environment, and what is left to do is told."""
+    """`install` finds the shell from the environment, and prints what remains to be done."""
     monkeypatch.setitem(machine.env, "HOME", str(tmp_path))
     monkeypatch.setitem(machine.env, "SHELL", f"/usr/bin/{shell}")
     text = machine.look("completion", "install")

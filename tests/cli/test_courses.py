@@ -1,4 +1,4 @@
-"""What ROS 2's courses type, typed in a real shell with `ros2` for `graphflow`, beside a turtlesim that runs."""
+"""Commands of ROS 2's courses in a real shell, with `ros2` for `graphflow`, beside a running turtlesim."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def turtlesim(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 
 
 def typed(machine: Machine, place: Path, line: str) -> tuple[str, int]:
-    """What a line prints in bash, errors too, and its exit code."""
+    """Run a line in bash; return its output, including errors, and its exit code."""
     path = f"{Path(sys.executable).parent}:{machine.env['PATH']}"
     env = machine.env | {"PLACE": str(place), "PATH": path}
     done = subprocess.run(
@@ -114,7 +114,7 @@ SAID = [
 
 @pytest.mark.parametrize(("line", "said"), SAID, ids=[f"{n:02} {line[5:40]}" for n, (line, _) in enumerate(SAID)])
 def test_what_is_said(turtlesim: Machine, place: Path, line: str, said: str) -> None:
-    """To the letter, as ROS 2 says it."""
+    """The output is exactly that of ROS 2."""
     assert typed(turtlesim, place, line) == (said, 0)
 
 
@@ -180,7 +180,7 @@ LIKE = [
 
 @pytest.mark.parametrize(("line", "like"), LIKE, ids=[f"{n:02} {line[5:40]}" for n, (line, _) in enumerate(LIKE)])
 def test_what_is_said_with_numbers(turtlesim: Machine, place: Path, line: str, like: str) -> None:
-    """As ROS 2 says it, whatever the numbers are."""
+    """The output is that of ROS 2, except for numbers."""
     text, code = typed(turtlesim, place, line)
     assert re.search(like, text), text
     assert "Traceback" not in text
@@ -207,7 +207,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("line", "told"), MISTAKES, ids=[line[5:45] for line, _ in MISTAKES])
 def test_mistakes_of_the_slides(turtlesim: Machine, place: Path, line: str, told: str) -> None:
-    """Are told with what was meant."""
+    """Mistakes copied from slides are corrected."""
     text, code = typed(turtlesim, place, line)
     assert re.search(told, text), text
     assert code in (1, 2)

@@ -17,7 +17,7 @@ def run(code: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_ctrl_c_while_commands_are_imported() -> None:
-    """It ends the process at once, with exit code 0 and without a traceback."""
+    """Ctrl-C ends the process at once, with exit code 0 and without a traceback."""
     done = run(f"import graphflow.cli.entry; {INTERRUPTED}")
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
@@ -30,7 +30,7 @@ def test_without_it_there_is_a_traceback() -> None:
 
 
 def test_who_ignores_ctrl_c_goes_on_ignoring_it() -> None:
-    """As what a shell has put in the background."""
+    """A process that ignores SIGINT, as in a shell's background, keeps ignoring it."""
     done = run(
         f"import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); import graphflow.cli.entry; {INTERRUPTED}"
     )
@@ -45,7 +45,7 @@ def test_a_command_has_pythons_own_handler() -> None:
 
 
 def test_a_graph_is_announced_before_the_command_is_imported(tmp_path: Path) -> None:
-    """As long as the command lasts: a `down` that begins meanwhile imports as much before it looks."""
+    """The announcement lasts as long as the command, since a `down` given meanwhile takes as long to import."""
     code = (
         "import os, sys, graphflow.cli.entry as entry; sys.argv = ['graphflow', 'up']; "
         "assert 'click' not in sys.modules; sys.modules['graphflow.cli.main'] = sys; "
@@ -67,7 +67,7 @@ def test_the_package_is_a_command() -> None:
 
 
 def test_what_the_user_wants_done_at_the_end() -> None:
-    """Is done where a node has been; else the process ends at once."""
+    """`atexit` functions run if the process has run a node; otherwise it ends at once."""
     code = "import atexit, sys, graphflow.cli.main as m; atexit.register(print, 'bye'); m.main = lambda: sys.exit(3)"
     end = "import graphflow.cli.entry as e; e.main()"
     with_node = run(f"import graphflow.runtime.node; {code}; {end}")

@@ -41,7 +41,7 @@ def test_the_codes() -> None:
     ],
 )
 def test_what_a_command_ends_with(error: errors.GraphflowError, code: int) -> None:
-    """Whose fault it was decides: the words or file given, nobody there, too late, or anything else."""
+    """The exit code tells wrong usage, no graph, a timeout and other failures apart."""
     assert exit_code(error) == code
 
 

@@ -81,7 +81,7 @@ def test_every_verb_is_there(verb: str, capsys: pytest.CaptureFixture[str]) -> N
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
-    """`--version` tells the package's version."""
+    """`--version` prints the package's version."""
     assert ends("--version") == exits.OK
     assert capsys.readouterr().out == f"graphflow, version {graphflow.__version__}\n"
 
@@ -138,7 +138,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 def test_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Misspelt words come with the nearest right one, on stderr, and exit code 2."""
+    """For misspelt words the nearest is suggested on stderr, with exit code 2."""
     assert ends(*words) == exits.USAGE
     out, err = capsys.readouterr()
     assert out == ""
@@ -180,7 +180,7 @@ def test_how_a_command_ends(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """What a verb returns is the exit code; an error of ours is one line on stderr; Ctrl-C is no failure."""
+    """A verb's result is the exit code; an error of ours is one line on stderr; Ctrl-C is not a failure."""
 
     def run() -> int | None:
         if isinstance(outcome, BaseException):
@@ -197,7 +197,7 @@ def test_how_a_command_ends(
 def test_a_graph_that_is_being_started(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Is told by every verb that finds nothing running, once; without a run directory there is none."""
+    """Every verb that finds no graph mentions one that is being started, once."""
     monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", free_endpoint())
     announced = Announcement()
     announced.begin(tmp_path / "chase.yaml")
@@ -223,7 +223,7 @@ def test_a_graph_that_is_being_started(
     ],
 )
 def test_a_standard_stream_that_is_closed(streams: str, code: int, told: str) -> None:
-    """What was asked for has to be readable somewhere; the rest may be missing."""
+    """A command's result must be readable; other streams may be closed."""
     command = f"{sys.executable} -m graphflow schema {streams}"
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=30)
     assert (done.returncode, done.stderr) == (code, told)

@@ -43,7 +43,7 @@ def test_it_is_put_where_the_transport_looks(tmp_path: Path) -> None:
 
 
 def test_without_options_the_environment_stands() -> None:
-    """What it says already is not taken away."""
+    """Without options, the environment is not changed."""
     with patch.dict(os.environ, {CONNECT_VARIABLE: "tcp/robot:7447"}):
         apply_reach(**given())
         assert os.environ[CONNECT_VARIABLE] == "tcp/robot:7447"
@@ -51,7 +51,7 @@ def test_without_options_the_environment_stands() -> None:
 
 
 def test_an_endpoint_that_is_misspelt() -> None:
-    """It is wrong usage, told before anybody is asked, and changes nothing."""
+    """A misspelt endpoint is wrong usage, found before any connection, and changes nothing."""
     with pytest.raises(UsageFault, match="--connect: "):
         apply_reach(("tcp/robot:7447", "robot"), None)
     assert CONNECT_VARIABLE not in os.environ

@@ -37,7 +37,7 @@ from graphflow.cli.other_words import _LINES, _OPTIONS, _SENTENCES, answer, opti
     ],
 )
 def test_lines(path: str, words: str, line: str) -> None:
-    """The whole line is told, with types as they are written now."""
+    """The error has the whole command, with types in ROS 2's notation."""
     assert answer(path, words.split()) == f"no such command {words.split()[0]!r}; did you mean: graphflow {line}"
 
 
@@ -54,7 +54,7 @@ def test_lines(path: str, words: str, line: str) -> None:
     ],
 )
 def test_sentences(path: str, words: str, text: str) -> None:
-    """Where there is no line, the reason is told."""
+    """If there is no command, the error has the reason."""
     told = answer(path, words.split())
     assert told.startswith(f"no such command {words.split()[0]!r}: ")
     assert text in told
@@ -62,7 +62,7 @@ def test_sentences(path: str, words: str, text: str) -> None:
 
 @pytest.mark.parametrize("line", _OPTIONS)
 def test_options(line: str) -> None:
-    """Each is told, and is none of its verb's."""
+    """Each option of another tool has an answer, and is not one of the verb's own."""
     path, _, option = line.rpartition(" ")
     done = CliRunner().invoke(cli, [*path.split(), option])
     assert isinstance(done.exception, SystemExit)
@@ -72,12 +72,12 @@ def test_options(line: str) -> None:
 
 
 def test_words_that_are_not_known() -> None:
-    """They have no answer here."""
+    """Unknown words have no answer."""
     assert answer("", ["frobnicate"]) == answer("topic", ["core"]) == answer("topic", ["ech"]) == ""
 
 
 def found(words: list[str]) -> list[str]:
-    """The words of a line that are no verb and no option, of which there is none left where the line is a command."""
+    """Return the words of a line that are neither verbs nor options; none if the line is a command."""
     command: click.Command = cli
     context = click.Context(cli)
     while words and isinstance(command, click.Group) and not words[0].startswith("-"):
@@ -90,7 +90,7 @@ def found(words: list[str]) -> list[str]:
 
 @pytest.mark.parametrize("key", [*_LINES, *_SENTENCES])
 def test_no_word_is_a_command(key: str) -> None:
-    """Else nobody would be told."""
+    """A word that is a command would never get its answer."""
     assert found(key.split()) != []
 
 

@@ -1,4 +1,4 @@
-"""Who reads what: data on stdout, talk on stderr."""
+"""Streams of output: data on stdout, messages to the user on stderr."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def test_data_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_talk_goes_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:
-    """An error says that it is one, once."""
+    """An error is marked as one, once."""
     output.talk("by the way")
     output.error("too late")
     output.error("error: too late")

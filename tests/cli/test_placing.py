@@ -19,7 +19,7 @@ from graphflow.cli.placing import before_the_verb, option_after_verb
     ],
 )
 def test_the_option_that_is_behind(words: str, option: str | None) -> None:
-    """Is found among the words that may be graphflow's."""
+    """An option after the verb is found, among the words that may be graphflow's."""
     assert option_after_verb(words.split()) == option
 
 

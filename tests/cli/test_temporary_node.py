@@ -28,7 +28,7 @@ def _here(standing: Machine) -> Iterator[None]:
 
 
 def test_what_the_work_returns_is_the_exit_code() -> None:
-    """And it runs with a node that is up, hidden, and has neither parameters nor a voice in the log."""
+    """The work's result is the exit code; its node is up, hidden, and without parameters and /rosout."""
     name, seen = f"/_graphflow_{os.getpid()}", set[str]()
 
     async def work(node: Node) -> int:
@@ -45,7 +45,7 @@ def test_what_the_work_returns_is_the_exit_code() -> None:
 
 
 def test_a_name_may_be_given() -> None:
-    """As `topic pub --node-name` does."""
+    """A node can have a name, as with `topic pub --node-name`."""
 
     async def work(node: Node) -> int:
         return int(node.full_name == "/visitor")
@@ -97,7 +97,7 @@ def test_an_error_of_the_work_is_raised_and_the_node_is_gone(standing: Machine) 
 
 
 def test_late_imports_are_nobodys_business() -> None:
-    """Nobody watches whether a verb's own loop is held up, as by what it imports late."""
+    """The watchdog is off: a verb's late imports may block its own loop."""
 
     async def work(node: Node) -> int:
         return int(node.context.search.watchdog.is_closed)
@@ -106,7 +106,7 @@ def test_late_imports_are_nobodys_business() -> None:
 
 
 def test_what_goes_wrong_is_told_plainly(capsys: pytest.CaptureFixture[str]) -> None:
-    """In words of a command, once, and without what a terminal would obey."""
+    """Warnings are printed as messages of the command, once, and without control characters."""
 
     async def work(node: Node) -> int:
         node.log.warning("beware of %s", "\x1b[2Jothers")

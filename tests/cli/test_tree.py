@@ -10,7 +10,7 @@ from graphflow.cli.tree import verbs
 
 
 def test_verbs_arguments_and_options() -> None:
-    """As the console completes them."""
+    """The tree has the verbs, arguments and options that the console completes."""
     tree = verbs()
     assert {"up", "topic", "param", "restart"} <= set(tree)
     echo = tree["topic"]["commands"]["echo"]

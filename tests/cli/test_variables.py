@@ -31,7 +31,7 @@ def test_all_that_are_read_are_known() -> None:
     ],
 )
 def test_a_misspelt_variable(variable: str, meant: str | None) -> None:
-    """Is told with the one that was probably meant; another's own is left alone."""
+    """A misspelt variable is reported with the probable one; unrelated variables are not."""
     assert list(misspelt([variable])) == ([f"nothing reads {variable}; did you mean {meant}?"] if meant else [])
 
 

@@ -12,7 +12,7 @@ from tests.conftest import Machine
 
 @pytest.mark.parametrize("words", NOT_NEEDED)
 def test_what_ros2_has_and_graphflow_does_without(words: str) -> None:
-    """A line says so, and why or what to use; the table has nothing that is there by now."""
+    """The error has the reason or the alternative; no entry of the table is an existing verb."""
     done = CliRunner().invoke(cli, [*words.split(), "/x"])
     assert done.exit_code == 2
     assert f"graphflow has no '{words}': " in " ".join(done.output.split())
@@ -53,13 +53,13 @@ def test_a_name_behind_a_verb_that_tells_of_all(words: str, one: str) -> None:
     "words", ["node list", "topic list", "service list", "action list", "param list", "topic info /x"]
 )
 def test_words_about_the_daemon(standing: Machine, words: str) -> None:
-    """They change nothing, as there is none."""
+    """Options about the daemon are accepted and have no effect."""
     plain = standing.look_and_end(*words.split())
     assert standing.look_and_end(*words.split(), "--no-daemon", "--spin-time", "5", "--use-sim-time") == plain
 
 
 def test_an_option_that_means_something_else_here() -> None:
-    """It keeps its meaning; verbs that would go by simulated time do not say that they do."""
+    """An option with another meaning keeps it; long-running verbs do not accept `--use-sim-time`."""
     for words in ("topic plot", "topic pub", "topic delay"):
         done = CliRunner().invoke(cli, [*words.split(), "--use-sim-time", "/x"])
         assert "No such option '--use-sim-time'" in done.output

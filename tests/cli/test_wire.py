@@ -25,7 +25,7 @@ def test_a_profile_chooses_definitions(machine: Machine) -> None:
 
 @slow
 def test_peers_of_another_profile_are_told_apart(machine: Machine) -> None:
-    """A graph on Kilted's wire has Kilted's types; a node on Jazzy's says what is wrong and what to do."""
+    """A graph on Kilted's wire has Kilted's types; a node on Jazzy's reports the difference and the remedy."""
     machine.run("up", "-d", "turtlesim", "--wire", "kilted")
     assert "/turtle1/pose [turtlesim_msgs/msg/Pose]" in machine.run("topic", "list", "-t")
     words = ("nodes.turtle_follower:TurtleFollower", "__ns:=/turtle1", "__node:=other", "goal:=/turtle2/pose")

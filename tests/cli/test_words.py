@@ -31,7 +31,7 @@ FLAGS, VALUED = frozenset({"-1", "--once"}), frozenset({"-r", "--rate", "-t"})
 
 
 def parsed(command: click.Command, words: list[str]) -> dict[str, Any]:
-    """What click makes of the words after a command, without running it."""
+    """Parse the words after a command with click, without running it."""
     return command.make_context(command.name or "", list(words)).params
 
 
@@ -55,7 +55,7 @@ def test_the_unquoted_command_of_the_slides() -> None:
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="asks bash itself")
 def test_bash_splits_it_so() -> None:
-    """The words of these tests are those that bash really makes."""
+    """bash really splits the lines into the words of these tests."""
     done = subprocess.run(
         ["bash", "-c", f"printf '%s\\n' {CIRCLE} -1"], capture_output=True, text=True, check=True, timeout=20
     )
@@ -142,7 +142,7 @@ def test_the_value_of_a_parameter(line: str, value: tuple[str, ...]) -> None:
 
 
 def test_an_unknown_option_is_left_to_click() -> None:
-    """Two dashes and a word are an option, and click knows the nearest."""
+    """An unknown long option is left to click, which suggests the nearest."""
     with pytest.raises(click.NoSuchOption, match="--rat") as caught:
         parsed(pub, ["/t", "T", "--rat", "5"])
     assert caught.value.possibilities
@@ -150,7 +150,7 @@ def test_an_unknown_option_is_left_to_click() -> None:
 
 
 def test_what_is_missing_is_left_to_click() -> None:
-    """Too few words are a usage error that names the missing one."""
+    """Missing arguments are click's usage error."""
     with pytest.raises(click.MissingParameter):
         parsed(pub, [])
 
@@ -167,7 +167,7 @@ def test_what_is_missing_is_left_to_click() -> None:
     ],
 )
 def test_values_that_are_no_message(words: list[str], message: str) -> None:
-    """What is not YAML, or lost its spaces, is wrong usage and says how to write it."""
+    """Invalid YAML or missing spaces are wrong usage, with a correction."""
     with pytest.raises(UsageFault) as caught:
         message_values(words)
     assert message in str(caught.value)
@@ -176,13 +176,13 @@ def test_values_that_are_no_message(words: list[str], message: str) -> None:
 @settings(derandomize=True, max_examples=count(few=75, full=300), deadline=None)
 @given(st.lists(st.sampled_from(["-1", "-r", "5", "{a:", "-2}", "[", "]", "x", "--", "--no", "--rate=3", "'", "-r5"])))
 def test_no_word_is_lost(words: list[str]) -> None:
-    """Splitting moves words, and never makes, changes or drops one; only separators are its own."""
+    """Splitting only reorders words; it adds only separators."""
     found = split_values(words, FLAGS, VALUED)
     assert sorted(w for w in found if w != "--") == sorted(w for w in words if w != "--")
 
 
 def test_values_from_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In place of words, not beside them."""
+    """Standard input replaces the words; both are an error."""
     monkeypatch.setattr(sys, "stdin", io.StringIO("a: 2\nb: 3\n"))
     assert message_values([], from_stdin=True) == {"a": 2, "b": 3}
     with pytest.raises(UsageFault, match=r"--stdin reads the values from standard input; leave out '\{a:'"):
@@ -190,7 +190,7 @@ def test_values_from_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_messages_in_a_file(tmp_path: Path) -> None:
-    """As `topic echo` prints them, each with its line; what says nothing is passed over."""
+    """Messages are read as printed by `topic echo`, with their lines; empty documents are skipped."""
     file = tmp_path / "said.yaml"
     file.write_text("---\ndata: a\n---\n---\n\n# a remark\ndata: |\n  one\n  --- two\n--- {data: c}\n---\n")
     found = [(2, "a"), (6, "one\n--- two\n"), (10, "c")]
@@ -218,7 +218,7 @@ def test_files_without_messages(tmp_path: Path, data: bytes | None, told: str) -
 
 
 def test_messages_in_a_file_of_another_kind(tmp_path: Path) -> None:
-    """A FIFO without a writer keeps nobody waiting."""
+    """A FIFO without a writer does not block the command."""
     os.mkfifo(tmp_path / "fifo")
     with pytest.raises(UsageFault, match="fifo: it is not a regular file"):
         messages_in(tmp_path / "fifo")
@@ -249,7 +249,7 @@ def test_messages_in_a_file_of_another_kind(tmp_path: Path) -> None:
     ],
 )
 def test_values_with_a_slip(text: str, meant: str) -> None:
-    """Are answered with the ones to type."""
+    """Common mistakes in values are corrected."""
     with pytest.raises(UsageFault, match=re.escape(f"did you mean {meant!r}?")):
         message_values([text])
 
@@ -268,13 +268,13 @@ def test_values_with_a_slip(text: str, meant: str) -> None:
     ],
 )
 def test_values_without_one(text: str) -> None:
-    """Are as they are."""
+    """Correct values are not changed."""
     message_values([text])
     assert repair("{x: [}") is None
 
 
 def test_an_option_with_too_few_dashes_or_words() -> None:
-    """It is no value of a message."""
+    """An option with a missing dash or value is an error, not a value of the message."""
     with pytest.raises(click.NoSuchOption) as caught:
         parsed(pub, ["/t", "T", "-rate", "5"])
     assert caught.value.possibilities == ["--rate"]
@@ -283,7 +283,7 @@ def test_an_option_with_too_few_dashes_or_words() -> None:
 
 
 def test_quotes_that_are_sent(capsys: pytest.CaptureFixture[str]) -> None:
-    """They may be meant, so they are told of; within a text they are as good as any character."""
+    """Typographic quotes around a text get a note, since they may be intended; within a text they do not."""
     assert message_values(["{p: [{data: “hi”}]}"]) == {"p": [{"data": "“hi”"}]}
     assert (
         capsys.readouterr().err == "note: the quotes around “hi” become part of the text; YAML's quotes are ' and \"\n"
@@ -293,7 +293,7 @@ def test_quotes_that_are_sent(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_list_for_each_field() -> None:
-    """As ROS 1 takes them; the message says then how they are written."""
+    """One list per field, as in ROS 1, is accepted as such; the error shows ROS 2's form."""
     assert message_values(["[1.0, 2]", "[3]"]) == [[1.0, 2], [3]]
 
 
@@ -302,7 +302,7 @@ def test_a_list_for_each_field() -> None:
     [("{x: 2, name: }", "name"), ("name:", "name"), ("{p: {name: , x: 1}}", "name"), ("{l: [{name: }]}", "name")],
 )
 def test_quotes_that_the_shell_takes_away(text: str, name: str) -> None:
-    """`{name: ""}` within double quotes has no value; how it is written is told."""
+    """`{name: ""}` within double quotes loses its value; the error has the correction."""
     message = f"{name} has no value, since the shell removes double quotes within double quotes; write {name}: ''"
     with pytest.raises(UsageFault, match=re.escape(message)):
         message_values([text])
@@ -310,5 +310,5 @@ def test_quotes_that_the_shell_takes_away(text: str, name: str) -> None:
 
 @pytest.mark.parametrize("text", ["{name: ''}", "{name: null}", "{x: 1}", "", "[]"])
 def test_values_that_are_there(text: str) -> None:
-    """An empty text is a value; what is written as null is not told to have lost its quotes."""
+    """An empty text is a value, and an explicit null is not reported as a lost one."""
     message_values([text])

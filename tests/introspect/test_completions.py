@@ -1,4 +1,4 @@
-"""What may stand in a place of a command line."""
+"""Completions of a command line's arguments."""
 
 from __future__ import annotations
 

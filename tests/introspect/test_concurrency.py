@@ -1,4 +1,4 @@
-"""Who holds what and who waits, as the answers of all processes tell it."""
+"""Slots and waits, from the answers of all processes."""
 
 from __future__ import annotations
 
@@ -78,14 +78,14 @@ def test_answers_are_joined() -> None:
     "data", [b"", b"\xff", b"{}", b"[]", b"1", b"[" * 100_000, reply(WaitGraph(), v=99), reply(WaitGraph(), nodes=3)]
 )
 def test_an_answer_that_cannot_be_read_is_counted(data: bytes) -> None:
-    """What another version says, or nonsense, leaves the others' answers."""
+    """An answer of another version, or an invalid one, does not affect the others."""
     read = concurrency.read([data, reply(crossing()[0], nodes={"/a": []})])
     assert read.unreadable == 1
     assert set(read.graph.activities) == {"/a!"}
 
 
 def test_rows() -> None:
-    """Who holds or waits, the longest waiting first, and whether it is in a deadlock."""
+    """Rows are the activities that hold or wait, the longest first, and whether they are deadlocked."""
     read = concurrency.read([reply(picture) for picture in reversed(crossing())])
     first, second = concurrency.rows(read)
     assert first == {
@@ -109,7 +109,7 @@ def test_half_a_ring_is_not_stuck() -> None:
 
 
 def test_who_runs_freely_has_no_row() -> None:
-    """It neither holds nor waits; who holds a group does, though it only runs."""
+    """An activity that neither holds a group nor waits has no row."""
     group = GroupView("/b.work", "work", "/b")
     runs = {a.id: a for a in (activity("/a"), activity("/b", holds=group.id))}
     [row] = concurrency.rows(concurrency.read([reply(WaitGraph(runs, {group.id: group}))]))
@@ -158,7 +158,7 @@ GRAPH = WaitGraph({"s": SERVER}, {"g": GroupView("g", "work", "/s")})
     ],
 )
 def test_a_condition_in_words(condition: Condition, text: str) -> None:
-    """As `waits` says it."""
+    """Conditions are described as `waits` prints them."""
     assert concurrency.describe(condition, GRAPH) == text
 
 

@@ -1,4 +1,4 @@
-"""An empty listing says where else something runs."""
+"""Hints of an empty listing at other domains."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from graphflow.introspect.empty_hint import nothing_here
 
 
 class Seen:
-    """What the network holds, made up."""
+    """A client with invented tokens."""
 
     tokens_: list[str] = []  # noqa: RUF012
 

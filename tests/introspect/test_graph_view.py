@@ -84,7 +84,7 @@ def test_it_is_closed_at_the_end(client: Client) -> None:
 
 
 def test_it_shows_one_moment(view: View, client: Client) -> None:
-    """What comes later is seen when it is refreshed."""
+    """Later changes are seen after `refresh`."""
     client.entities.append(Entity(7, "z1", 3, 3, Kind.NODE, "/", "late"))
     assert "/late" not in view.cache.nodes()
     view.refresh()
@@ -98,7 +98,7 @@ def test_a_node_by_its_name(view: View, name: str) -> None:
 
 
 def test_a_node_that_is_not_there(view: View, client: Client) -> None:
-    """The nearest is named, but never a hidden one; or it is said that there is none at all."""
+    """The nearest node is suggested, but never a hidden one; an empty domain is mentioned."""
     with pytest.raises(CallError, match=r"^there is no node /office/clrk; did you mean '/office/clerk'\?$"):
         view.node("office/clrk")
     client.entities = [HIDDEN]
@@ -114,14 +114,14 @@ def test_a_node_that_is_not_there(view: View, client: Client) -> None:
 
 
 def test_the_type_of_a_service(view: View) -> None:
-    """As its server announces it; the nearest name when there is none."""
+    """A service has its server's type; for a missing one, the nearest is suggested."""
     assert view.service_types(ADD) == [TYPE]
     with pytest.raises(ServiceUnavailable, match=f"^no node offers the service /office/ad; did you mean '{ADD}'"):
         view.service_types("/office/ad")
 
 
 def test_waiting_for_a_service(view: View, client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It looks again until somebody offers it, or the time is over."""
+    """The graph is read again until the service is offered, or the timeout."""
     client.entities = [CLERK]
     view.refresh()
     looks: list[float] = []
@@ -172,7 +172,7 @@ def test_a_call_that_fails(
     ],
 )
 def test_a_net_profile_is_told(view: View, client: Client, zid: str, allow: list[str], text: str) -> None:
-    """Where the server is none of this machine's processes, and its name may not pass."""
+    """A net profile is named if the server is on another machine and the name may not pass."""
     client.profiles = [net.token(7, "z5", "/lab.yaml", allow)]
     client.entities = [server()._replace(zid=zid)]
     view.refresh()
@@ -189,7 +189,7 @@ def test_a_net_profile_is_told(view: View, client: Client, zid: str, allow: list
     ],
 )
 def test_why_there_was_no_answer(view: View, client: Client, other: Entity, text: str) -> None:
-    """A server of another type never hears the call: that is said, and not that it went away."""
+    """A server of another type never gets the call, and the error says so."""
     client.entities = [CLERK, other]
     view.refresh()
     with pytest.raises(ServerLost, match=text):
@@ -197,7 +197,7 @@ def test_why_there_was_no_answer(view: View, client: Client, other: Entity, text
 
 
 def test_a_token_that_somebody_forges(view: View, client: Client) -> None:
-    """Takes no type away from the server that is there: all that are announced are told."""
+    """A forged token does not hide the real server's type: all announced types are returned."""
     forged = server(type_="a_msgs/srv/A", node="aaa")
     client.entities = [CLERK, forged, server(hash_="RIHS01_0", node="aab"), server()]
     view.refresh()
@@ -237,7 +237,7 @@ def parameters_of(node: Entity) -> Entity:
 
 @pytest.mark.parametrize("answer", [Answer(b"?", None, True), TimeoutError()])
 def test_names_that_are_taken(client: Client, answer: Answer | Exception) -> None:
-    """All of them are named with their owners, and what to do; free ones are none, and the look is closed.
+    """Taken names are listed with owners and a remedy; free ones are not; the view is closed.
 
     Whoever answers, or keeps the question as a process that is stopped does, is there.
     """
@@ -257,7 +257,7 @@ def test_names_that_are_taken(client: Client, answer: Answer | Exception) -> Non
 
 
 def test_names_that_are_only_announced(client: Client, caplog: pytest.LogCaptureFixture) -> None:
-    """A token that somebody has forged keeps no node from starting, whatever services it announces."""
+    """A forged token does not keep a node from starting, whatever services it announces."""
     client.entities += [parameters_of(ROS)]
     refuse_taken_names(["/ros", "/office/clerk"], 7)
     assert "/ros is announced in domain 7 by session z9, not a graphflow process, but does not answer" in caplog.text

@@ -1,4 +1,4 @@
-"""What `doctor` finds besides waits."""
+"""Faults that `doctor` finds besides waits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from graphflow.wire.process import ProcessToken
 
 
 class Seen:
-    """What `examine` needs of a view."""
+    """A view with the parts that `examine` uses."""
 
     def __init__(self, *tokens: str) -> None:
         self.cache = GraphCache(tokens)
@@ -58,7 +58,7 @@ def test_two_nodes_of_one_name() -> None:
 
 
 def test_two_nodes_that_offer_a_service() -> None:
-    """Calls reach both; the services that every node has are told by its name."""
+    """Two servers of a service are a fault; for the services of every node, the shared name is reported."""
     seen = Seen(*(entity_token(node, kind=SERVICE, name=name) for node in ("/b", "/a") for name in ("/spawn", "/_in")))
     assert found(seen, [], []).faults == [
         "/spawn is offered by /a and /b: each call reaches all of them; remap one: --ros-args -r spawn:=NAME, or -r "
@@ -68,7 +68,7 @@ def test_two_nodes_that_offer_a_service() -> None:
 
 @pytest.mark.parametrize(("rate", "is_told"), [(100, True), (1, False)])
 def test_a_node_that_hears_itself(rate: int, is_told: bool) -> None:
-    """Where messages really go round; everybody's topics do not count."""
+    """A node's own messages are reported if they really arrive; topics of every node do not count."""
     seen = Seen(*(entity_token("/a", kind=kind, name=name) for kind in (PUB, SUB) for name in ("/loop", "/tf")))
     counted = (("publisher", "published"), ("subscription", "received"))
     parts = {f"{kind} {name}": key for kind, key in counted for name in ("/loop", "/tf")}
@@ -100,7 +100,7 @@ def test_a_flood_in_a_log() -> None:
 
 
 def test_a_flood_that_is_told() -> None:
-    """Nodes know how much they have logged a second; then one look tells all."""
+    """If nodes report their logging rate, one sample is enough."""
     one = look(a={"log": {"lines": 25, "gathered": 300, "rate": 160.0}}, b={"log": {"lines": 9000, "rate": 2.0}})
     only = Look(one, 0, 0, 5.0)
     assert not needs_second(cast(View, Seen()), only)
@@ -110,7 +110,7 @@ def test_a_flood_that_is_told() -> None:
 
 
 def test_when_a_second_look_is_needed() -> None:
-    """Where a node does not tell what it logs a second, or listens to what it publishes."""
+    """A second sample is needed without a logging rate, or if a node subscribes to its own topic."""
     told, untold = look(a={"log": {"lines": 5, "rate": 1.0}}), look(a={"log": {"lines": 5, "gathered": 0}})
     loop = Seen(entity_token("/a", kind=PUB, name="/loop"), entity_token("/a", kind=SUB, name="/loop"))
     apart = Seen(entity_token("/a", kind=PUB, name="/loop"), entity_token("/b", kind=SUB, name="/loop"))
@@ -125,13 +125,13 @@ def test_when_a_second_look_is_needed() -> None:
 
 
 def test_announcements_that_were_refused() -> None:
-    """They are counted."""
+    """Refused announcements are counted."""
     [fault] = found(Seen("@ros2_lv/0/nonsense"), [], []).faults
     assert fault.startswith("1 announcements of nodes or endpoints are malformed")
 
 
 def test_where_nobody_speaks() -> None:
-    """What is probably misspelt is wrong; the rest may be meant so, as a robot's command topic."""
+    """Probable misspellings are faults; other topics without publishers, such as commands, are hints."""
     seen = Seen(
         entity_token("/goto", kind=SUB, name="/turtle1/posee"),
         entity_token("/sim", kind=PUB, name="/turtle1/pose"),
@@ -172,13 +172,13 @@ def test_what_is_no_answer_is_left_out(reply: bytes) -> None:
 
 
 def test_an_answer_that_is_too_long_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It could cost any time."""
+    """An answer that is too long is not parsed, which could take any time."""
     monkeypatch.setattr(health, "REPLY_BOUND", 10)
     assert read(look(a={"log": {"lines": 5}})) == {}
 
 
 def test_what_nodes_know_to_be_wrong() -> None:
-    """Is told, long after the start; what a process sends is bounded and may be anything."""
+    """Complaints of nodes are reported, bounded and whatever they contain."""
     reply = json.dumps({"nodes": {}, "complaints": {"/a": ["the remap x:=y matches no name of this node"]}}).encode()
     assert found(Seen(), [], [reply]).faults == ["/a: the remap x:=y matches no name of this node"]
     wrong: Any

@@ -1,4 +1,4 @@
-"""What is wrong with what is installed."""
+"""Faults of the installation."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def defaults(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nothing() -> None:
-    """Is wrong, with and without a ROS 2 that fits."""
+    """There is no fault, with and without a compatible ROS 2."""
     assert found({}) == []
     assert found(ROS) == []
     assert found(ROS | {"ROS_DOMAIN_ID": "3"}) == []
@@ -82,7 +82,7 @@ def test_packages() -> None:
     ],
 )
 def test_requirement(monkeypatch: pytest.MonkeyPatch, origin: str, words: str) -> None:
-    """It is installed from where it came: an index, a folder, a file, a repository."""
+    """The requirement names the origin: an index, a folder, a file or a repository."""
 
     class Distribution:
         def read_text(self, _: str) -> str:
@@ -104,7 +104,7 @@ def imported(folder: Path) -> ModuleType:
 
 
 def test_each_start_compiles_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where Python keeps no bytecode, or cannot; the words say what ends it."""
+    """A note has the remedy if Python does not, or cannot, cache bytecode."""
     monkeypatch.setattr(sys, "pycache_prefix", None)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     module = imported(tmp_path)

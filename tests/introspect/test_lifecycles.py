@@ -1,4 +1,4 @@
-"""Life cycles, asked for and changed by others."""
+"""States of lifecycle nodes, read and changed from outside."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from graphflow.testing import Graph
 
 
 class Asked(View):
-    """Answers everything, and remembers what it was asked."""
+    """A view that answers every call, and records them."""
 
     def __init__(self, **answer: Any) -> None:
         self.answer, self.asked = SimpleNamespace(**answer), list[tuple[str, str, Any]]()
@@ -42,7 +42,7 @@ def test_what_is_asked() -> None:
 
 
 async def test_who_has_a_life_cycle(graph: Graph) -> None:
-    """Nodes that can be asked to change their state; a service of that type elsewhere is none."""
+    """Lifecycle nodes have their own service to change the state; such a service elsewhere does not count."""
     plain = Node("plain")
     plain.create_service(ChangeState, "/elsewhere/change_state", lambda _: ChangeState.Response())
     await graph.start(LifecycleNode("lived"), plain)

@@ -1,4 +1,4 @@
-"""Rates from two looks; answers that are none are left out."""
+"""Rates between two samples; invalid answers are left out."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_what_is_no_answer(bad: bytes) -> None:
 
 @pytest.mark.parametrize("number", ["Infinity", "-Infinity", "NaN", "1e999", "1" + "0" * 400])
 def test_numbers_that_are_none(number: str) -> None:
-    """Cost nobody anything."""
+    """Invalid numbers do not affect the others."""
     numbers = Numbers()
     for key in ('"lag": X, "nodes": {"/a": {}}', '"lag": 0, "nodes": {"/a": {"publisher /b": {"published": X}}}'):
         numbers.take([f"{{{key.replace('X', number)}}}".encode()], 1.0)

@@ -80,13 +80,13 @@ def test_get(remote: RemoteParameters, robot: Robot) -> None:
 
 
 def test_get_with_one_that_is_not_there(remote: RemoteParameters) -> None:
-    """It has no type, and the others have their values, whatever kind of node answers."""
+    """A missing parameter has no type; the others have their values, whatever node answers."""
     found = remote.get(["speed", "sped", "gain"])
     assert [(v.type, v.integer_value) for v in found] == [(INTEGER, 3), (0, 0), (INTEGER, 5)]
 
 
 def test_describe(remote: RemoteParameters, robot: Robot) -> None:
-    """Those that there are, by name; nobody is asked about none."""
+    """Existing parameters are described by name; an empty request makes no call."""
     assert set(remote.describe(["speed", "sped", "gain"])) == {"speed", "gain"}
     robot.calls.clear()
     assert remote.describe([]) == {}
@@ -94,7 +94,7 @@ def test_describe(remote: RemoteParameters, robot: Robot) -> None:
 
 
 def test_a_parameter_that_is_declared_without_a_value(remote: RemoteParameters, robot: Robot) -> None:
-    """It is known, and has no type yet."""
+    """A parameter declared without a value is known, but has no type yet."""
     robot.is_strict = False
     assert remote.known("unset").type == 0
 
@@ -114,7 +114,7 @@ def test_one_that_must_be_there(remote: RemoteParameters) -> None:
 
 
 def test_a_node_without_parameter_services(robot: Robot) -> None:
-    """It is told before anything is asked."""
+    """The missing services are reported before any call."""
     with pytest.raises(CallError, match="/other/list_parameters"):
         RemoteParameters(robot, "/other", 1.5).names()
     assert robot.calls == []

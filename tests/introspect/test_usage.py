@@ -1,4 +1,4 @@
-"""What processes cost."""
+"""CPU and memory of processes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from graphflow.introspect.usage import Costs
 
 
 def test_looks() -> None:
-    """Those that live, with their nodes; the others are left out and forgotten."""
+    """Live processes are measured with their nodes; others are left out and forgotten."""
     costs = Costs()
     [own] = costs.look({os.getpid(): ["/a", "/b"], 2**22 + 1: ["/gone"]})
     assert (own.pid, own.nodes) == (os.getpid(), ["/a", "/b"])
@@ -25,7 +25,7 @@ def test_looks() -> None:
 
 @pytest.mark.real
 def test_child_processes_count() -> None:
-    """Those of a process are among its costs, unless they are asked for themselves."""
+    """Child processes are included, unless they are measured themselves."""
     code = "import sys; held = bytearray(50_000_000); print(len(held), flush=True); sys.stdin.read()"
     with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
         assert child.stdout is not None

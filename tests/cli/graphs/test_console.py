@@ -1,4 +1,4 @@
-"""`attach`, `ls`, `console`: what they say without a terminal, without a graph, and when the console is left."""
+"""`attach`, `ls` and `console`: output without a terminal, without a graph, and when the console is left."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_nothing_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
 
 
 def test_the_newest_of_several(run: GraphRun, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As tmux does; by name, the one that is meant."""
+    """Without a name, the newest run is chosen, as in tmux; otherwise the named one."""
     newer = replace(run, graph="newer", began=run.began + 1)
     shown: list[str] = []
 
@@ -78,7 +78,7 @@ def test_the_newest_of_several(run: GraphRun, monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.parametrize("verb", ["attach", "console"])
 def test_without_a_terminal(verb: str, run: GraphRun, capsys: pytest.CaptureFixture[str]) -> None:
-    """They say what to use instead."""
+    """Without a terminal, the error names the alternatives."""
     assert ends(verb) == exits.USAGE
     assert "needs a terminal" in capsys.readouterr().err
 
@@ -94,13 +94,13 @@ def test_without_a_terminal(verb: str, run: GraphRun, capsys: pytest.CaptureFixt
 def test_how_it_was_left(
     how: str, exit_code: int | None, code: int, said: str, run: GraphRun, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What runs on and how to come back; or that the graph has ended, with its exit code."""
+    """Leaving prints what keeps running and how to return, or that the graph has ended, with its exit code."""
     assert console._report_end(run, how, exit_code) == code
     assert said in capsys.readouterr().err
 
 
 def test_stopping_on_the_way_out(run: GraphRun, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As `graphflow down` does."""
+    """Stopping from the console does what `graphflow down` does."""
     downs: list[Any] = []
 
     def take_down(run: GraphRun, *, now: bool) -> int:
@@ -115,7 +115,7 @@ def test_stopping_on_the_way_out(run: GraphRun, monkeypatch: pytest.MonkeyPatch)
 def test_the_web_needs_its_extra(
     run: GraphRun, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """And says how to install it."""
+    """Without the extra, the error has the command that installs it."""
     monkeypatch.setattr(console, "find_spec", lambda _: None)
     assert ends("console", "--web") == exits.USAGE
     assert f"pip install {requirement('web')}" in capsys.readouterr().err

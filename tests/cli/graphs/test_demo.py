@@ -15,7 +15,7 @@ from tests.conftest import PROJECT, Machine
 
 
 def test_the_list_of_steps(machine: Machine) -> None:
-    """Each is a pair of graphs, there is no pair that is not shown, and each has a line that says what it is about."""
+    """The list has every pair of graphs exactly once, each with a heading."""
     lines = machine.look("demo", "deadlock", "--list").splitlines()
     names = [line.split()[0] for line in lines]
     assert sorted(names) == sorted(f.stem[:-6] for f in (PROJECT / "graphs" / "deadlock").glob("*_fixed.yaml"))
@@ -23,13 +23,13 @@ def test_the_list_of_steps(machine: Machine) -> None:
 
 
 def test_a_step_that_is_not_there(machine: Machine) -> None:
-    """The nearest is told before anything is shown."""
+    """An unknown step is an error with the nearest one, before anything is shown."""
     text = machine.look("demo", "deadlock", "self_call", "corssing", code=2)
     assert text == "error: there is no step 'corssing'; did you mean 'crossing'?\n"
 
 
 def test_a_step_is_shown_broken_and_fixed(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What each file says, then what its nodes print, each graph for its time."""
+    """The text of each file is shown, then the output of its nodes, each graph for its time."""
     ran: list[tuple[str, float]] = []
 
     def run(file: Path, seconds: float) -> Iterator[str]:
@@ -55,7 +55,7 @@ def test_a_step_is_shown_broken_and_fixed(machine: Machine, monkeypatch: pytest.
 
 
 def test_going_on_from_a_step(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It and those after it."""
+    """`--from` shows the step and those after it."""
     ran: list[str] = []
 
     def run(file: Path, seconds: float) -> Iterator[str]:
@@ -80,7 +80,7 @@ if "end" not in sys.argv:
 
 @pytest.fixture
 def graphs(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[subprocess.Popen[str]]]:
-    """Programs that stand for graphs: they print the words of the file's stem, and end by Ctrl-C."""
+    """Replacements of graphs: programs that print the words of the file's stem, and end by Ctrl-C."""
     started: list[subprocess.Popen[str]] = []
     real = subprocess.Popen
 
@@ -98,14 +98,14 @@ def graphs(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[subprocess.Popen[st
 
 @pytest.mark.real
 def test_a_graph_is_shown_for_its_time(graphs: list[subprocess.Popen[str]]) -> None:
-    """What it prints comes as it comes; then it is ended by Ctrl-C."""
+    """The output is yielded as it arrives; then the graph is ended by Ctrl-C."""
     assert list(demo._run(Path("one,two.yaml"), 1.0)) == ["one", "two"]
     assert graphs[0].returncode == 0
 
 
 @pytest.mark.real
 def test_a_report_shortens_it(graphs: list[subprocess.Popen[str]], monkeypatch: pytest.MonkeyPatch) -> None:
-    """A broken graph has been seen once its deadlock is told."""
+    """A broken graph is ended soon after its deadlock is reported."""
     monkeypatch.setattr(demo, "_AFTER_REPORT", 0.0)
     assert list(demo._run(Path("one,DEADLOCK: two,three.yaml"), 100.0)) == ["one", "DEADLOCK: two"]
     assert graphs[0].returncode == 0
@@ -113,5 +113,5 @@ def test_a_report_shortens_it(graphs: list[subprocess.Popen[str]], monkeypatch: 
 
 @pytest.mark.real
 def test_a_graph_that_ends_by_itself(graphs: list[subprocess.Popen[str]]) -> None:
-    """So does the step, however much time is left."""
+    """The step ends with its graph, however much time is left."""
     assert list(demo._run(Path("one,end.yaml"), 100.0)) == ["one", "end"]

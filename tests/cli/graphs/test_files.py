@@ -17,7 +17,7 @@ GRAPH = "nodes:\n  /talker: {class: nodes.talker:Talker, params: {rate: 5.0}, re
 
 
 def test_a_path_is_a_graph(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Nothing is said of it."""
+    """A path is used without a note."""
     file = tmp_path / "g.yaml"
     file.write_text(GRAPH)
     assert find_graph(str(file)) == file
@@ -28,7 +28,7 @@ def test_a_path_is_a_graph(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
 def test_a_name_is_a_bundled_graph(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """From anywhere, with or without its ending; it is said whose it is."""
+    """A bundled graph is found from anywhere, with or without its suffix, and its origin is printed."""
     monkeypatch.chdir(tmp_path)
     found = find_graph(name)
     assert found == PROJECT / "graphs" / f"{name.removesuffix('.yaml')}.yaml"
@@ -36,7 +36,7 @@ def test_a_name_is_a_bundled_graph(
 
 
 def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file of one's own that is called like one is meant."""
+    """A file takes precedence over a bundled graph of the same name."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "turtlesim").write_text(GRAPH)
     assert find_graph("turtlesim") == Path("turtlesim")
@@ -57,7 +57,7 @@ def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest
     ],
 )
 def test_neither(text: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The nearest one is told: beside it, in `graphs/`, or bundled."""
+    """The error suggests the nearest graph: in the same folder, in `graphs/`, or bundled."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "graphs").mkdir()
     (tmp_path / "src" / "lamp" / "launch").mkdir(parents=True)
@@ -79,7 +79,7 @@ def here(machine: Machine, tmp_path: Path) -> Machine:
 
 
 def test_plan(here: Machine, tmp_path: Path) -> None:
-    """What would run, with the place of each setting; and as JSON."""
+    """`plan` prints what would run, with the place of each setting, as text and as JSON."""
     lines = here.look("plan", "g.yaml", cwd=tmp_path).splitlines()
     assert lines[0].startswith("graph g  (g.yaml; classes from ")
     assert [line for line in lines if line.startswith("/")] == ["/talker"]
@@ -106,7 +106,7 @@ def test_plan_of_a_wrong_file(here: Machine, tmp_path: Path) -> None:
     ],
 )
 def test_check(here: Machine, tmp_path: Path, text: str, code: int, told: list[str]) -> None:
-    """All mistakes at once, each with its place and the nearest right word; their number; the exit code."""
+    """`check` reports all mistakes with places and suggestions, their number, and exit code 2."""
     (tmp_path / "g.yaml").write_text(text)
     (tmp_path / "nodes").mkdir()
     (tmp_path / "nodes" / "talker.py").write_text((PROJECT / "nodes" / "talker.py").read_text())
@@ -128,7 +128,7 @@ GRAPHS = "graphs/draw_circle.yaml", "graphs/turtlesim.yaml"
 
 
 def test_two_plans(machine: Machine) -> None:
-    """What differs between two files, or between a file and itself with other arguments."""
+    """`--diff` shows differences between two files, or between arguments of one file."""
     text = machine.look("plan", GRAPHS[0], "--diff", GRAPHS[1])
     assert text.startswith(f"--- {GRAPHS[0]}\n+++ {GRAPHS[1]}\n")
     assert "-/draw_circle" in text
@@ -148,7 +148,7 @@ def test_checks_for_programs(machine: Machine, tmp_path: Path) -> None:
 
 @slow
 def test_names_explained(machine: Machine) -> None:
-    """Of one name or all; one that is not there is told with the nearest."""
+    """`explain` takes one name or none, for all; an unknown name is an error with the nearest."""
     text = machine.look("explain", GRAPHS[0], "turtle1/cmd_vel")
     assert text.startswith("/turtle1/cmd_vel\n")
     assert "/draw_circle publishes it as 'turtle1/cmd_vel'" in text
@@ -166,19 +166,19 @@ def test_names_explained(machine: Machine) -> None:
     ],
 )
 def test_a_name_without_its_graph(here: Machine, tmp_path: Path, words: str, told: str) -> None:
-    """The order is told, and the verbs for what runs."""
+    """The error has the right order, and the verbs for a running graph."""
     (tmp_path / "lab.yaml").write_text(GRAPH)
     said = here.look("explain", *words.split(), cwd=tmp_path, code=2)
     assert said == f"error: the graph file comes first: graphflow explain {told}\n"
 
 
 def test_the_schema(machine: Machine) -> None:
-    """It is one document."""
+    """`schema` prints one JSON document."""
     assert json.loads(machine.look("schema"))["title"] == "A graph file of graphflow"
 
 
 def test_a_wildcard_that_matches_nothing(machine: Machine, tmp_path: Path) -> None:
-    """Is a mistake like any remap that matches nothing; one that matches is none."""
+    """A wildcard rule that matches nothing is a mistake, as any remap rule; one that matches is not."""
     file = tmp_path / "g.yaml"
     text = "nodes: {/a: {class: nodes.listener:Listener, remap: {'/WHERE/*': '/b/\\1'}}}\n"
     file.write_text(text.replace("WHERE", "elsewhere"))
@@ -188,7 +188,7 @@ def test_a_wildcard_that_matches_nothing(machine: Machine, tmp_path: Path) -> No
 
 
 def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) -> None:
-    """A file, or all below a folder; it is imported by nobody."""
+    """A file, or all files below a folder, are read without being imported."""
     text = (
         "from rclpy.node import Node\nclass A(Node):\n    def __init__(self):\n"
         "        self.c = self.create_client(T, 'x')\n        self.c.call(1)\n"

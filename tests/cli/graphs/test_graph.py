@@ -14,7 +14,7 @@ pytestmark = pytest.mark.real
 
 
 def test_in_the_terminal(standing: Machine) -> None:
-    """Nodes in round boxes, topics in square ones; what does not fit is marked, with what tells more."""
+    """Nodes have round boxes, topics square ones; incompatible topics are marked, with the verb for details."""
     text = standing.look("graph")
     assert "│ /talker │" in text
     assert "▶│ /chatter │" in text

@@ -43,7 +43,7 @@ def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Pat
 @slow
 @pytest.mark.real
 def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
-    """`logs` shows the latest run; a misspelt node is told which one was meant."""
+    """`logs` shows the latest run; the error for a misspelt node suggests the nearest."""
     machine.run("up", "-d", "graphs/talker_listener.yaml", "rate:=50.0")
     machine.until(lambda: "I heard" in machine.look("logs"), "something was logged")
     machine.look("down")
@@ -55,7 +55,7 @@ def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
 @slow
 @pytest.mark.real
 def test_logs_follow(machine: Machine) -> None:
-    """`logs -f` goes on as more is written and ends with the graph."""
+    """`logs -f` prints new lines and ends with the graph."""
     machine.run("up", "-d", "graphs/talker_listener.yaml", "rate:=50.0")
     follow: Program = machine.start("logs", "-f", "/listener")
     follow.wait_for("I heard: [Hello World: 20]")
@@ -66,7 +66,7 @@ def test_logs_follow(machine: Machine) -> None:
 @slow
 @pytest.mark.real
 def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
-    """`--private` takes a port and a domain of its own, and says how other terminals get there."""
+    """`--private` uses a port and a domain of its own, and prints how other terminals reach them."""
     text = machine.run("up", "-d", "--private", "graphs/talker_listener.yaml")
     assert "nothing is running" in machine.look("node", "list", code=3)
     line = next(line for line in text.splitlines() if "export" in line)
@@ -76,7 +76,7 @@ def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
 
 
 def test_the_table_of_ps() -> None:
-    """Columns as wide as what stands in them; a node without a process has a dash, and a failed one its reason."""
+    """Columns fit their contents; a node without a process has a dash, and a failed one its reason."""
     run = GraphRun("1", "lab", 0, 1, 0.0, 0.0, "lab.yaml", "", "", "", "")
     failed = node_row("/longer", "failed", detail="SIGKILL", pid=None)
     head, first, second = _table([(run, node_row("/a", pid=12)), (run, failed)])
@@ -87,7 +87,7 @@ def test_the_table_of_ps() -> None:
 
 
 def test_nothing_that_runs_is_found(machine: Machine) -> None:
-    """Verbs of graphs end with 3 where none is, and say how to start one."""
+    """Without a graph, the verbs exit with 3 and print how to start one."""
     assert machine.look("ps", code=3) == "error: no graph is running; start one with: graphflow up GRAPH.yaml\n"
     for words in (["down"], ["down", "--all"], ["logs"], ["ps", "--graph", "x"]):
         assert machine.look(*words, code=3).startswith("error: no graph is running")
@@ -112,7 +112,7 @@ def test_ps_of_a_graph(standing: Machine) -> None:
 
 
 def test_show_args(machine: Machine, tmp_path: Path) -> None:
-    """`up -s` tells a file's arguments and starts nothing; what is wrong with the file has its place."""
+    """`up -s` prints a file's arguments and starts nothing; problems of the file have their place."""
     file = tmp_path / "g.yaml"
     file.write_bytes(
         b"\xef\xbb\xbfargs:\n  gain: {default: 5.0, unit: 1/s, doc: How sharply.}\n"
@@ -160,7 +160,7 @@ def test_a_part_of_a_graph_and_in_place_of_it(machine: Machine) -> None:
 def test_a_supervisor_that_was_killed_before_the_console(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], lives: bool
 ) -> None:
-    """Its end is told, not that its socket does not answer; one that lives and does not answer is told as such."""
+    """The supervisor's end is reported, unless it is alive and does not answer, which is another error."""
 
     def show(run: GraphRun, domain: int) -> int:
         raise SupervisorError("it does not answer")

@@ -61,7 +61,7 @@ def test_a_time_of_the_day() -> None:
 
 @pytest.mark.parametrize("text", ["", "soon", "25:00", "12:60", "5w", "-3s", "1:2:3:4"])
 def test_no_time(text: str) -> None:
-    """It is said how one is written."""
+    """The error shows the format of a time."""
     with pytest.raises(UsageFault, match="write a duration such as 30s, 5m or 2h"):
         time_of(text, 0.0)
 

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.real
 
 @slow
 def test_restart_and_stop(machine: Machine) -> None:
-    """A node gets a new process, whether it ran, was killed or was stopped; the others run on; misspelt is told."""
+    """A node gets a new process, whether it ran, was killed or was stopped; the others keep running."""
     project = make_project(machine.run_directory / "lab")
     file = write(project, GOOD)
     machine.run("up", "-d", file, cwd=project)
@@ -50,7 +50,7 @@ def test_the_last_node(machine: Machine) -> None:
 
 
 def test_a_node_that_runs_by_itself(machine: Machine) -> None:
-    """It is told where it runs, as no graph has it."""
+    """The error says in which process a node outside all graphs runs."""
     node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")
     node.wait_for("Publishing")
     told = machine.look("stop", "/talker", code=3)
@@ -79,7 +79,7 @@ def test_the_status_of_a_node(standing: Machine) -> None:
 
 
 def test_waiting(standing: Machine) -> None:
-    """What is ready needs no waiting; what does not end is told with its state, and exit code 4."""
+    """A ready node is not waited for; one that does not end is reported with its state and exit code 4."""
     standing.look("wait")
     standing.look("wait", "--ready", "talker", "/office/clerk")
     text = standing.look("wait", "--ended", "talker", "--timeout", "0.1", code=4)
@@ -91,7 +91,7 @@ def test_waiting(standing: Machine) -> None:
 
 
 def test_what_cannot_be_done(standing: Machine) -> None:
-    """Nothing that is asked for is silently left undone."""
+    """A command that cannot be carried out is an error."""
     text = standing.look("start", "/talker", code=1)
     assert "/talker runs already: it is ready; to begin anew: graphflow restart /talker" in text
     assert "lab.yaml is a graph file; start it with: graphflow up lab.yaml" in standing.look(
@@ -100,13 +100,13 @@ def test_what_cannot_be_done(standing: Machine) -> None:
 
 
 def test_waiting_for_nothing(machine: Machine) -> None:
-    """Where no graph is running, it is waited for one to begin; all nodes have ended already."""
+    """Without a graph, `wait` waits for one to start; with `--ended`, all nodes have ended already."""
     assert "after 0.1 s no graph is running" in machine.look("wait", "--timeout", "0.1", code=4)
     machine.look("wait", "--ended")
 
 
 def test_some_lines_of_logs(standing: Machine) -> None:
-    """By level and time, of logs named either way; what is no time is told."""
+    """Lines are filtered by level and time, of nodes named either way; an invalid time is an error."""
     assert "[INFO]" in standing.look("logs", "tutorial", "--since", "1h", "--level", "info")
     assert "[INFO]" not in standing.look("logs", "--node", "tutorial", "--level", "fatal")
     assert "write a duration such as 30s, 5m or 2h" in standing.look("logs", "tutorial", "--since", "soon", code=2)

@@ -17,7 +17,7 @@ WORDS = [("router",), ("run", "rmw_zenoh_cpp", "rmw_zenohd")]
 
 @pytest.mark.parametrize("words", some(WORDS, WORDS[1]))
 def test_it_is_the_rendezvous(machine: Machine, words: tuple[str, ...]) -> None:
-    """In the words of ROS 2, too; a second one waits."""
+    """The router starts as rendezvous, also under ROS 2's name; a second one waits to take over."""
     first = machine.start(*words)
     first.wait_for("find each other at")
     assert first.text.startswith("Started Zenoh router with id ")

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.real
 
 
 def test_a_picture(machine: Machine, tmp_path: Path) -> None:
-    """Of what turtlesim has drawn; what cannot be says why."""
+    """turtlesim's drawing becomes a picture; impossible requests are explained."""
     machine.run("up", "-d", "turtlesim", cwd=tmp_path)
     assert machine.look("snapshot", cwd=tmp_path) == "turtlesim.svg\n"
     assert (tmp_path / "turtlesim.svg").read_text(encoding="utf-8").startswith("<svg")
@@ -24,5 +24,5 @@ def test_a_picture(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_nobody_draws(standing: Machine) -> None:
-    """And what to do."""
+    """Without a simulator, the error says how to start one."""
     assert "start turtlesim: graphflow up turtlesim" in standing.look("snapshot", code=1)

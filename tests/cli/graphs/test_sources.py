@@ -48,7 +48,7 @@ def here(machine: Machine, tmp_path: Path) -> Machine:
     ],
 )
 def test_source_without_mistakes(here: Machine, tmp_path: Path, path: str, told: str) -> None:
-    """Of a file or a folder, of graphflow's nodes and of rclpy's: the line says which were looked at."""
+    """The summary counts the nodes checked, of a file or a folder, written for graphflow or rclpy."""
     assert here.look("check", path, cwd=tmp_path) == told
 
 
@@ -61,7 +61,7 @@ def test_source_without_mistakes(here: Machine, tmp_path: Path, path: str, told:
     ],
 )
 def test_mistakes_in_source(here: Machine, tmp_path: Path, old: str, new: str, told: str) -> None:
-    """What cannot be read, imported or declared has its place, and the exit code is 2."""
+    """Files that cannot be read or imported, and wrong declarations, are reported with places and exit code 2."""
     (tmp_path / "nodes/talk.py").write_text(NODES.replace(old, new))
     text = here.look("check", "nodes", cwd=tmp_path, code=2)
     assert told in text
@@ -84,7 +84,7 @@ def test_a_folder_without_nodes(here: Machine, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("verb", ["up", "plan", "launch"])
 def test_a_node_where_a_graph_is_wanted(here: Machine, tmp_path: Path, verb: str) -> None:
-    """It is said how a node is run, and how a graph file names it; a node of rclpy's runs as a file."""
+    """The error says how to run the node and how to write it in a graph file; a node for rclpy runs as a file."""
     text = here.look(verb, "nodes/talk.py", cwd=tmp_path, code=2)
     assert (
         "nodes/talk.py is a node, not a graph file; it has Talker, Other; run it with: graphflow run nodes.talk:Talker"
@@ -95,7 +95,7 @@ def test_a_node_where_a_graph_is_wanted(here: Machine, tmp_path: Path, verb: str
 
 
 def test_slips_in_source(here: Machine, tmp_path: Path) -> None:
-    """They are remarks, of a file and of a graph, and change no exit code."""
+    """Slips are remarks, of a file and of a graph, and do not change the exit code."""
     source = NODES.replace(
         "class Other(Node):", "class Other(Node):\n    def work(self) -> None:\n        self.close\n"
     )

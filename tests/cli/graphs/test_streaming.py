@@ -52,7 +52,7 @@ def test_a_reader_goes_on_where_it_was(tmp_path: Path, capsys: pytest.CaptureFix
 
 @pytest.mark.parametrize(("last", "shown"), [(2, ["2", "3"]), (9, ["1", "2", "3"]), (0, [])])
 def test_only_the_last_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str], last: int, shown: list[str]) -> None:
-    """As many as there are, at most; what comes then is shown whole."""
+    """At most as many lines as exist are shown first; later ones are all shown."""
     file = tmp_path / "a.log"
     append(file, "1\n2\n3\n")
     reader = LogReader([file], width=1)
@@ -123,20 +123,20 @@ def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
 def test_what_is_told_of_an_event(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], event: dict[str, Any], told: str
 ) -> None:
-    """A line on stderr, and the graph goes on."""
+    """An event is a line on stderr, and the graph keeps running."""
     assert streaming(tmp_path)._show(event) is None
     assert capsys.readouterr() == ("", told)
 
 
 def test_the_end_has_the_graphs_exit_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """And says that it is the end; one that ends before it was up in the background has failed."""
+    """The end is reported with the graph's exit code; a detached graph that ends before it was up has failed."""
     assert streaming(tmp_path)._show({"event": "end", "exit_code": 1}) == 1
     assert capsys.readouterr().err == "graph lab has ended\n"
     assert streaming(tmp_path, detach=True)._show({"event": "end", "exit_code": 0}) == exits.FAILED
 
 
 def test_events_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Each is a line of JSON, beside the words on stderr; logs are, too; what only consoles need is left out."""
+    """Events and logs are lines of JSON, beside the text on stderr, without events meant for consoles."""
     told = streaming(tmp_path)
     told._as_json = True
     for event in (
@@ -160,7 +160,7 @@ def test_events_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 
 def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """What runs, where each class comes from, and what to type next, in whose domain; attached, it goes on."""
+    """The greeting has the nodes, the places of their classes, and the next commands with the domain."""
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
     monkeypatch.chdir(tmp_path)
     assert streaming(tmp_path)._show({"event": "up", "seconds": 0.25}) is None
@@ -210,7 +210,7 @@ def test_up_shows_the_logs_and_ctrl_c_stops_everything(machine: Machine) -> None
 
 @pytest.mark.real
 def test_what_is_found_in_the_source_is_told_before_the_terminal_is_let_go(machine: Machine) -> None:
-    """A graph that is started in the background says what one in the foreground says."""
+    """A detached graph reports findings in its source, as one in the foreground does."""
     text = machine.run("up", "-d", "graphs/deadlock/self_call_broken.yaml")
     assert "graph self_call_broken is up" in text
     assert "note: " in text
@@ -221,7 +221,7 @@ def test_what_is_found_in_the_source_is_told_before_the_terminal_is_let_go(machi
 @pytest.mark.real
 @pytest.mark.parametrize("how", [["-d"], []])
 def test_what_is_odd_is_told_of_a_graph_that_does_not_come_up(machine: Machine, project: Path, how: list[str]) -> None:
-    """It may be the reason: a step calls a service by a wrong name."""
+    """Findings are reported, since they may be the reason: here a step calls a misspelt service."""
     steps = "steps:\n  ask: {after: /a, call: /aa/ask, type: std_srvs/srv/Trigger, timeout: 0.2}\n"
     up = machine.start("up", *how, write(project, f"nodes:\n  /a: {{class: nodes.lab:Good}}\n{steps}"), cwd=project)
     assert up.wait() == 1
@@ -257,7 +257,7 @@ def test_how_a_graph_has_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_how_a_graph_without_a_guardian_has_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody has written it down, but its run file is there."""
+    """Without a guardian's report, the remaining run file shows how the graph ended."""
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
     (tmp_path / "run").mkdir(0o700)
     run = GraphRun("1", "lab", 7, 2**22 + 1, 1.0, 1.0, "", "", str(tmp_path), "", "")

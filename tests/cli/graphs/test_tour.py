@@ -45,14 +45,14 @@ def visits(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_one_after_the_other(visits: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    """What was ended is not shown repaired."""
+    """A deadlock that the user ended is not shown fixed."""
     assert tour.tour(STEPS) == 0
     assert visits == ["self_call_broken.yaml", "1/2 self_call", "classic_broken.yaml", "2/2 classic"]
     assert "the tour is over" in capsys.readouterr().err
 
 
 def test_what_was_not_ended_is_shown_repaired(visits: list[str]) -> None:
-    """And the tour goes no further than the user does."""
+    """A deadlock that was not ended is shown fixed; the tour stops where the user leaves it."""
     visits.append("-> fixed")
     assert tour.tour(STEPS) == 0
     assert visits[1:] == ["self_call_broken.yaml", "1/2 self_call", "self_call_fixed.yaml", "1/2 self_call"]
@@ -60,7 +60,7 @@ def test_what_was_not_ended_is_shown_repaired(visits: list[str]) -> None:
 
 @pytest.mark.parametrize(("how", "code"), [("detach", 0), ("stop", 0), ("failed", 1)])
 def test_leaving_ends_it(how: str, code: int, visits: list[str]) -> None:
-    """Whatever the way; a console that failed is told by the exit code."""
+    """Leaving in any way ends the tour; a console that failed gives the exit code."""
     visits.append(f"-> {how}")
     assert tour.tour(STEPS) == code
     assert visits[1:] == ["self_call_broken.yaml", "1/2 self_call"]
@@ -68,7 +68,7 @@ def test_leaving_ends_it(how: str, code: int, visits: list[str]) -> None:
 
 @pytest.mark.real
 def test_a_graph_that_does_not_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What it said is told, and its process has ended."""
+    """The error has the graph's output, and its process has ended."""
     monkeypatch.setattr(tour, "running", list[GraphRun])
     says = "import sys; sys.exit('no such class')"
     monkeypatch.setattr(tour, "COMMAND", (sys.executable, "-c", says))

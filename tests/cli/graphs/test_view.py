@@ -61,7 +61,7 @@ def test_what_cannot_be_served(standing: Machine) -> None:
 
 
 def test_without_the_extra(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told what to install."""
+    """The error has the command that installs the extra."""
 
     def missing(_: str) -> ModuleSpec | None:
         return None

@@ -60,12 +60,12 @@ def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
     ],
 )
 def test_nothing_runs(machine: Machine, words: str, code: int, told: str) -> None:
-    """Exit code 3, or 2 when the words are wrong anyway."""
+    """The exit code is 3, or 2 for wrong usage."""
     assert told in machine.look(*words.split(), code=code)
 
 
 def test_a_graph_in_which_nobody_waits(standing: Machine) -> None:
-    """It is said, and for programs every list is empty; a message may have to queue while the machine is busy."""
+    """The text says so, and all lists of the JSON are empty; on a busy machine, a message may be queued."""
     standing.until(lambda: standing.look("waits") == "nothing is waiting\n", "nobody waits")
     nothing: dict[str, Any] = {"activities": [], "queued": [], "deadlocks": [], "stalls": [], "unresponsive": []}
     standing.until(lambda: json.loads(standing.look("waits", "--json")) == nothing, "nor for programs")
@@ -93,6 +93,6 @@ def test_the_groups_of_a_node(standing: Machine) -> None:
     ],
 )
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:
-    """The error names what is there, and nothing is moved."""
+    """The error suggests existing names, and nothing is moved."""
     assert told in standing.look(*words.split(), code=code)
     assert "  desk  (limit 1)\n    add  service  " in standing.look("groups", "/office/clerk")

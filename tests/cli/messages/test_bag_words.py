@@ -1,4 +1,4 @@
-"""Moments of a bag; tests/cli/ros/test_bag.py has the order of words."""
+"""Moments in a bag; tests/cli/ros/test_bag.py tests the order of words."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from graphflow.msgs.std_msgs.msg import Int32
 
 
 def test_a_condition() -> None:
-    """Is Python, of a message m."""
+    """A condition is a Python expression on a message m."""
     holds = compile_condition("m.data % 3 == 1")
     assert [n for n in range(7) if holds(Int32(data=n))] == [1, 4]
 
@@ -29,7 +29,7 @@ def test_a_condition_that_fails() -> None:
 
 
 def test_a_field_without_its_message() -> None:
-    """Is answered with both; another name with how a message is called."""
+    """The error for a field's bare name has `m.` before it; for another name, it says what m is."""
     with pytest.raises(UsageFault, match=r"name 'data' is not defined; write m\.data$"):
         compile_condition("data > 3")(Int32())
     with pytest.raises(UsageFault, match=r"name 'msg' is not defined; the message is m, as in m\.data > 3$"):

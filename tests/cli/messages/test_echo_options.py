@@ -12,7 +12,7 @@ from graphflow.qos import BEST_AVAILABLE, Reliability
 
 
 def test_every_option_has_its_place() -> None:
-    """What click makes of them is what the verbs take."""
+    """Every option of click's is one of `EchoOptions`."""
     found: list[EchoOptions] = []
 
     @click.command()

@@ -1,4 +1,4 @@
-"""What `topic echo` prints of a message."""
+"""The output of `topic echo`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def shown(message: Any, path: list[str | int] | None = None, **options: Any) -> 
 
 
 def test_block_style() -> None:
-    """As ROS 2 prints it: a field a line, and three dashes behind."""
+    """A message is printed as in ROS 2: one field per line, then three dashes."""
     assert shown(TWIST) == "linear:\n  x: 2.0\n  y: 0.0\n  z: 0.0\nangular:\n  x: 0.0\n  y: 0.0\n  z: 1.8\n---"
 
 
@@ -48,7 +48,7 @@ def test_json_is_whole() -> None:
 
 
 def test_long_arrays_and_strings_are_cut() -> None:
-    """At 128 elements, or where told, or not at all."""
+    """Arrays and strings are cut at 128 elements, at a given length, or not at all."""
     message = ParameterValue(integer_array_value=list(range(200)), string_value="x" * 200)
     assert "\n- 127\n- ...\ndouble_array_value: []\n" in shown(message)
     assert f"string_value: {'x' * 128}..." in shown(message)
@@ -59,7 +59,7 @@ def test_long_arrays_and_strings_are_cut() -> None:
 
 
 def test_without_arrays_and_strings() -> None:
-    """Their sizes stand for them."""
+    """Arrays and strings are replaced by their sizes."""
     message = ParameterValue(string_array_value=["a", "b"], string_value="hello")
     found = shown(message, no_arr=True, no_str=True).splitlines()
     assert "string_array_value: '<array of 2>'" in found
@@ -68,14 +68,14 @@ def test_without_arrays_and_strings() -> None:
 
 
 def test_with_message_info() -> None:
-    """Number, time and sender stand above, as a comment."""
+    """Sequence number, time and sender come first, as a comment."""
     head, rest = shown(String(data="hi"), include_message_info=True).split("\n", 1)
     assert head == "# sequence 7, sent 1.500000000, by 00.01.02.03.04.05.06.07.08.09.0a.0b.0c.0d.0e.0f"
     assert rest == "data: hi\n---"
 
 
 def test_a_part_of_a_message() -> None:
-    """`--field` goes into fields, lists and arrays; an element that this message lacks is told."""
+    """`--field` selects in fields, lists and arrays; a missing element is reported."""
     polygon = Polygon(points=[{"x": 1.0}, {"x": 2.0}])
     assert shown(polygon, ["points", 1, "x"]) == "2.0\n---"
     assert shown(polygon, ["points", 0]) == "x: 1.0\ny: 0.0\nz: 0.0\n---"
@@ -88,7 +88,7 @@ def test_a_part_of_a_message() -> None:
 
 
 def test_calls_of_a_service() -> None:
-    """What happened is told in a word."""
+    """The kind of event is printed by name."""
     event: Any = registry.interface_class("std_srvs/srv/Empty_Event")()
     event.info.event_type = 2
     assert render(event, INFO, EchoOptions(), []).startswith("info:\n  event_type: RESPONSE_SENT\n  stamp:\n")

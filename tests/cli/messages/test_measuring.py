@@ -71,7 +71,7 @@ def test_a_type_that_is_only_there(things: Machine) -> None:
 
 @slow
 def test_hz(things: Machine) -> None:
-    """The rate of what is published, in the words of ROS 2."""
+    """The rate of messages is printed in ROS 2's format."""
     text = watch(things, "hz", "/things", until="window: 1")
     found = re.search(
         r"average rate: (\d+\.\d{3})\n\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+", text
@@ -118,7 +118,7 @@ def test_delay(things: Machine) -> None:
 
 @slow
 def test_what_cannot_be_measured(things: Machine) -> None:
-    """Says why; what is not there is waited for, and told with the nearest."""
+    """The error says why; a missing topic is waited for, and the nearest one is suggested."""
     assert "has no header, so no stamp from which a delay could be measured" in things.run(
         "topic", "delay", "/rosout", code=2
     )

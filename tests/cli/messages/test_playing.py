@@ -30,7 +30,7 @@ def test_a_bag_is_heard(machine: Machine, tmp_path: Path) -> None:
 
 @slow
 def test_a_type_that_is_nowhere_installed(machine: Machine, tmp_path: Path) -> None:
-    """Is played, and a recorder gets its definition from the player."""
+    """A type that is not installed is played, and a recorder gets its definition from the player."""
     write(tmp_path / "bag", [record(LAB, THING, 0.0), record(CHATTER, String(), 0.1)])
     recorder = machine.start("bag", "record", "/things", "-o", "again", cwd=tmp_path)
     recorder.wait_for("Recording into again")
@@ -43,7 +43,7 @@ def test_a_type_that_is_nowhere_installed(machine: Machine, tmp_path: Path) -> N
 
 @slow
 def test_a_bag_that_was_not_closed(machine: Machine, tmp_path: Path) -> None:
-    """Is played as far as it goes, which is told."""
+    """An unclosed bag is played as far as it can be read, with a note."""
     file = write(tmp_path / "bag") / "bag_0.mcap"
     file.write_bytes(file.read_bytes()[:-300])
     text = machine.run("bag", "play", "bag", "-r", "10", "-m", "/chatter:=/played", cwd=tmp_path)

@@ -11,7 +11,7 @@ from graphflow.cli.messages.plot_options import plot_options
 
 
 def test_files_and_numbers() -> None:
-    """Are taken under the names that the work uses."""
+    """The options have the names of `PlotOptions`."""
     taken: dict[str, Any] = {}
 
     @click.command()

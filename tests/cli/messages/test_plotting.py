@@ -43,7 +43,7 @@ def test_words(words: list[str], meant: dict[str, list[str]]) -> None:
 
 
 def test_labels() -> None:
-    """The topic is said where there are several."""
+    """Labels include the topic if there are several."""
     types = {"/a": "geometry_msgs/msg/Twist", "/b": "std_msgs/msg/Bool", "/s": "std_msgs/msg/String"}
     assert [c.label for c in curves_of({"/a": ["linear.x"]}, types)["/a"]] == ["linear.x"]
     both = curves_of({"/a": ["linear.x"], "/b": []}, types)
@@ -96,7 +96,7 @@ def test_a_bag(machine: Machine, speeds: Path, tmp_path: Path) -> None:
     ],
 )
 def test_mistakes(machine: Machine, speeds: Path, words: list[str], code: int, message: str) -> None:
-    """Each says what is there."""
+    """Each error lists or suggests what exists."""
     assert message in machine.look("bag", "plot", str(speeds), *words, code=code)
 
 
@@ -128,7 +128,7 @@ def drive(machine: Machine, tmp_path: Path) -> Iterator[Machine]:
 @slow
 @pytest.mark.real
 def test_a_topic(drive: Machine, tmp_path: Path) -> None:
-    """For some time, or until Ctrl-C; what is not there is told with the nearest."""
+    """A topic is plotted for some time or until Ctrl-C; for a missing one, the nearest is suggested."""
     text = drive.run("topic", "plot", "/speed.linear.x", "--duration", "0.5")
     assert "linear.x 2.5" in text
     assert "did you mean '/speed'?" in drive.run("topic", "plot", "/sped", code=1)
@@ -140,7 +140,7 @@ def test_a_topic(drive: Machine, tmp_path: Path) -> None:
 
 
 def test_messages_without_the_number(capsys: pytest.CaptureFixture[str]) -> None:
-    """It is said that they came, and what they lack; and numbers that stand for none are none."""
+    """The error says that messages arrived, and what they lack; NaN and huge numbers do not count."""
     lacking = Curve("ranges[900]", "sensor_msgs/msg/LaserScan")
     lacking.add(0.0, LaserScan(ranges=[1.0, 2.0]))
     assert _finished({"/scan": [lacking]}, PlotOptions()) == 1

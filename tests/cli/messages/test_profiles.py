@@ -42,12 +42,12 @@ def test_what_an_option_changes(words: str, expected: Qos) -> None:
 
 
 def test_without_a_profile_it_begins_with_the_commands_own() -> None:
-    """What no option says is as the command has it."""
+    """Policies without an option are the command's own."""
     assert taken("--qos-depth 3", replace(SENSOR_DATA, depth=100)) == replace(SENSOR_DATA, depth=3)
 
 
 def test_the_options_are_taken_away() -> None:
-    """So that the rest can be given to what follows."""
+    """The QoS options are removed, so that the rest can be passed on."""
     options = {**command.make_context("command", ["--qos-depth", "3"]).params, "once": True}
     take_qos(options, DEFAULT)
     assert options == {"once": True}
@@ -55,6 +55,6 @@ def test_the_options_are_taken_away() -> None:
 
 @pytest.mark.parametrize("words", ["--qos-depth 0", "--qos-history some", "--qos-profile best"])
 def test_a_word_that_is_no_qos(words: str) -> None:
-    """It is wrong usage."""
+    """An unknown policy is wrong usage."""
     with pytest.raises(click.BadParameter):
         taken(words)

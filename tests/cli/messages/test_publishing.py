@@ -26,7 +26,7 @@ async def begun(graph: Graph, options: PubOptions) -> asyncio.Task[int]:
 
 
 async def test_so_many_times_at_a_rate(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
-    """The first at once, the others a period apart, and each is told."""
+    """The first message is published at once, the others a period apart, and each is printed."""
     heard = graph.tap(String, "/said")
     task = await begun(graph, PubOptions(rate=2.0, times=3))
     assert len(heard) == 1
@@ -40,7 +40,7 @@ async def test_so_many_times_at_a_rate(graph: Graph, capsys: pytest.CaptureFixtu
 
 
 async def test_without_a_number_it_goes_on(graph: Graph) -> None:
-    """Until somebody ends it; nobody is waited for."""
+    """Without a number, publishing continues until it is ended, and waits for no subscription."""
     task = await begun(graph, PubOptions())
     heard = graph.tap(String, "/said")
     await graph.clock.advance(100.0)
@@ -50,7 +50,7 @@ async def test_without_a_number_it_goes_on(graph: Graph) -> None:
 
 
 async def test_once_waits_for_a_listener(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
-    """A message that nobody would hear is not sent; it says that it waits."""
+    """A single message is published only once there is a subscription; the wait is reported."""
     graph.tap(String, "/sad")
     task = await begun(graph, PubOptions(once=True))
     await graph.clock.advance(100.0)
@@ -67,7 +67,7 @@ async def test_once_waits_for_a_listener(graph: Graph, capsys: pytest.CaptureFix
 
 
 async def test_waiting_has_a_limit(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
-    """When too few have come by then, nothing is sent, and the exit code is 4."""
+    """If there are too few subscriptions in time, nothing is published, and the exit code is 4."""
     heard = graph.tap(String, "/said")
     task = await begun(graph, PubOptions(wait_matching_subscriptions=2, max_wait_time_secs=3.0))
     await graph.clock.advance(2.9)
@@ -82,7 +82,7 @@ async def test_waiting_has_a_limit(graph: Graph, capsys: pytest.CaptureFixture[s
 
 
 async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
-    """It is said once, with the nearest name that somebody hears."""
+    """A warning is printed once, with the nearest topic that has subscriptions."""
     node, listener = Node("publishing"), Node("listener")
     listener.create_subscription(String, "/chatter", lambda _: None)
     await graph.start(node, listener)
@@ -94,7 +94,7 @@ async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) ->
 
 
 async def test_it_stays_for_a_while(graph: Graph) -> None:
-    """So that the last message arrives before the process ends."""
+    """The node stays for a while, so that the last message arrives."""
     graph.tap(String, "/said")
     task = await begun(graph, PubOptions(once=True, keep_alive=2.0))
     await graph.clock.advance(1.9)

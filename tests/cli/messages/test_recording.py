@@ -26,7 +26,7 @@ def talk(machine: Machine) -> None:
 
 @slow
 def test_recording_and_playing(machine: Machine, tmp_path: Path) -> None:
-    """What was said is in the bag when Ctrl-C has ended it, and is said again by `play`."""
+    """Published messages are in the bag after Ctrl-C, and `play` publishes them again."""
     talk(machine)
     recorder = machine.start("bag", "record", "/chatter", "/rosout", "-o", "bag", cwd=tmp_path)
     recorder.wait_for("Subscribed to topic '/chatter'")
@@ -86,7 +86,7 @@ def test_the_services_of_the_recorder(machine: Machine, tmp_path: Path) -> None:
 
 @slow
 def test_for_some_time(machine: Machine, tmp_path: Path) -> None:
-    """It ends by itself; a topic that nobody publishes is told."""
+    """A recording with a duration ends by itself; a topic without publishers is reported."""
     text = machine.run("bag", "record", "/nobody", "--duration", "0.5", "-o", "bag", cwd=tmp_path, code=1)
     assert "WARNING: topic [/nobody] does not appear to be published yet" in text
     assert "no topic appeared to be recorded; `graphflow topic list` shows all topics" in text
@@ -94,7 +94,7 @@ def test_for_some_time(machine: Machine, tmp_path: Path) -> None:
 
 @slow
 def test_a_domain_without_nodes(machine: Machine, tmp_path: Path) -> None:
-    """Another one that has some is told, as it is where rates are measured."""
+    """Another domain with nodes is suggested, as by `topic hz`."""
     other = str(machine.domain + 1)
     talker = machine.start("--domain", other, "run", "nodes.talker:Talker")
     talker.wait_for("Publishing")
@@ -126,7 +126,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 @slow
 def test_a_full_disk(machine: Machine, small_disk: Path) -> None:
-    """It ends the recording with a reason; the bag is whole, and no message that was taken in is missing."""
+    """A full disk ends the recording with its reason; the bag is complete up to then."""
     recorder = machine.start("bag", "record", "/big", "--compression", "none", "-o", "bag", cwd=small_disk)
     recorder.wait_for("Recording into bag")
     payload = "x" * 20_000

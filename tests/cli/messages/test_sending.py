@@ -16,7 +16,7 @@ pytestmark = pytest.mark.real
 
 @slow
 def test_ctrl_c_before_the_goal_is_accepted_withdraws_it(machine: Machine, tmp_path: Path) -> None:
-    """It says so, and the goal is never begun."""
+    """The withdrawal is reported, and the goal never starts."""
     shutil.copy(PROGRAMS / "verbs" / "hesitant.py", tmp_path)
     server = machine.start("run", "hesitant:Hesitant", cwd=tmp_path)
     server.wait_for("starts")

@@ -12,19 +12,19 @@ from graphflow.msgs import registry
 
 
 def test_the_same_type(capsys: pytest.CaptureFixture[str]) -> None:
-    """Nothing is said of it."""
+    """The same type is accepted without a note."""
     assert agree("std_msgs/msg/String", ["a/msg/B", "std_msgs/msg/String"], "/chatter") == "std_msgs/msg/String"
     assert capsys.readouterr() == ("", "")
 
 
 def test_one_definition_under_two_names(capsys: pytest.CaptureFixture[str]) -> None:
-    """The graph's name is taken, which is said."""
+    """The graph's name is used, with a note."""
     assert agree("turtlesim_msgs/msg/Pose", ["a/msg/B", "turtlesim/msg/Pose"], "/turtle1/pose") == "turtlesim/msg/Pose"
     assert capsys.readouterr() == ("", "note: /turtle1/pose is of type turtlesim/msg/Pose; using that\n")
 
 
 def test_two_types() -> None:
-    """It is wrong usage, and the right one is named."""
+    """Different types are wrong usage; the error has the graph's."""
     with pytest.raises(UsageFault, match=r"^/chatter is of type std_msgs/msg/String, not std_msgs/msg/Int32$"):
         agree("std_msgs/msg/Int32", ["std_msgs/msg/String"], "/chatter")
 
@@ -43,7 +43,7 @@ def test_the_projects_own_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_those_of_a_workspace_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """From any folder of it; it is looked through once somebody wants a package that is not known."""
+    """Types of a workspace are found from any of its folders; it is searched for the first unknown package."""
     monkeypatch.setattr(registry, "_packages", {})
     monkeypatch.setattr(registry, "_later", [])
     package = tmp_path / "src" / "lamp_interfaces"
@@ -68,7 +68,7 @@ def test_those_of_a_workspace_are_known(tmp_path: Path, monkeypatch: pytest.Monk
     ],
 )
 def test_a_type_of_another_kind(type_name: str, kind: str, told: str) -> None:
-    """Is refused with the command that takes it; parts of services and actions are messages and services."""
+    """The error has the command for that kind; derived types of services and actions are accepted."""
     with pytest.raises(UsageFault, match=f"^{type_name} {told}$"):
         check_kind(type_name, kind)
     check_kind(f"{type_name}_Request", kind)
@@ -76,7 +76,7 @@ def test_a_type_of_another_kind(type_name: str, kind: str, told: str) -> None:
 
 
 def test_words_in_another_order() -> None:
-    """The line to type is told; without a slash at the front a name may be meant, too."""
+    """The error has the right command; a name without a leading slash is recognized, too."""
     with pytest.raises(
         UsageFault, match=r"^the name comes first, then its type: graphflow topic pub /t a/msg/B \.\.\.$"
     ):
@@ -88,6 +88,6 @@ def test_words_in_another_order() -> None:
 
 
 def test_a_type_by_its_last_part(capsys: pytest.CaptureFixture[str]) -> None:
-    """Is found by none, and the whole of one that is there is told."""
+    """A type's last part alone is not found, and the full name is suggested."""
     assert names_of_type({"/t": ["std_msgs/msg/String"]}, "String", only_count=False) == []
     assert capsys.readouterr().err == "nothing is of type String; did you mean 'std_msgs/msg/String'?\n"

@@ -51,14 +51,14 @@ def files_of(folder: Path) -> list[str]:
 
 @pytest.fixture
 def source(tmp_path: Path) -> Path:
-    """The folder of a workspace in which packages are made."""
+    """The `src` folder of a workspace."""
     folder = tmp_path / "ws" / "src"
     folder.mkdir(parents=True)
     return folder
 
 
 def test_a_python_package(machine: Machine, source: Path) -> None:
-    """It has the files of ROS 2's, and is told of in the same lines."""
+    """A Python package has the same files as ROS 2's, and the output has the same lines."""
     words = ["my_pkg", "--build-type", "ament_python", "--dependencies", "rclpy", "std_msgs", "--node-name", "first"]
     more = ["--library-name", "tools", "--license", "MIT", "--maintainer-name", "Ann O'Hara"]
     email = ["--maintainer-email", "ann@example.org", "--description", "It is <first>."]
@@ -120,7 +120,7 @@ def test_a_package_for_cmake(machine: Machine, source: Path) -> None:
 
 
 def test_without_a_build_type(machine: Machine, tmp_path: Path) -> None:
-    """It is a project of graphflow's, and it is said which options were not for that."""
+    """Without a build type, a graphflow project is written, with a note on unused options."""
     words = ["my_pkg", "--node-name", "first", "--destination-directory", "src"]
     told = machine.look("pkg", "create", *words, cwd=tmp_path)
     assert "creating src/my_pkg/pyproject.toml" in told
@@ -144,7 +144,7 @@ def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_
     ],
 )
 def test_words_without_an_option(words: str, told: str) -> None:
-    """What `catkin_create_pkg` takes is told as it is written; so is a name in two words, and none."""
+    """Arguments of `catkin_create_pkg` are corrected, as are a name in two words and a missing one."""
     done = CliRunner().invoke(cli, ["pkg", "create", *words.split()])
     text = str(done.exception) if isinstance(done.exception, UsageFault) else done.output
     assert told in " ".join(text.split())
@@ -171,7 +171,7 @@ def test_what_cannot_be(machine: Machine, tmp_path: Path, words: list[str], told
 
 
 def test_nothing_is_overwritten(machine: Machine, source: Path) -> None:
-    """A folder that is there stays as it is, be it empty."""
+    """An existing folder is not changed, even if it is empty."""
     (source / "my_pkg").mkdir()
     told = machine.look("pkg", "create", "my_pkg", "--build-type", "ament_python", cwd=source, code=2)
     assert "my_pkg already exists" in told
@@ -179,7 +179,7 @@ def test_nothing_is_overwritten(machine: Machine, source: Path) -> None:
 
 
 def test_licenses(machine: Machine, source: Path) -> None:
-    """Those whose texts are there; another one is noted in package.xml only."""
+    """The text of a known license is written; another one is only named in package.xml."""
     assert "Apache-2.0" in machine.look("pkg", "create", "--license", "?", cwd=source).splitlines()
     told = machine.look("pkg", "create", "a", "--build-type", "cmake", "--license", "mine", cwd=source)
     assert "note: no LICENSE file is written for 'mine'" in told

@@ -57,7 +57,7 @@ def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) 
 
 @slow
 def test_its_nodes_have_names(machine: Machine, tmp_path: Path) -> None:
-    """As its `pyproject.toml` says, before it is installed, too; no package of its wheel is called `nodes`."""
+    """Nodes have the names of `pyproject.toml`, even before installation; the wheel has no package `nodes`."""
     machine.look("init", "mylab", cwd=tmp_path)
     project = tmp_path / "mylab"
     assert machine.look("pkg", "executables", "mylab", cwd=project) == "mylab greeter\n"
@@ -94,7 +94,7 @@ def test_its_graph_can_be_included_under_namespaces(machine: Machine, tmp_path: 
     ],
 )
 def test_a_name_must_be_a_packages(machine: Machine, tmp_path: Path, name: str, told: str) -> None:
-    """Since the interface package is called after it, and Python imports it; one that can be is told."""
+    """A name must be valid for a package, since Python imports it; a valid one is suggested."""
     assert told in machine.run("init", name, cwd=tmp_path, code=2)
     assert not (tmp_path / name).exists()
 
@@ -109,7 +109,7 @@ def test_nothing_is_overwritten(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_the_folder_itself(machine: Machine, tmp_path: Path) -> None:
-    """Is filled if it is empty; else it is said how to make a new one."""
+    """The current folder is filled if it is empty; otherwise the error says how to create a new one."""
     (tmp_path / "lab").mkdir()
     assert machine.run("init", ".", cwd=tmp_path / "lab").endswith("next:\n  graphflow up graphs/lab.yaml\n")
     assert (tmp_path / "lab" / "lab" / "greeter.py").is_file()

@@ -28,13 +28,13 @@ def source(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("name", ["std_msgs", "rclpy", "turtlesim", "tf2_tools"])
 def test_names_of_ros(source: Path, name: str) -> None:
-    """Are refused, as the package would hide the one that programs mean."""
+    """Names of ROS 2 packages are refused, since the new package would hide them."""
     with pytest.raises(UsageFault, match=f"'{name}' is a package of ROS 2, which yours would hide; choose another"):
         check_package(name, source / name)
 
 
 def test_a_name_of_the_workspace(source: Path) -> None:
-    """Is refused wherever the new package is to be."""
+    """A name of another package of the workspace is refused in every folder."""
     for folder in (source / "tools" / "lamp", source.parent / "lamp"):
         with pytest.raises(UsageFault, match=f"{source / 'lamp'} already is the package 'lamp'"):
             check_package("lamp", folder)
@@ -43,7 +43,7 @@ def test_a_name_of_the_workspace(source: Path) -> None:
 
 
 def test_dependencies(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Are names of packages; one that is like a known one is probably misspelt."""
+    """Dependencies must be names of packages; one that resembles a known one is reported as misspelt."""
     with pytest.raises(UsageFault, match="write spaces between them: --dependencies rclpy std_msgs"):
         check_dependencies(["lamp", "rclpy,std_msgs"], source / "new")
     with pytest.raises(UsageFault, match=r"'<x>' cannot be the name of a package$"):
@@ -55,7 +55,7 @@ def test_dependencies(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_name_that_ros_warns_of(capsys: pytest.CaptureFixture[str]) -> None:
-    """Is told with one that it does not; other names are not."""
+    """A name that breaks ROS's convention gets a note with a valid one; other names do not."""
     for name in ("lamp", "lamp_2"):
         warn_of_name(name)
     assert capsys.readouterr().err == ""
@@ -65,7 +65,7 @@ def test_a_name_that_ros_warns_of(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_place_where_it_is_not_found(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Is told with the command that mends it."""
+    """A package beside `src` gets a note with the command that moves it."""
     warn_of_place(source / "new")
     assert capsys.readouterr().err == ""
     warn_of_place(source.parent / "new")
@@ -78,14 +78,14 @@ def test_a_place_where_it_is_not_found(source: Path, capsys: pytest.CaptureFixtu
     [("My-Robot", "my_robot"), ("3pkg", "my_3pkg"), ("first.py", "first"), ("class", "my_class"), ("--", "my_lab")],
 )
 def test_a_name_that_can_be(word: str, near: str) -> None:
-    """Is made of one that cannot, and is one of the same kind."""
+    """An invalid name becomes a valid, similar one."""
     assert near_name(word) == near
     assert near.isidentifier()
     assert near_name(near) == near
 
 
 def test_modules_that_would_be_hidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those of Python and of installed packages; a folder of the user's own is none."""
+    """Modules of Python and of installed packages would be hidden; the user's own folder would not."""
     (tmp_path / "own_lamp").mkdir()
     (tmp_path / "own_lamp" / "__init__.py").touch()
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""Which node is meant: by class, file, module, name, or as ROS 2 names it."""
+"""Finding the node to run: by class, file, module, name, or as in ROS 2."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     "what", ["own_nodes.slide:Slide", "own_nodes/slide.py:Slide", "own_nodes/slide.py", "own_nodes.slide"]
 )
 def test_the_only_class(what: str, project: Path) -> None:
-    """By its path, its file, its module; the words are left."""
+    """The only class of a module is found by path, file or module; the remaining words are the node's."""
     cls, rest = find_class(what, ["2", "--fast"])
     assert (cls.__module__, cls.__name__) == ("own_nodes.slide", "Slide")
     assert rest == ["2", "--fast"]
@@ -102,7 +102,7 @@ def test_what_is_not_there(what: str, words: list[str], text: str, project: Path
 
 
 def test_a_file_that_is_no_python(project: Path) -> None:
-    """Is shown where it is not, as Python does."""
+    """A syntax error is shown with its line and a caret, as by Python."""
     (project / "own_nodes" / "cut.py").write_text("import rclpy\nfrom std_msgs/msg import Int32\n")
     with pytest.raises(UsageFault) as caught:
         find_class("own_nodes/cut.py", [])
@@ -122,14 +122,14 @@ def test_bundled_nodes(project: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 @pytest.mark.parametrize("class_path", sorted(set(EXECUTABLES.values())))
 def test_executables_of_ros(class_path: str) -> None:
-    """Each is there."""
+    """Each executable of ROS's packages exists."""
     module, _, name = class_path.partition(":")
     file = demos_root() / f"{module.replace('.', '/')}.py"
     assert f"class {name}(" in file.read_text(encoding="utf-8")
 
 
 def test_the_project_that_one_is_in(project: Path) -> None:
-    """Is no package; its nodes are run by their names alone."""
+    """The project's own name is not a package; its nodes are run by name."""
     names = 'slide = "own_nodes.slide:Slide"\nleft = "own_nodes.two:Left"\n'
     (project / "pyproject.toml").write_text(f'[project]\nname = "x"\n[project.entry-points."graphflow.nodes"]\n{names}')
     for words, node in (([], "left"), (["slid"], "slide")):

@@ -28,7 +28,7 @@ def test_the_lists_are_commands(node: str | None, library: str | None) -> None:
 
 
 def test_with_modules() -> None:
-    """What finds ament's parts for Python comes before its use."""
+    """ament's parts for Python are found before they are used."""
     text = ros_cmake.with_modules(ros_cmake.ament("pkg", (), None, None))
     found, used = text.index("find_package(ament_cmake_python"), text.index("ament_python_install_package")
     assert found < used < text.index("find_package(ament_cmake_pytest") < text.index("ament_package()")

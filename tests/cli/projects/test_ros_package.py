@@ -22,7 +22,7 @@ def described(template: str, **more: object) -> dict[str, str]:
 
 @pytest.mark.parametrize("template", TEMPLATES)
 def test_the_manifest(template: str) -> None:
-    """It can be read, whatever the words have in them."""
+    """The manifest is valid XML, whatever the settings contain."""
     text = described(template, description='a <b> & "c"', dependencies=("rclpy", "std_msgs"))["package.xml"]
     root = ElementTree.fromstring(text.partition("?>\n")[2].partition("?>\n")[2])
     assert root.get("format") == "3"
@@ -33,7 +33,7 @@ def test_the_manifest(template: str) -> None:
 
 
 def test_setup_py() -> None:
-    """It is Python, whatever the words have in them, and names the executable as a workspace reads it."""
+    """setup.py is valid Python, whatever the settings contain, and a workspace finds its executable."""
     text = described("ament_python", node_name="first", description='it\'s "this"')["setup.py"]
     keywords = {one.arg: one.value for one in ast.walk(ast.parse(text)) if isinstance(one, ast.keyword)}
     assert ast.literal_eval(keywords["description"]) == 'it\'s "this"'
@@ -45,7 +45,7 @@ def test_setup_py() -> None:
 @pytest.mark.parametrize("node", [None, "one"])
 @pytest.mark.parametrize("library", [None, "two"])
 def test_all_is_filled_in(tmp_path: Path, build_type: str, node: str | None, library: str | None) -> None:
-    """No file has a word left that stands for a name, and the workspace finds the package."""
+    """No placeholder is left in any file, and the workspace finds the package."""
     files = described(build_type, node_name=node, library_name=library, dependencies=("a", "b"))
     for path, text in files.items():
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)

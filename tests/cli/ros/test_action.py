@@ -1,4 +1,4 @@
-"""`graphflow action list`, `info`, `type` and `find`, and what `send_goal` makes of the words it is given."""
+"""`graphflow action list`, `info`, `type` and `find`, and the arguments of `send_goal`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_list(standing: Machine) -> None:
 
 
 def test_type_and_find(standing: Machine) -> None:
-    """From the name to the type and back; a type that nobody has is found nowhere."""
+    """`type` and `find` are inverse; a type that no action has is not found."""
     assert standing.look("action", "type", "fibonacci") == f"{TYPE}\n"
     assert standing.look("action", "find", TYPE) == "/fibonacci\n"
     assert standing.look("action", "find", TYPE, "-c") == "1\n"
@@ -33,7 +33,7 @@ def test_type_and_find(standing: Machine) -> None:
 
 
 def test_info(standing: Machine) -> None:
-    """Who serves it, and who sends goals to it."""
+    """`info` shows the servers and clients of an action."""
     assert standing.look("action", "info", "/fibonacci") == (
         "Action: /fibonacci\nAction clients: 1\n    /office/clerk\nAction servers: 1\n    /fibonacci_server\n"
     )
@@ -64,12 +64,12 @@ def test_info(standing: Machine) -> None:
     ],
 )
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, told: str) -> None:
-    """The error names what is there, and the exit code is 2."""
+    """The error suggests existing names, and the exit code is 2."""
     assert told in standing.look("action", *words.split(), code=2)
 
 
 def test_a_goal_that_succeeds(standing: Machine) -> None:
-    """It is shown as ROS 2 shows it, from the goal to the result."""
+    """Goal, feedback and result are printed as in ROS 2."""
     text = standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: 1}")
     assert "Sending goal:\n    order: 1\n" in text
     assert "Goal accepted with ID: " in text
@@ -83,7 +83,7 @@ def test_a_goal_that_is_rejected(standing: Machine) -> None:
 
 
 def test_a_goal_to_nobody(standing: Machine) -> None:
-    """The nearest action is named at once, in case there is none to wait for; then the time is up, exit code 4."""
+    """The nearest action is suggested at once; after the timeout, the exit code is 4."""
     words = ("send_goal", "/fibonaci", TYPE, "{order: 1}", "--timeout", "0.3")
     text = standing.look("action", *words, code=4)
     assert "there is no action /fibonaci yet; did you mean '/fibonacci'?\nWaiting for an action server" in text
@@ -105,7 +105,7 @@ def test_echo(standing: Machine) -> None:
 
 @slow
 def test_a_goal_for_programs(standing: Machine) -> None:
-    """What becomes of it, a line of JSON each."""
+    """Each event of the goal is a line of JSON."""
     text = standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: 3}", "-f", "--json")
     told = [json.loads(line) for line in text.splitlines()]
     assert told[0]["event"] == "accepted"

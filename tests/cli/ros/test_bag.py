@@ -1,4 +1,4 @@
-"""`graphflow bag` with bags that are there: info, echo, recover, convert, filter, merge; and words that do not fit."""
+"""`graphflow bag` on existing bags: info, echo, recover, convert, filter, merge; and wrong arguments."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_info(machine: Machine, folder: Path) -> None:
-    """In ROS 2's words, of the folder and of the file; names alone; JSON."""
+    """`info` is printed as in ROS 2, of a folder and of a file, as names only, and as JSON."""
     for path in ("bag", "bag/bag_0.mcap"):
         assert "Topic: /chatter | Type: std_msgs/msg/String | Count: 20 |" in machine.look(
             "bag", "info", path, cwd=folder
@@ -31,7 +31,7 @@ def test_info(machine: Machine, folder: Path) -> None:
 
 
 def test_echo(machine: Machine, folder: Path) -> None:
-    """As `topic echo` shows them, with topic and time; as lines for programs."""
+    """Messages are printed as by `topic echo`, with topic and time, or as lines of JSON or CSV."""
     text = machine.look("bag", "echo", "bag", "/count", "-n", "2", cwd=folder)
     assert text == "# /count 1700000000.050000000\ndata: 0\n---\n# /count 1700000000.150000000\ndata: 1\n---\n"
     assert machine.look("bag", "echo", "bag", "--csv", "-n", "1", cwd=folder) == "1700000000000000000,/map,map\n"
@@ -40,7 +40,7 @@ def test_echo(machine: Machine, folder: Path) -> None:
 
 
 def test_bags_of_bags(machine: Machine, folder: Path) -> None:
-    """Cut, converted, merged, recovered; each says what it made."""
+    """Bags are filtered, converted, merged and recovered; each verb reports the new bag."""
     text = machine.look("bag", "filter", "bag", "--topics", "/count", "--start", "1", cwd=folder)
     assert text.startswith("bag_filtered: 10 messages of 1 topic, ")
     machine.look("bag", "filter", "bag", "-x", "count", "-m", "chatter:=/news", "-o", "news", cwd=folder)
@@ -120,7 +120,7 @@ def test_words_that_do_not_fit(machine: Machine, folder: Path, words: str, code:
 
 
 def test_convert_by_a_file_of_options(machine: Machine, folder: Path) -> None:
-    """As scripts for ROS 2 do it: `-o` is a file; where it is none, it is the new bag's folder."""
+    """`-o` is a file of options, as in ROS 2, if it exists; otherwise it is the new bag's folder."""
     rows = "[{uri: some, storage_id: mcap, topics: [/count, /mapp]}, {uri: all, storage_id: sqlite3, alll: true}]"
     (folder / "out.yaml").write_text(f"output_bags: {rows}\n")
     text = machine.look("bag", "convert", "-i", "bag", "mcap", "-o", "out.yaml", cwd=folder)

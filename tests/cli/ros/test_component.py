@@ -23,7 +23,7 @@ GRAPH = "tests/programs/supervisor/components.yaml"
 
 @slow
 def test_nodes_come_and_go(machine: Machine) -> None:
-    """In ROS 2's words; a process that is started again has the same nodes."""
+    """Loading and unloading print ROS 2's lines; a restarted process has the same nodes."""
     machine.run("up", "-d", GRAPH)
     assert machine.look("component", "list") == "tutorial\n  1  /talker\n  2  /listener\n/alone\n  1  /alone\n"
     words = ("-n", "ear", "--node-namespace", "/room", "-r", "chatter:=/news", "--log-level", "WARN")
@@ -65,13 +65,13 @@ def test_nodes_come_and_go(machine: Machine) -> None:
     ],
 )
 def test_mistakes(components: Machine, words: tuple[str, ...], code: int, told: str) -> None:
-    """Each is told with what to write instead, and changes nothing."""
+    """Each mistake is an error with a suggestion, and changes nothing."""
     assert told in components.look("component", *words, code=code)
 
 
 @pytest.fixture(scope="module")
 def components(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
-    """A machine on which the graph stands."""
+    """A machine with a running graph."""
     made = Machine(tmp_path_factory.mktemp("components"))
     made.run("up", "-d", GRAPH)
     yield made
@@ -80,7 +80,7 @@ def components(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 
 @slow
 def test_a_process_that_is_stopped_takes_no_order(machine: Machine) -> None:
-    """Neither the supervisor nor the process that starts the nodes waits for it; when it goes on, it obeys."""
+    """Nothing waits for a stopped process; it carries out the command once it continues."""
     machine.run("up", "-d", GRAPH)
     pid = next(r["pid"] for r in json.loads(machine.look("ps", "--json")) if r["node"] == "/alone")
     ear = planned_component(Listener.interface(), "ear", "/", RosArgs(), "")

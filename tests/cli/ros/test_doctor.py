@@ -25,7 +25,7 @@ def no_ros(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_endpoints_that_do_not_fit(standing: Machine) -> None:
-    """They are a fault, so that the exit code is 1."""
+    """Incompatible endpoints are a fault, with exit code 1."""
     assert standing.look("doctor", code=1).startswith(STANDING_FAULT)
     found = json.loads(standing.look("wtf", "--json", code=1))
     assert [text[: len(STANDING_FAULT)] for text in found.pop("misfits")] == [STANDING_FAULT]
@@ -53,7 +53,7 @@ def test_endpoints_that_do_not_fit(standing: Machine) -> None:
 
 
 def test_nothing_runs(machine: Machine) -> None:
-    """What is installed is looked at all the same."""
+    """Without a graph, the installation is checked."""
     assert "no graph is running" in machine.look("doctor", code=3) or "nothing is running" in machine.look(
         "doctor", code=3
     )
@@ -63,7 +63,7 @@ def test_nothing_runs(machine: Machine) -> None:
 
 @slow
 def test_a_stopped_process(machine: Machine, tmp_path: Path) -> None:
-    """It is told at once, long before the network forgets it; a program that is no node is told likewise."""
+    """A stopped process is reported at once, even if it is not a node's."""
     (tmp_path / "g.yaml").write_text("nodes: {/talker: {class: nodes.talker:Talker}, /p: {command: [sleep, '99']}}\n")
     machine.run("up", "-d", "g.yaml", cwd=tmp_path)
     pids = {row["node"]: row["pid"] for row in json.loads(machine.look("ps", "--json"))}
@@ -83,7 +83,7 @@ def test_a_stopped_process(machine: Machine, tmp_path: Path) -> None:
 
 @slow
 def test_a_stopped_process_of_no_graph(machine: Machine) -> None:
-    """It is told, also by the verbs that get no answer from it."""
+    """A stopped process outside all graphs is reported, also by verbs that get no answer from it."""
     router = machine.start("router")
     machine.until(lambda: "nothing" not in machine.run("node", "list", code=None), "the router answers")
     talker = machine.start("run", "nodes.talker:Talker")
@@ -102,7 +102,7 @@ def test_a_stopped_process_of_no_graph(machine: Machine) -> None:
 
 @slow
 def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
-    """Is told, with the folder that it has left."""
+    """A killed graph is reported with the folder that it left."""
     (tmp_path / "g.yaml").write_text("nodes: {/talker: {class: nodes.talker:Talker}}\n")
     machine.run("up", "-d", "g.yaml", cwd=tmp_path)
     [run_file] = Path(machine.env["XDG_RUNTIME_DIR"]).glob("graphflow/*/*/run.json")
@@ -116,7 +116,7 @@ def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_which_rclpy_wins_is_said(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where there are two; it is no fault."""
+    """If there are two versions of rclpy, a note names the imported one; it is not a fault."""
     assert "rclpy" not in machine.look("doctor", code=3)
     monkeypatch.setattr(enabling, "elsewhere", lambda: "/opt/ros/rclpy/__init__.py")
     assert "import rclpy imports that of the ROS 2 in this shell, /opt/ros/rclpy" in machine.look("doctor", code=3)
@@ -124,7 +124,7 @@ def test_which_rclpy_wins_is_said(machine: Machine, monkeypatch: pytest.MonkeyPa
 
 
 def test_options_are_not_the_environment(standing: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What this command was told is not held against the shell."""
+    """Options of this command are not reported as the shell's environment."""
     ros = {"AMENT_PREFIX_PATH": "/opt/ros/jazzy", "ROS_DISTRO": "jazzy", "RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
     monkeypatch.setitem(standing.env, "ZENOH_CONFIG_OVERRIDE", "x")
     for name, value in ros.items():

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.real
 @slow
 @pytest.mark.parametrize("words", some([("-ep", "0.05", "-pp", "0.5"), ()], ("-ep", "0.05", "-pp", "0.5")))
 def test_hello(machine: Machine, words: tuple[str, ...]) -> None:
-    """Two that run it hear each other, and not themselves."""
+    """Two processes receive each other's greetings, and not their own."""
     first = machine.start("doctor", "hello", *words)
     first.wait_for("Subscribed from: nobody")
     second = machine.start("doctor", "hello", *words)

@@ -117,14 +117,14 @@ def test_without_comments(own: Path, show: Show) -> None:
     ],
 )
 def test_an_unknown_type(name: str, message: str, show: Show) -> None:
-    """A misspelt type is told with the nearest one, and exit code 2."""
+    """For a misspelt type the nearest is suggested, with exit code 2."""
     code, out, err = show(name)
     assert (code, out) == (exits.USAGE, "")
     assert err.startswith(message)
 
 
 def test_a_type_in_two_words(capsys: pytest.CaptureFixture[str]) -> None:
-    """It is told as one."""
+    """A type in two words is corrected to one."""
     for words, told in (
         (["geometry_msgs", "Twist"], "a type is one word: graphflow interface show geometry_msgs/msg/Twist"),
         (["a", "b"], "Got unexpected extra argument (b)"),
@@ -152,7 +152,7 @@ def stubs(*words: str) -> int:
 
 
 def test_stubs_of_a_project(mylab: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """They lie where editors look, say what the definitions say, and those of other packages are left alone."""
+    """Stubs are written where editors find them, match the definitions, and do not touch other packages'."""
     definition = mylab / "interfaces/mylab_interfaces/msg/Greeting.msg"
     definition.write_text(definition.read_text() + "float64[] pitch\n")
     capsys.readouterr()
@@ -167,7 +167,7 @@ def test_stubs_of_a_project(mylab: Path, capsys: pytest.CaptureFixture[str]) -> 
 def test_stubs_of_a_workspace(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Under the names that ROS's code imports them by, in the workspace."""
+    """Stubs are in the workspace, under the names that ROS's code imports."""
     monkeypatch.setattr(registry, "_packages", {})
     package = tmp_path / "src" / "lamp_interfaces"
     (package / "msg").mkdir(parents=True)
@@ -183,7 +183,7 @@ def test_stubs_of_a_workspace(
 def test_stubs_where_there_is_nothing_to_describe(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], show: Show
 ) -> None:
-    """The message says what is looked for, and where."""
+    """The error says what is missing, and where."""
     monkeypatch.chdir(tmp_path)
     assert stubs() == exits.USAGE
     assert f"{tmp_path / 'interfaces'} has no PACKAGE/msg" in capsys.readouterr().err
@@ -204,7 +204,7 @@ def test_a_type_checker_finds_the_stubs(mylab: Path) -> None:
 
 
 def test_types_are_listed(mylab: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """By kind, by package, and the packages; the project's own among them."""
+    """Types are listed by kind and by package, including the project's own."""
     runner = CliRunner()
     listed = runner.invoke(cli, ["interface", "list"]).output.splitlines()
     assert [line for line in listed if line.endswith(":")] == ["Messages:", "Services:", "Actions:"]
@@ -227,7 +227,7 @@ def looked(capsys: pytest.CaptureFixture[str], *words: str) -> str:
 
 
 def test_proto(capsys: pytest.CaptureFixture[str]) -> None:
-    """A message to fill in, in quotes as ROS 2 prints it; a service's request, an action's goal."""
+    """`proto` prints a quoted message, as ROS 2 does; a service's request; an action's goal."""
     point = "x: 0.0\ny: 0.0\nz: 0.0\n"
     assert looked(capsys, "proto", "geometry_msgs/msg/Point") == f'"{point}"\n'
     assert looked(capsys, "proto", "geometry_msgs/Point", "--no-quotes") == point
@@ -251,7 +251,7 @@ def test_kinds(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_comments(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those of nested types when they are asked for."""
+    """`--all-comments` shows comments of nested types, too."""
     folder = tmp_path / "interfaces" / "commented_msgs" / "msg"
     folder.mkdir(parents=True)
     (tmp_path / "pyproject.toml").touch()

@@ -21,7 +21,7 @@ XML = """<launch>
 
 
 def test_python(machine: Machine, tmp_path: Path) -> None:
-    """What it describes is a graph file; what is left out is listed with its line, and the exit code says so."""
+    """A Python launch file becomes a graph file; what is left out is listed with its line, with exit code 1."""
     target = tmp_path / "robot.yaml"
     told = machine.look("launch", "convert", str(ROBOT), "-o", str(target), code=1)
     assert f"{target}: written; try it with: graphflow check {target}" in told
@@ -61,7 +61,7 @@ def test_xml(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
-    """It is said why, or what to type instead."""
+    """The error has the reason, or the right command."""
     (tmp_path / "a.py").write_text("import os\nos._exit(3)\n")
     assert "it ended before it had described itself" in machine.look(
         "launch", "convert", str(tmp_path / "a.py"), code=2
@@ -91,7 +91,7 @@ def generate_launch_description():
 
 
 def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
-    """Of a file, or of a file of a package; with ROS 2's options."""
+    """`launch` starts a file, or a file of a package, with ROS 2's options."""
     folder = tmp_path / "my_robot"
     (folder / "launch").mkdir(parents=True)
     (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
@@ -114,7 +114,7 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_a_folder_with_a_link_to_itself_is_searched_once(tmp_path: Path) -> None:
-    """Also behind links to others."""
+    """A folder that links to itself is searched once, and so are linked folders."""
     (tmp_path / "a" / "b").mkdir(parents=True)
     (tmp_path / "a" / "b" / "f.launch.py").touch()
     (tmp_path / "a" / "round").symlink_to(tmp_path)
@@ -123,7 +123,7 @@ def test_a_folder_with_a_link_to_itself_is_searched_once(tmp_path: Path) -> None
 
 
 def test_debug_is_not_detach(machine: Machine, tmp_path: Path) -> None:
-    """`-d` is ROS's word for another thing than that of `up -d`, and is told to do nothing."""
+    """`-d` is ROS's --debug, not that of `up -d`; a note says that it has no effect."""
     file = tmp_path / "a.launch.xml"
     file.write_text(XML)
     told = machine.look("launch", "-d", "-p", str(file))
@@ -131,7 +131,7 @@ def test_debug_is_not_detach(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
-    """As by `up --detach`."""
+    """`--detach` works as with `up`."""
     file = tmp_path / "a.launch.xml"
     file.write_text(XML)
     assert "Stop with: graphflow down" in machine.run("launch", "--detach", str(file), cwd=tmp_path)
@@ -139,7 +139,7 @@ def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_json(machine: Machine, tmp_path: Path) -> None:
-    """What happens, a line each, as by `up --json`; with -p, the plan."""
+    """Events are lines of JSON, as by `up --json`; with -p, the plan is."""
     file = tmp_path / "a.launch.xml"
     file.write_text(XML)
     shown = json.loads(machine.look("launch", "--json", "-p", str(file)))
@@ -151,7 +151,7 @@ def test_json(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_a_package_without_a_file(machine: Machine, tmp_path: Path) -> None:
-    """Its launch files are named."""
+    """The error lists the package's launch files."""
     folder = tmp_path / "src" / "lamp"
     (folder / "launch").mkdir(parents=True)
     (folder / "package.xml").write_text("<package><name>lamp</name></package>")

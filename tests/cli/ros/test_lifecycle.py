@@ -15,7 +15,7 @@ LISTED = "- {} [{}]\n\tStart: {}\n\tGoal: {}\n"
 
 
 def test_a_life(machine: Machine) -> None:
-    """The supervisor brings the node up; the verbs bring it down and up again, in ROS 2's words."""
+    """The supervisor activates the node; the verbs deactivate and activate it, with ROS 2's output."""
     machine.run("up", "-d", "graphs/lifecycle.yaml")
     assert machine.look("lifecycle", "nodes") == "/lc_talker\n"
     assert machine.look("lifecycle", "nodes", "-c") == "1\n"
@@ -47,14 +47,14 @@ def test_a_life(machine: Machine) -> None:
 
 @slow
 def test_a_node_that_cannot_be_brought_up(machine: Machine) -> None:
-    """The graph does not come up, and says why."""
+    """The graph does not come up, with the reason."""
     text = machine.run("up", "-d", "tests/programs/supervisor/refusing.yaml", code=1)
     assert "exit code 70 (an error in the node): /camera could not configure: on_configure refused: no camera" in text
 
 
 @slow
 def test_a_transition_that_is_refused(machine: Machine) -> None:
-    """`set` fails, and says where the reason is."""
+    """`set` fails, and names the log with the reason."""
     machine.run("up", "-d", "tests/programs/supervisor/refusing.yaml", "state:=unconfigured")
     told = machine.look("lifecycle", "set", "/camera", "configure", code=1)
     assert told.startswith("Transitioning failed\nerror: /camera is unconfigured; its log says why: graphflow logs")

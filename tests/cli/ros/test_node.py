@@ -32,7 +32,7 @@ def test_hidden_nodes_are_listed_when_asked_for(standing: Machine) -> None:
 
 @pytest.mark.real
 def test_info(standing: Machine) -> None:
-    """What a node says, hears, serves and asks, as ROS 2 prints it."""
+    """A node's endpoints are printed as in ROS 2."""
     lines = standing.look("node", "info", "/office/clerk").splitlines()
     titles = ["Subscribers", "Publishers", "Service Servers", "Service Clients", "Action Servers", "Action Clients"]
     assert [line for line in lines if line.endswith(":")] == [f"  {title}:" for title in titles]
@@ -50,7 +50,7 @@ def test_info(standing: Machine) -> None:
 
 @pytest.mark.real
 def test_info_of_what_is_hidden(standing: Machine) -> None:
-    """Names with an underscore are shown when they are asked for, and QoS with `-v`."""
+    """Hidden names are shown on request, and QoS with `-v`."""
     words = ("node", "info", "/office/clerk")
     assert "/office/_drawer" not in standing.look(*words)
     text = standing.look(*words, "--include-hidden", "-v")
@@ -74,12 +74,12 @@ def test_info_for_programs(standing: Machine) -> None:
     [("clerk", "error: there is no node /clerk; did you mean '/office/clerk'?"), ("/x", "error: there is no node /x")],
 )
 def test_a_node_that_is_not_there(standing: Machine, name: str, told: str) -> None:
-    """The nearest name is told, and the exit code is 1."""
+    """The nearest name is suggested, and the exit code is 1."""
     assert standing.look("node", "info", name, code=1).startswith(told)
 
 
 def test_twins_are_told(capsys: pytest.CaptureFixture[str]) -> None:
-    """Two nodes of one name are a warning, each name once; different ones are none."""
+    """Two nodes of one name cause a warning, once for each name."""
     _warn_of_twins(["/a", "/b"])
     assert capsys.readouterr() == ("", "")
     _warn_of_twins(["/a", "/a", "/a", "/b"])

@@ -85,7 +85,7 @@ def test_a_value_is_read_as_the_declared_type_wants_it(text: str, type_: Any, va
 
 @pytest.mark.parametrize("text", ["{a: 1", "[1, 2", "*a", "'x"])
 def test_what_is_no_yaml_is_wrong_usage(text: str) -> None:
-    """Half a list is told as such, before anybody is asked."""
+    """Invalid YAML is an error before any call."""
     with pytest.raises(UsageFault, match="character"):
         read_value(text, TYPE_IDS["list[int]"])
 
@@ -122,7 +122,7 @@ def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> N
 
 @pytest.mark.real
 def test_a_wrong_value_in_a_file_fails_alone(machine: Machine, tmp_path: Path) -> None:
-    """The rest is set; the reason is told, and the exit code is 1."""
+    """The other values are set; the reason is printed, and the exit code is 1."""
     ready(start(machine, tmp_path))
     file = tmp_path / "p.yaml"
     file.write_text("robot: {ros__parameters: {gain: 2.3, count: 4, title: 5, nothing: 1}}\n")
@@ -146,7 +146,7 @@ def test_a_wrong_value_in_a_file_fails_alone(machine: Machine, tmp_path: Path) -
 
 @pytest.mark.real
 def test_describe_and_delete(machine: Machine, tmp_path: Path) -> None:
-    """As ROS 2 prints them; only what was declared dynamically can go."""
+    """Descriptions are printed as in ROS 2; only dynamically typed parameters can be deleted."""
     ready(start(machine, tmp_path))
     assert machine.look("param", "describe", "/robot", "gain", "count", "fixed") == (
         "Parameter name: gain\n  Type: double\n  Description: How much. [m]\n  Constraints:\n"
@@ -163,7 +163,7 @@ def test_describe_and_delete(machine: Machine, tmp_path: Path) -> None:
 
 @pytest.mark.real
 def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> None:
-    """Below what the command line says; a wildcard's parameter that it does not have is left out and told."""
+    """The command line overrides the file; a wildcard's unknown parameter is skipped with a note."""
     (tmp_path / "p.yaml").write_text(
         "'/**': {ros__parameters: {unknown: 1}}\n/left/arm: {ros__parameters: {gain: 3.5, count: 9}}\n"
     )
@@ -187,7 +187,7 @@ def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> N
     ],
 )
 def test_a_wrong_params_file_is_refused(machine: Machine, tmp_path: Path, text: str, problem: str) -> None:
-    """With its place and what was meant, before the node is on the network."""
+    """A wrong file is an error with place and suggestion, before the node is on the network."""
     (tmp_path / "p.yaml").write_text(text)
     program = start(machine, tmp_path, "--params-file", "p.yaml")
     assert program.wait() == 2
@@ -195,7 +195,7 @@ def test_a_wrong_params_file_is_refused(machine: Machine, tmp_path: Path, text: 
 
 
 def test_some_of_a_list(standing: Machine) -> None:
-    """By a pattern, or by what they begin with."""
+    """`list` is filtered by a pattern or by prefixes."""
     assert standing.look("param", "list", "/office/clerk", "--filter", "sim_time$") == "  use_sim_time\n"
     assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim") == (
         "no parameter matches; without --filter and --param-prefixes, all are listed\n"
@@ -208,7 +208,7 @@ def test_some_of_a_list(standing: Machine) -> None:
     ("words", "node"), [("t.yaml /talker", "/talker"), ("t.yaml", "NODE"), ("t.yml talker --timeout=3", "talker")]
 )
 def test_a_file_before_the_node(words: str, node: str) -> None:
-    """The whole command is told; the file need not be there."""
+    """The error has the right command, even if the file does not exist."""
     done = CliRunner().invoke(cli, ["param", "load", *words.split()])
     assert f"the node comes first: graphflow param load {node} {words.split()[0]}" in done.output
 
@@ -236,11 +236,11 @@ def test_a_file_before_the_node(words: str, node: str) -> None:
     ],
 )
 def test_a_word_too_few(standing: Machine, words: str, told: str) -> None:
-    """The whole command is told, with the node that has the parameter."""
+    """The error has the whole command, with the node that has the parameter."""
     assert told in standing.look("param", *shlex.split(words), code=2)
 
 
 def test_a_mapping(standing: Machine) -> None:
-    """No parameter is one: the name of the first that was meant is told."""
+    """A mapping is not a value: the error has the name of its first parameter."""
     told = standing.look("param", "set", "/talker", "rate", "{x: 2}", code=1)
     assert "{'x': 2} cannot be a parameter: it is a mapping, whose keys are parameters of their own, as in " in told

@@ -1,4 +1,4 @@
-"""ROS 2's words for packages."""
+"""`graphflow pkg`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.conftest import PROJECT, Machine
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
-    """A package as ROS 2 makes it, with a node of ours."""
+    """A package as ROS 2 creates it, with a node of graphflow's."""
     root = tmp_path / "my_robot"
     (root / "nodes").mkdir(parents=True)
     (root / "pyproject.toml").write_text('[project]\nname = "my_robot"\n')
@@ -23,14 +23,14 @@ def robot(tmp_path: Path) -> Path:
 
 
 def test_list(machine: Machine, robot: Path) -> None:
-    """Those with nodes, the project's own, and those with types."""
+    """Packages with nodes, the project's own, and those with types are listed."""
     names = machine.look("pkg", "list", cwd=robot).split()
     assert names == sorted(names)
     assert {"my_robot", "turtlesim", "demo_nodes_cpp", "std_msgs"} <= {*names}
 
 
 def test_executables(machine: Machine, robot: Path) -> None:
-    """Of all packages, or of one, each with its package as in ROS 2; and where they are."""
+    """Executables of all packages or of one are listed, as in ROS 2, or their paths."""
     names = ("draw_square", "mimic", "turtle_teleop_key", "turtlesim_node")
     assert machine.look("pkg", "executables", "turtlesim").splitlines() == [f"turtlesim {name}" for name in names]
     rows = machine.look("pkg", "executables", cwd=robot).splitlines()
@@ -41,14 +41,14 @@ def test_executables(machine: Machine, robot: Path) -> None:
 
 
 def test_prefix(machine: Machine, robot: Path) -> None:
-    """Where a package is: the project's, and those that come with graphflow."""
+    """The prefix of the project's packages, and of those that come with graphflow, is printed."""
     assert machine.look("pkg", "prefix", "my_robot", cwd=robot) == f"{robot}\n"
     assert machine.look("pkg", "prefix", "turtlesim", "--share") == f"{PROJECT}\n"
     assert "Package not found" in machine.look("pkg", "prefix", "nav2", code=1)
 
 
 def test_xml(machine: Machine, robot: Path) -> None:
-    """The whole of it, or a tag."""
+    """The whole manifest, or one tag, is printed."""
     assert machine.look("pkg", "xml", "my_robot", cwd=robot) == (robot / "package.xml").read_text()
     assert machine.look("pkg", "xml", "my_robot", "-t", "depend", cwd=robot) == "a\nb\n"
     assert "has no tag 'x'" in machine.look("pkg", "xml", "my_robot", "-t", "x", cwd=robot, code=2)
@@ -58,7 +58,7 @@ def test_xml(machine: Machine, robot: Path) -> None:
 @slow
 @pytest.mark.real
 def test_the_executables_run(machine: Machine) -> None:
-    """`run PKG EXE` as on the slides, with or without `.py`; it answers."""
+    """`run PKG EXE` starts an executable, with or without `.py`."""
     node = machine.start("run", "demo_nodes_cpp", "add_two_ints_server.py")
     words = ("service", "call", "/add_two_ints", "example_interfaces/srv/AddTwoInts", "{a: 2, b: 5}")
     machine.until(lambda: machine.look_and_end("service", "type", "/add_two_ints")[0] == 0, "the service is there")

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.real
 
 @slow
 def test_a_report(standing: Machine) -> None:
-    """In ROS 2's sections; only those of checks that failed, if so wanted."""
+    """The report has ROS 2's sections; on request, only those of failed checks."""
     text = standing.look("doctor", "--report", code=1)
     for title in ("PLATFORM INFORMATION", "NETWORK CONFIGURATION", "RMW MIDDLEWARE", "TOPIC LIST", "PACKAGE VERSIONS"):
         assert f"\n   {title}\n" in text

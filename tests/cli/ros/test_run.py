@@ -37,7 +37,7 @@ def test_a_script_that_runs_a_node_ends_as_cleanly(machine: Machine) -> None:
 
 
 def test_remaps_and_namespace_reach_the_graph(machine: Machine) -> None:
-    """As in the course: __ns, __node, a remap, a parameter, with or without --ros-args."""
+    """__ns, __node, a remap rule and a parameter take effect, with or without --ros-args."""
     node = machine.start(
         "run", "nodes.talker:Talker", "__ns:=/robot", "__node:=voice", "chatter:=said", "-p", "rate:=20.0"
     )
@@ -76,7 +76,7 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
     ),
 )
 def test_what_is_wrong_is_said_in_a_line(machine: Machine, words: list[str], code: int, expected: str) -> None:
-    """One sentence that helps, and no traceback."""
+    """An error is one helpful sentence without a traceback."""
     text = machine.run("run", *words, code=code)
     assert expected in text
     assert "Traceback" not in text
@@ -92,7 +92,7 @@ def test_an_error_of_the_users_own_code_shows_its_traceback(machine: Machine, tm
 
 
 def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> None:
-    """Outside of any project the nodes that come with graphflow are found, which is said."""
+    """Bundled nodes are found outside any project, with a note."""
     node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0", cwd=tmp_path)
     node.wait_for("Publishing")
     assert "comes with graphflow" in node.text
@@ -101,7 +101,7 @@ def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> No
 
 @slow
 def test_words_of_its_own_reach_the_program(machine: Machine, tmp_path: Path) -> None:
-    """As with `ros2 run`: in sys.argv, without what is for ROS."""
+    """Other words are in sys.argv, without those for ROS, as with `ros2 run`."""
     (tmp_path / "adder.py").write_text(
         "import sys\nfrom graphflow import Node\nclass Adder(Node):\n"
         "    async def on_start(self):\n        self.log.info(f'{self.name} {sys.argv[1:]}')\n        self.shutdown()\n"
@@ -113,7 +113,7 @@ def test_words_of_its_own_reach_the_program(machine: Machine, tmp_path: Path) ->
 @slow
 @pytest.mark.parametrize("name", ["turtle_follower", "scheduler"])
 def test_a_bundled_node_beside_a_projects_own(machine: Machine, tmp_path: Path, name: str) -> None:
-    """A student's file of the same name as one of ours becomes no part of it; ours bring their interfaces along."""
+    """A project's file does not affect a bundled node of the same name, which brings its own interfaces."""
     (tmp_path / "nodes").mkdir()
     (tmp_path / "nodes" / "__init__.py").touch()
     (tmp_path / "nodes" / "position_controller.py").write_text("raise RuntimeError('mine')\n")
@@ -141,7 +141,7 @@ def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: P
 
 
 def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machine, tmp_path: Path) -> None:
-    """Whoever blocks the loop cannot be asked twice."""
+    """A handler that blocks the loop cannot be cancelled: the second Ctrl-C ends the process."""
     shutil.copy(PROGRAMS / "run" / "stuck.py", tmp_path)
     node = machine.start("run", "stuck:Stuck", cwd=tmp_path)
     node.wait_for("at work")
@@ -155,7 +155,7 @@ def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machin
 
 @slow
 def test_signals_that_come_together_are_one(machine: Machine) -> None:
-    """As from `timeout`, which signals its child and then the whole group."""
+    """Signals in quick succession count as one: `timeout` signals its child and then the whole group."""
     node = machine.start("run", "nodes.talker:Talker")
     node.wait_for("Publishing")
     node.process.send_signal(signal.SIGTERM)
@@ -164,7 +164,7 @@ def test_signals_that_come_together_are_one(machine: Machine) -> None:
 
 
 def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
-    """The likeliest mistake in a constructor is one sentence."""
+    """The likeliest mistake in a constructor is explained in one sentence."""
     shutil.copy(PROGRAMS / "run" / "bare.py", tmp_path)
     text = machine.run("run", "bare:Bare", cwd=tmp_path, code=2)
     assert text == "error: Bare.__init__ must call super().__init__(...)\n"
@@ -172,7 +172,7 @@ def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
 
 @slow
 def test_a_command_before_it(machine: Machine) -> None:
-    """Such as a debugger; one that is not there is told."""
+    """A prefix such as a debugger is run before the node; a missing one is an error."""
     program = machine.start("run", "--prefix", "env GREETING=1", "demo_nodes_cpp", "talker")
     program.wait_for("Hello World: 1")
     assert program.end(signal.SIGINT) == 0
@@ -195,18 +195,18 @@ def test_a_command_before_it(machine: Machine) -> None:
     ],
 )
 def test_a_remap_that_cannot_be(machine: Machine, words: list[str], told: str) -> None:
-    """One that matches nothing is an error, too, with exit code 2: ROS 2 would say nothing, and nothing would come."""
+    """A remap rule that matches nothing is an error with exit code 2; ROS 2 would silently ignore it."""
     assert told in machine.run("run", "talker", "--ros-args", *words, code=2)
 
 
 def test_a_prefix_that_is_none(machine: Machine) -> None:
-    """Says why."""
+    """An invalid prefix is an error with the reason."""
     assert "No closing quotation" in machine.look("run", "--prefix", "a'b", "demo_nodes_cpp", "talker", code=2)
 
 
 @slow
 def test_where_logs_go(machine: Machine) -> None:
-    """Neither to the terminal nor to /rosout, if that is so wanted."""
+    """Options turn off logs to the terminal and to /rosout."""
     listener = machine.start("run", "listener")
     node = machine.start("run", "talker", "--ros-args", "-p", "rate:=20.0", "--disable-stdout-logs")
     listener.wait_for("Hello World")
@@ -221,7 +221,7 @@ def test_where_logs_go(machine: Machine) -> None:
 
 
 def test_a_file_that_runs_itself(machine: Machine, tmp_path: Path) -> None:
-    """A file that calls `graphflow.run` for itself is run as the program that it is, with the words of the command."""
+    """A file that calls `graphflow.run` for itself is run as a program, with the command's arguments."""
     (tmp_path / "one.py").write_text(
         "import graphflow\n\n\nclass Talk(graphflow.Node):\n"
         "    async def on_start(self) -> None:\n        self.log.info('I am here')\n\n\ngraphflow.run(Talk)\n"

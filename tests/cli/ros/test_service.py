@@ -14,7 +14,7 @@ ADD, TYPE = "/office/clerk/add", "example_interfaces/srv/AddTwoInts"
 
 
 def test_list(standing: Machine) -> None:
-    """Names, sorted; with types; their number; the hidden ones when asked for; JSON."""
+    """`list` prints names, sorted; with types; their number; with hidden ones; as JSON."""
     names = standing.look("service", "list").split()
     assert names == sorted(names)
     assert ADD in names
@@ -68,18 +68,18 @@ def test_call(standing: Machine) -> None:
     ],
 )
 def test_a_call_that_fails(standing: Machine, words: list[str], code: int, told: str) -> None:
-    """Whose fault it was decides the exit code, and the text says what to write instead."""
+    """The exit code depends on whose fault it was; the error has the right command."""
     assert told in standing.look("service", "call", *words, code=code)
 
 
 def test_a_service_is_waited_for(standing: Machine) -> None:
-    """Who offers nothing yet may do so soon: it says that it waits, until the time is over."""
+    """A missing service is waited for, which is reported, until the timeout."""
     text = standing.look("service", "call", "/office/clerk/ad", TYPE, "{}", "--timeout", "0.01", code=4)
     assert text.startswith("waiting for service to become available...\nerror: no node offers the service")
 
 
 def test_a_call_that_is_repeated(standing: Machine) -> None:
-    """`--rate` goes on until Ctrl-C, which is no failure."""
+    """`--rate` calls repeatedly until Ctrl-C, which is not a failure."""
     calls = standing.start("service", "call", ADD, TYPE, "{a: 4, b: 5}", "--rate", "50")
     calls.wait_for("sum=9")
     calls.text = ""

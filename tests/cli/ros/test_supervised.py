@@ -1,4 +1,4 @@
-"""What supervisors say of nodes, for `graphflow doctor`."""
+"""Faults that supervisors report, for `graphflow doctor`."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from tests.cli.rows import node_row
     ],
 )
 def test_states(state: str, detail: str, told: list[str]) -> None:
-    """What has ended well or runs is no fault."""
+    """A node that runs or has ended normally is not a fault."""
     found = faults([node_row("/a", state, pid=None, detail=detail)])
     assert [text[: len(start)] for text, start in zip(found, told, strict=True)] == told
 
 
 def test_a_stopped_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is stopped, whatever its supervisor has noticed of that yet."""
+    """A stopped process is reported as stopped, whether or not its supervisor has noticed."""
     monkeypatch.setattr(supervised, "is_stopped", lambda pid: pid == 7)
     rows = [node_row("/a"), node_row("/b", "unresponsive"), node_row("/c", pid=8)]
     assert faults(rows) == [f"{name} (process 7) is stopped: kill -CONT 7" for name in ("/a", "/b")]

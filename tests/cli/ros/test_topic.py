@@ -1,4 +1,4 @@
-"""`graphflow topic list`, `info`, `type` and `find`, and what `echo` and `pub` make of the words they are given."""
+"""`graphflow topic list`, `info`, `type` and `find`, and the arguments of `echo` and `pub`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HIDDEN = ["/fibonacci/_action/feedback", "/fibonacci/_action/status", "/office/_
 
 
 def test_list(standing: Machine) -> None:
-    """Names, sorted; with types; their number; the hidden ones when asked for; JSON."""
+    """`list` prints names, sorted; with types; their number; with hidden ones; as JSON."""
     assert standing.look("topic", "list").split() == VISIBLE
     assert standing.look("topic", "list", "-t").splitlines()[:2] == [f"{name} [{STRING}]" for name in VISIBLE[:2]]
     assert standing.look("topic", "list", "-c") == "4\n"
@@ -27,7 +27,7 @@ def test_list(standing: Machine) -> None:
 
 
 def test_list_with_counts(standing: Machine) -> None:
-    """What is published and what is subscribed, each with how many do so."""
+    """`-v` lists published and subscribed topics with the numbers of endpoints."""
     published, subscribed = standing.look("topic", "list", "-v").split("\n\n")[:2]
     assert published.startswith(f"Published topics:\n * /chatter [{STRING}] 1 publisher\n")
     assert " * /rosout [rcl_interfaces/msg/Log] 5 publishers" in published
@@ -44,7 +44,7 @@ def test_info(standing: Machine) -> None:
 
 
 def test_info_of_endpoints(standing: Machine) -> None:
-    """`-v` describes each endpoint, and tells what keeps two of them apart."""
+    """`-v` describes each endpoint and its incompatibilities."""
     _, publisher, subscription = standing.look("topic", "info", "-v", "/office/minutes").split("Node name: ")
     assert publisher.startswith("clerk\nNode namespace: /office\n")
     assert "Endpoint type: PUBLISHER\n" in publisher
@@ -140,7 +140,7 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
     ],
 )
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:
-    """The error names what is there."""
+    """The error suggests existing names."""
     assert told in standing.look(*words.split(), code=code)
 
 
@@ -168,13 +168,13 @@ def test_echo_of_what_fits(standing: Machine) -> None:
 
 
 def test_pub_once(standing: Machine) -> None:
-    """What is published is shown, and arrives."""
+    """The published message is printed, and arrives."""
     text = standing.look("topic", "pub", "--once", "/office/minutes", STRING, "data: on the record")
     assert text.endswith("publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='on the record')\n\n")
     standing.until(lambda: "on the record" in standing.look("logs", "office"), "it is heard")
 
 
 def test_without_a_graph(machine: Machine) -> None:
-    """Where nothing runs, to look ends with 3."""
+    """Without a graph, inspecting verbs exit with 3."""
     assert "error: nothing is running: nothing answers at tcp/" in machine.look("topic", "list", code=3)
     assert "error: nothing is running" in machine.look("topic", "echo", "/chatter", code=3)

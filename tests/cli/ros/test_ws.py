@@ -42,7 +42,7 @@ def test_what_there_is(machine: Machine, workspace: Path) -> None:
 
 
 def test_a_source_tree_of_rclpy(machine: Machine, workspace: Path) -> None:
-    """Is no fault, but it is said that it does not count."""
+    """A source tree of rclpy is not a fault; a note says that it is not imported."""
     (workspace / "src/rclpy/rclpy").mkdir(parents=True)
     (workspace / "src/rclpy/package.xml").write_text("<package><name>rclpy</name></package>")
     (workspace / "src/rclpy/rclpy/__init__.py").touch()
@@ -58,7 +58,7 @@ def test_many_interfaces(machine: Machine, workspace: Path) -> None:
 
 
 def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
-    """An executable without its module, and a definition that is none."""
+    """An executable without its module and an invalid definition are faults."""
     (workspace / "src/lamp/lamp/node.py").unlink()
     (workspace / "src/lamp_interfaces/msg/Broken.msg").write_text("int32\n")
     shown = machine.look("ws", cwd=workspace, code=1)
@@ -74,7 +74,7 @@ def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
 
 
 def test_words_out_of_habit(machine: Machine, workspace: Path) -> None:
-    """Each has its answer; another word is a mistake."""
+    """Each habitual verb has its answer; another word is a mistake."""
     assert "needs no initialization" in machine.look("ws", "init", cwd=workspace)
     assert "python -m pytest src/PACKAGE" in machine.look("ws", "test", cwd=workspace)
     assert "did you mean 'build'?" in machine.look("ws", "biuld", cwd=workspace, code=2)
@@ -83,7 +83,7 @@ def test_words_out_of_habit(machine: Machine, workspace: Path) -> None:
 
 
 def test_a_workspace_in_a_workspace(machine: Machine, workspace: Path) -> None:
-    """It is told that the outer one's packages are not seen."""
+    """A note says that the outer workspace's packages are not visible."""
     inner = workspace / "src/inner"
     (inner / "src/deep").mkdir(parents=True)
     (inner / "src/deep/package.xml").write_text("<package><name>deep</name></package>")
@@ -91,7 +91,7 @@ def test_a_workspace_in_a_workspace(machine: Machine, workspace: Path) -> None:
 
 
 def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
-    """It is said where one would be, or what a folder lacks to be a package."""
+    """The error says where a workspace would be, or what a folder lacks to be a package."""
     assert "go to a folder that has packages in src/" in machine.look("ws", cwd=tmp_path, code=1)
     (tmp_path / "src/dark/resource").mkdir(parents=True)
     (tmp_path / "src/dark/resource/dark").touch()
@@ -100,7 +100,7 @@ def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
 
 
 def test_two_packages_of_one_name(machine: Machine, workspace: Path) -> None:
-    """It is told which one counts."""
+    """The fault says which one takes precedence."""
     (workspace / "src/more/lamp").mkdir(parents=True)
     (workspace / "src/more/lamp/package.xml").write_text("<package><name>lamp</name></package>")
     said = machine.look("ws", cwd=workspace, code=1)
@@ -108,7 +108,7 @@ def test_two_packages_of_one_name(machine: Machine, workspace: Path) -> None:
 
 
 def test_a_package_without_executables(machine: Machine, workspace: Path) -> None:
-    """It is there, and has none."""
+    """The package is listed without executables."""
     cmake = "add_executable(one a.cpp)\nadd_executable(two b.cpp)"
     (workspace / "src/lamp_interfaces/CMakeLists.txt").write_text(cmake)
     said = machine.look("run", "lamp_interfaces", "shine", cwd=workspace, code=2)
@@ -118,7 +118,7 @@ def test_a_package_without_executables(machine: Machine, workspace: Path) -> Non
 
 
 def test_what_is_no_package(machine: Machine, workspace: Path) -> None:
-    """Every verb that is given its name tells its state; an executable's name alone is told whose it is."""
+    """Every verb that takes a package explains a folder's state; a bare executable's name is attributed."""
     (workspace / "src/dark").mkdir()
     (workspace / "src/dark/setup.py").write_text(SETUP)
     (workspace / "g.yaml").write_text("nodes:\n  /a: {pkg: dark, exec: lamp}\n")
@@ -149,7 +149,7 @@ def test_what_ros_2_would_not_build(machine: Machine, workspace: Path) -> None:
 
 
 def test_a_definition_that_is_not_in_camel_case(machine: Machine, workspace: Path) -> None:
-    """The name that its file has to have is told."""
+    """The fault has the required name of the file."""
     folder = workspace / "src/lamp_interfaces/srv"
     folder.mkdir()
     (folder / "set_goal.srv").write_text("---\n")

@@ -29,7 +29,7 @@ def test_what_is_no_field_is_told_at_once() -> None:
 
 
 def test_gaps() -> None:
-    """What is infinite, no number, or not there is left out of the picture."""
+    """Infinite, NaN and missing values are left out of the picture."""
     curve = Curve("ranges[1]", "sensor_msgs/msg/LaserScan")
     for i, ranges in enumerate(([0.0, 1.0], [0.0], [0.0, math.inf], [0.0, math.nan], [0.0, 5.0])):
         curve.add(float(i), LaserScan(ranges=ranges))
@@ -47,7 +47,7 @@ def test_what_is_old_is_forgotten() -> None:
 
 
 def test_a_picture() -> None:
-    """Has the size that was asked for, rises from left to right, and names its curves."""
+    """A picture has the given size, rises from left to right, and names its curves."""
     rows = chart([line("speed")], (60, 12)).splitlines()
     assert max(map(len, rows)) <= 60
     assert len(rows) <= 12

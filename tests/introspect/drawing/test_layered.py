@@ -1,4 +1,4 @@
-"""Boxes and arrows: whatever the graph, boxes stand apart, and every arrow can be followed to its tip."""
+"""Boxes and arrows: in every drawing, boxes are apart and every arrow can be followed to its tip."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_whatever_the_graph(pairs: list[tuple[int, int]]) -> None:
 
 
 def test_a_control_loop() -> None:
-    """What leads back runs below; lines that meet are joined."""
+    """Arrows that go back run below; lines that meet are joined."""
     boxes = {name: Box((name,)) for name in ("sim", "pose", "pilot", "cmd")}
     arrows = [("sim", "pose"), ("pose", "pilot"), ("pilot", "cmd"), ("cmd", "sim")]
     assert lines(draw(boxes, arrows)) == [
@@ -76,6 +76,6 @@ def test_a_control_loop() -> None:
 
 
 def test_nothing() -> None:
-    """An empty graph is an empty drawing; a box alone stands alone."""
+    """An empty graph is an empty drawing; a single box is drawn alone."""
     assert draw({}, []).rows == []
     assert lines(draw({"a": Box(("a",))}, [])) == ["╭───╮", "│ a │", "╰───╯"]

@@ -1,4 +1,4 @@
-"""What is in the picture of a graph, and how others are told to draw it."""
+"""The elements of a graph's picture, and their Mermaid and Graphviz sources."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_graphviz() -> None:
 
 
 async def test_what_keeps_them_apart(graph: Graph) -> None:
-    """In a few words."""
+    """Incompatible policies, or the type, are named."""
     cache = await cache_of(graph, Talker(), Listener())
     assert misfit(cache.named("/chatter")) == ""
     await graph.start(Wrong())

@@ -49,13 +49,13 @@ def response(*, files: bool = True, described: bool = True) -> Any:
 
 
 def test_files_come_first() -> None:
-    """They have constants, defaults and comments."""
+    """Files are preferred, since they have constants, defaults and comments."""
     assert sources_in(response(), entity()) == SOURCES
 
 
 @pytest.mark.parametrize("files", [False, True])
 def test_a_description_will_do(files: bool) -> None:
-    """Where a node has no files, or has them in another form."""
+    """The description is used if a node has no files, or only in another format."""
     answer = response(files=files)
     for source in answer.type_sources:
         source.encoding = "idl"
@@ -64,14 +64,14 @@ def test_a_description_will_do(files: bool) -> None:
 
 
 def test_a_refusal() -> None:
-    """Is told with the node's reason."""
+    """A refusal is an error with the node's reason."""
     answer: Any = registry.interface_class(f"{DESCRIBING}_Response")(successful=False, failure_reason="no such type")
     with pytest.raises(InterfaceError, match="/speaker: no such type"):
         sources_in(answer, entity())
 
 
 def test_another_type_than_was_announced() -> None:
-    """Is not taken, whatever the node says."""
+    """A definition without the announced hash is rejected."""
     with pytest.raises(InterfaceError, match=r"its definition has the hash RIHS01_.*, not RIHS01_77"):
         sources_in(response(), entity(digest="RIHS01_77"))
 
@@ -95,7 +95,7 @@ class View:
 
 
 def test_learning(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first node that gives it will do; what is known is not asked for."""
+    """The first usable definition is taken; a known type is not fetched."""
     monkeypatch.setattr(registry, "_given", {})
     view: Any = View(InterfaceError("broken"), response(), response())
     learn(view, "/things", "std_msgs/msg/String")
@@ -111,7 +111,7 @@ def test_learning(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_learning_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every reason is told."""
+    """The error has every node's reason."""
     monkeypatch.setattr(registry, "_given", {})
     view: Any = View(InterfaceError("broken"))
     with pytest.raises(UnknownInterface, match=r"no interface package 'definitions_msgs'.*; broken"):
@@ -140,7 +140,7 @@ def test_how_many_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_reason_that_is_long_or_strange() -> None:
-    """Is cut, and nothing in it is obeyed by a terminal."""
+    """A node's reason is cut and cleared of control characters."""
     reason = "\x1b[2J" + "x" * 5000
     answer: Any = registry.interface_class(f"{DESCRIBING}_Response")(successful=False, failure_reason=reason)
     with pytest.raises(InterfaceError) as caught:
@@ -150,7 +150,7 @@ def test_a_reason_that_is_long_or_strange() -> None:
 
 
 def test_an_action_that_nobody_installed() -> None:
-    """Is not asked for; it is told where its file belongs."""
+    """An action's definition is not fetched; the error says where its file belongs."""
     no_view: Any = None
     with pytest.raises(UnknownInterface, match=r"put its file into interfaces/lab_msgs/action/Walk\.action"):
         learn(no_view, "/walk", "lab_msgs/action/Walk_FeedbackMessage")

@@ -114,7 +114,7 @@ def test_scalars(value: Any, text: str) -> None:
 
 
 def test_long_lists_and_strings_are_cut() -> None:
-    """What is left out is marked, at every level; None cuts nothing."""
+    """Cuts are marked at every level; None cuts nothing."""
     data = {"a": [1, 2, 3, 4], "b": "abcdef", "c": {"d": ["abcdef", "ab"]}, "e": [1, 2, 3]}
     assert truncated(data, 3) == {
         "a": [1, 2, 3, "..."],
@@ -162,14 +162,14 @@ def test_a_text_alone_reads_back(text: str) -> None:
 
 @pytest.mark.parametrize("message", [Twist(), Pose(), ParameterEvent(node="/a: b"), ParameterValue(string_value="#")])
 def test_messages_read_back(message: Any) -> None:
-    """What `topic echo` prints can be given to `topic pub`."""
+    """Output of `topic echo` is valid input of `topic pub`."""
     from graphflow.msgs.values import from_plain
 
     assert from_plain(type(message), read(block(plain(message)), "block").data) == message
 
 
 def test_long_lists_are_cut_before_they_are_made() -> None:
-    """What is not shown of a large array costs nothing."""
+    """Elements of a large array that are not shown are not converted."""
     message: Any = registry.interface_class("std_msgs/msg/UInt8MultiArray")(data=bytes(20_000_000))
     tracemalloc.start()
     try:

@@ -44,13 +44,13 @@ def test_wrong_paths(text: str, message: str) -> None:
 
 
 def test_a_field_of_a_list_needs_an_element() -> None:
-    """Who forgets the index is told how to give it."""
+    """The error for a missing index shows how to write it."""
     with pytest.raises(UsageFault, match=r"points is a list; choose an element, as in points\[0\]"):
         field_path("points.x", "geometry_msgs/msg/Polygon")
 
 
 def test_the_numbers_of_a_type() -> None:
-    """By their paths, nested ones too; texts and arrays are none."""
+    """All numbers are listed by path, including nested ones, without texts and arrays."""
     assert numbers("geometry_msgs/msg/Twist")[:4] == ["linear.x", "linear.y", "linear.z", "angular.x"]
     assert numbers("std_msgs/msg/String") == []
     assert numbers("std_msgs/msg/Bool") == ["data"]
@@ -74,13 +74,13 @@ def test_the_numbers_of_a_type() -> None:
     ],
 )
 def test_what_is_no_number(text: str, type_name: str, message: str) -> None:
-    """Is told before the first message comes, with what is near."""
+    """A path that is not a number is an error before the first message, with a suggestion."""
     with pytest.raises(UsageFault, match=message):
         number_path(text, type_name)
 
 
 def test_values() -> None:
-    """Are found by names and numbers."""
+    """Values are found by names and indexes."""
     assert value_at(Twist(linear=Vector3(x=2.0)), number_path("linear.x", "geometry_msgs/msg/Twist")) == 2.0
     polygon = Polygon(points=[Point32(y=3.0)])
     assert value_at(polygon, number_path("points[0].y", "geometry_msgs/msg/Polygon")) == 3.0

@@ -1,4 +1,4 @@
-"""Rates, delays and weights, in the words of ROS 2."""
+"""Rates, delays and sizes, in ROS 2's formats."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def at(hz: float, count: int, window: int = 10_000) -> Arrivals:
 
 @pytest.mark.parametrize("hz", [1.0, 62.5, 1000.0])
 def test_a_rate(hz: float) -> None:
-    """It is that of the gaps, of which there is one less than messages."""
+    """The rate is that of the gaps, of which there is one fewer than messages."""
     gaps = at(hz, 101).gaps()
     assert gaps is not None
     assert math.isclose(Arrivals.rate(gaps), hz, rel_tol=1e-6)
@@ -26,7 +26,7 @@ def test_a_rate(hz: float) -> None:
 
 
 def test_the_words_of_a_rate() -> None:
-    """Those of `ros2 topic hz`; nothing before there is a gap."""
+    """The text is that of `ros2 topic hz`, and empty before the first gap."""
     arrivals = Arrivals(100)
     assert arrivals.text() == ""
     arrivals.add(0)
@@ -57,7 +57,7 @@ def test_messages_of_one_moment() -> None:
 
 
 def test_several_topics() -> None:
-    """Are a table; those that are silent are left out."""
+    """Several topics are a table, without silent ones."""
     assert table({"/a": Arrivals(3)}) == ""
     lines = table({"/a": at(10.0, 11), "/long_name": at(100.0, 3), "/quiet": Arrivals(3)}).splitlines()
     assert lines[0].split() == ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]
@@ -102,7 +102,7 @@ def test_no_weight_at_all() -> None:
 
 
 def test_numbers_for_programs() -> None:
-    """The same as the words have, in SI units; nothing before there is anything to tell."""
+    """The numbers are those of the text, in SI units; None before there are any."""
     arrivals, delays, weights = Arrivals(100), Delays(100), Weights(100)
     assert (arrivals.numbers(), delays.numbers(), weights.numbers(0)) == (None, None, None)
     for ms in (0, 250, 1000):

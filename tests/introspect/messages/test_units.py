@@ -28,6 +28,6 @@ def test_the_type_that_knows_the_unit_is_found_on_the_way(type_name: str, field:
 
 
 def test_every_field_named_is_there() -> None:
-    """A misspelt one would be without a unit, and nobody would see it."""
+    """Every field in the table exists; a misspelt one would silently have no unit."""
     for type_name, fields in _UNITS.items():
         assert {*fields} <= {f.name for f in registry.message_schema(type_name).fields}, type_name
