@@ -258,7 +258,7 @@ def test_a_handler_is_put_in_a_thread(machine: Machine) -> None:
     assert "has no handler 'tock'; did you mean 'tick'?" in machine.look("groups", "thread", "/blocker", "tock", code=2)
     assert "add of /blocker is async" in machine.look("groups", "thread", "/blocker", "add", code=2)
     assert "did you mean 'thread'?" in machine.look("groups", "thrad", "/blocker", "tick", code=2).lower()
-    assert "/blocker runs again" in machine.look("groups", "thread", "/blocker", "tick")
+    assert "/blocker is running again" in machine.look("groups", "thread", "/blocker", "tick")
     up.wait_for("1 + 2 = 3")
     assert "blocking  (limit 1, in threads)\n    tick  timer" in machine.look("groups", "/blocker")
     assert up.end() == 0

@@ -31,11 +31,11 @@ def test_restart_and_stop(machine: Machine) -> None:
 
     assert "/a has ended" in machine.look("stop", "/a")
     assert rows(machine)["/a"]["state"] == "ended"
-    assert "/a runs again" in machine.look("restart", "/a")
+    assert "/a is running again" in machine.look("restart", "/a")
 
     os.kill(rows(machine)["/a"]["pid"], signal.SIGKILL)
     machine.until(lambda: rows(machine)["/a"]["state"] == "failed", "it is seen to have died")
-    assert "/a runs again" in machine.look("restart", "/a")
+    assert "/a is running again" in machine.look("restart", "/a")
     assert rows(machine)["/a"]["restarts"] == 3
     assert "has no node /aa; did you mean '/a'?" in machine.look("restart", "/aa", code=1)
     machine.look("down")

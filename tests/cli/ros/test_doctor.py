@@ -141,7 +141,7 @@ def test_hints_as_faults(machine: Machine) -> None:
     node = machine.start("run", "listener")
     machine.until(lambda: "/chatter" in machine.look("topic", "list", code=None), "it listens")
     text = machine.look("doctor")
-    assert "listens to /chatter, which nobody publishes" in text
+    assert "subscribes to /chatter, which no node publishes" in text
     assert "1 node, no fault; the lines above may be intended" in text
     machine.look("doctor", "-iw", code=1)
     assert node.end() == 0

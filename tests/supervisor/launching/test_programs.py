@@ -133,8 +133,8 @@ def test_killed_processes_are_started_again(machine: Machine, project: Path) -> 
     machine.until(lambda: {row["state"] for row in rows(machine).values()} == {"ready"}, "both are ready")
     after = rows(machine)
     assert all(after[name]["pid"] != pid and not alive(pid) for name, pid in before.items())
-    assert "started again: once" in machine.look("status", "/a")
-    assert "its last end: signal SIGKILL" in machine.look("status", "/a")
+    assert "restarted: once" in machine.look("status", "/a")
+    assert "last end: signal SIGKILL" in machine.look("status", "/a")
     machine.look("down")
     nothing_is_left(machine, [row["pid"] for row in after.values()])
 
