@@ -154,7 +154,7 @@ def test_words_without_an_option(words: str, told: str) -> None:
     ("words", "told"),
     [
         (["my-pkg"], "did you mean 'my_pkg'?"),
-        (["3pkg"], "begin with a letter, and take no keyword of Python's; did you mean 'my_3pkg'?"),
+        (["3pkg"], "begin with a letter, and avoid Python's keywords; did you mean 'my_3pkg'?"),
         (["class"], "did you mean 'my_class'?"),
         (["../pkg"], "'../pkg' cannot be the name of a package"),
         (["class"], "'class' cannot be the name of a package"),

@@ -71,7 +71,7 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
         ("play bag -m /a:/b", 2, "'/a:/b' is not a remap rule; write OLD:=NEW"),
         ("play bag -s 2", 2, "-s is the bag's format, mcap or sqlite3, not '2'; -r is the speed"),
         ("record -a /chatter", 2, "-a records all topics: leave it out, or the names /chatter"),
-        ("play bag --clock often", 2, "--clock takes a number of Hz"),
+        ("play bag --clock often", 2, "--clock takes a rate in Hz"),
         ("record -o /chatter", 2, "no topics to record; /chatter, after -o, is the bag's folder; name topics"),
         ("record", 2, "no topics to record; name topics, or record all: graphflow bag record -a"),
         ("record -e [", 2, "'[' is not a regular expression"),
