@@ -38,7 +38,7 @@ def test_nothing() -> None:
     ("env", "told"),
     [
         ({"RMW_IMPLEMENTATION": ""}, "they use DDS; export RMW_IMPLEMENTATION=rmw_zenoh_cpp"),
-        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, "they speak rmw_cyclonedds_cpp; export"),
+        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, "they use rmw_cyclonedds_cpp; export"),
         ({"ROS_DISTRO": "kilted"}, "graphflow uses jazzy's definitions: export GRAPHFLOW_WIRE=kilted"),
         ({"ROS_DISTRO": "humble"}, "humble is sourced here, which has no type hashes"),
         ({"GRAPHFLOW_DOMAIN": "5"}, "GRAPHFLOW_DOMAIN is 5, but ROS 2's nodes are in domain 0"),

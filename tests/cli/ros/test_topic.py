@@ -136,7 +136,7 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
             "error: 'hello' was read as the type of /chatter; its type is std_msgs/msg/String",
         ),
         ("topic pub /chatter std_msgs/msg/String dta: x", 2, "did you mean 'data'?"),
-        ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "that is std_msgs/msg/String"),
+        ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "its type is std_msgs/msg/String"),
     ],
 )
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:
