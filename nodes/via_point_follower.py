@@ -23,7 +23,8 @@ class ViaPointFollower(PositionController):
         super().__init__(name, **options)
         if not len(self.via_x) == len(self.via_y) > 0:
             raise ParameterError(
-                f"via_x has {len(self.via_x)} numbers but via_y has {len(self.via_y)}: give the same number of each, at least one"
+                f"via_x has {len(self.via_x)} numbers but via_y has {len(self.via_y)}: "
+                "give the same number of each, at least one"
             )
         self.points = cycle(map(Point, self.via_x, self.via_y))
         self.go_to(next(self.points))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from graphflow.deadlock.asyncio_frames import TaskLike
 from graphflow.deadlock.startup_waits import place_of
 from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS
@@ -42,7 +43,7 @@ class Overruns:
             self._runs = self._skipped = 0
             self._text = ""
 
-    def in_the_way(self, runs: Iterable[object], skipped: int, now_ns: int, period_ns: int) -> None:
+    def in_the_way(self, runs: Iterable[TaskLike], skipped: int, now_ns: int, period_ns: int) -> None:
         """Note that a run has outlasted a period and continues.
 
         Args:
