@@ -47,7 +47,7 @@ def console_section(src: Source, complain: Complain) -> dict[str, object] | None
     Args:
         complain: Called with each mistake.
     """
-    data = src.data.get("console")
+    data = src.data.get("console") if isinstance(src.data, dict) else None
     return None if data is None else _Section(src, complain).read(data)
 
 

@@ -95,8 +95,8 @@ def _resolve(
     root, name = project_root(path), path.stem.removesuffix(".launch")
     given_name = top.entries.get("name")
     logs = newest_logs(name if given_name is None else str(given_name.value))
-    outside = Outside(os.environ if env is None else env, root, logs, run, describe)
-    expansion = Expansion(given, outside, problems)
+    outside = Outside(os.environ if env is None else env, root, logs, run)
+    expansion = Expansion(given, outside, problems, describe)
     expansion.file(top, path)
     if not problems and not top.entries.keys() & {*BLOCKS} and top.place.file not in problems.launch_files:
         problems.add(top.place, "the key 'nodes' is missing")

@@ -1,21 +1,20 @@
-"""Command lines of ROS in launch files, as steps: `ros2 service call`, `ros2 action send_goal`, `ros2 param set`."""
+"""Conversion of command lines to steps: `ros2 service call`, `ros2 action send_goal` and `ros2 param set`."""
 
 from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
-from graphflow.errors import GraphFileError, Place
+from graphflow.errors import GraphFileError
 from graphflow.launchfiles.attributes import split
 from graphflow.markup import source
+from graphflow.markup.source import Complain as Complain
 from graphflow.markup.tree import Item, located, tree
-
-Complain = Callable[[Place, str], None]
 
 
 def plain_words(line: str) -> list[str]:
-    """The words of a line for a shell, if it needs none: no pipes and the like; else no words."""
+    """Split a shell command without pipes or redirections into words; empty for any other."""
     try:
         return split(line, _plain)
     except ValueError:
@@ -31,7 +30,7 @@ def _plain(line: str) -> list[str]:
 
 
 def one_word_fault(texts: Sequence[str]) -> str:
-    """What to write for a command whose only word is a whole line; empty for others, as a program with a space."""
+    """Return the fault of a command whose only word is a whole line; empty if a program has that name."""
     if len(texts) != 1 or os.path.exists(texts[0]):
         return ""
     words = plain_words(texts[0])
@@ -42,11 +41,11 @@ def one_word_fault(texts: Sequence[str]) -> str:
 
 
 def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str, Item] | None:
-    """A step in place of a command line; None if it is another program's.
+    """Convert a command line of `ros2` to a step; None for other commands.
 
     Args:
-        command: Where the line is written.
-        complain: Called with what is wrong with a request.
+        command: The item with the command line.
+        complain: Called with the fault of a request.
     """
     match words:
         case ["ros2", "service", "call", name, type_, *values]:
@@ -61,15 +60,13 @@ def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str
     return None
 
 
-def _sent(
-    deed: str, name: str, type_: str, values: Sequence[str], command: Item, complain: Complain
-) -> dict[str, Item]:
-    found = {deed: Item(name, command.place), "type": Item(type_, command.place)}
+def _sent(key: str, name: str, type_: str, values: Sequence[str], command: Item, complain: Complain) -> dict[str, Item]:
+    found = {key: Item(name, command.place), "type": Item(type_, command.place)}
     text = " ".join(values)
     if text:
         try:
             data = source.read(text, command.place.file).data
-            if isinstance(data, str):  # it had quotes for a shell around it
+            if isinstance(data, str):  # the quotes of a shell were around it
                 data = source.read(data, command.place.file).data
         except GraphFileError as error:
             complain(command.place, f"the request {text[:60]!r}: {error.problems[0].message}")
@@ -79,7 +76,7 @@ def _sent(
 
 
 def typed(item: Item) -> Item:
-    """A text as what it reads as in YAML: launch files have nothing but texts."""
+    """Convert a text to the YAML value that it reads as; texts with substitutions, and mappings, stay texts."""
     if not isinstance(item.value, str) or "$(" in item.value:
         return item
     try:
@@ -88,4 +85,4 @@ def typed(item: Item) -> Item:
         return item
     if isinstance(read.value, dict) or read.value is None:
         return item
-    return located(read.plain(), item.place)._replace(key=item.key)
+    return located(read.plain(), item.place).with_key(item.key)

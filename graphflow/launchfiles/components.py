@@ -1,4 +1,4 @@
-"""ROS's component containers, as nodes that share a process.
+"""Conversion of ROS's component containers to nodes that share a process.
 
 node_container: {name: c, composable_node: [{pkg: composition, plugin: "composition::Talker"}]}
 ->  /talker: {class: nodes.talker:Talker, process: c}
@@ -17,22 +17,22 @@ from graphflow.workspace import executables
 
 _ANY = {"if", "unless"}
 _OF_CONTAINERS = {"args", "ros_args", "param", "remap", "env", "respawn", "respawn_delay", "on_exit", "launch-prefix"}
-"""Attributes of a container that its nodes have here."""
+"""Attributes of a container that only its nodes can have in a graph file."""
 KNOWN = {
     "node_container": {"pkg", "exec", "name", "namespace", "composable_node", "output", *_OF_CONTAINERS, *_ANY},
     "load_composable_node": {"target", "composable_node", *_ANY},
 }
-"""The actions, and their attributes."""
+"""The actions on containers, with their attributes."""
 _OF_NODES = ("name", "namespace", "param", "remap")
 
 
 def components(item: Item, root: Path, complain: Complain, leave_out: Complain) -> list[Item]:
-    """The nodes of a container, as actions of their own.
+    """Convert the nodes of a container to actions of their own.
 
     Args:
         root: The project's folder.
-        complain: Called with what has no words here.
-        leave_out: Called with components that nobody here has, and with attributes that only a container has.
+        complain: Called with faults.
+        leave_out: Called with components that are not installed, and with attributes that only a container has.
     """
     container = item.entries.get("name") or item.entries.get("target")
     if container is None or not isinstance(container.value, str):
@@ -41,7 +41,7 @@ def components(item: Item, root: Path, complain: Complain, leave_out: Complain) 
     for key in sorted(_OF_CONTAINERS & item.entries.keys()):
         text = f"{key}: left out, since a container is a process that nodes share; write it at the nodes"
         leave_out(item.entries[key].at, text)
-    process = container._replace(value=container.value.rstrip("/").rpartition("/")[2])
+    process = container.with_value(container.value.rstrip("/").rpartition("/")[2])
     found = []
     for component in items(item.entries.get("composable_node")):
         package, plugin = component.entries.get("pkg"), component.entries.get("plugin")
@@ -50,7 +50,7 @@ def components(item: Item, root: Path, complain: Complain, leave_out: Complain) 
             continue
         name = str(plugin.value).rpartition("::")[2].lower()
         if executables.find(str(package.value), name, root) is None:
-            known = [name for at, name in executables.with_graphflow() if at == package.value]
+            known = [name for owner, name in executables.with_graphflow() if owner == package.value]
             text = f"no node here is the component {plugin.value} of the package {package.value}"
             if near := did_you_mean(name, known):
                 complain(plugin.place, f"composable_node: {text}{near}")
@@ -59,6 +59,6 @@ def components(item: Item, root: Path, complain: Complain, leave_out: Complain) 
             continue
         entries = {key: component.entries[key] for key in _OF_NODES if key in component.entries}
         entries |= conditions(item, component)
-        entries |= {"pkg": package, "exec": plugin._replace(value=name), "process": process}
-        found.append(component._replace(value=entries))
+        entries |= {"pkg": package, "exec": plugin.with_value(name), "process": process}
+        found.append(component.with_value(entries))
     return found

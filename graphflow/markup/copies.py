@@ -1,4 +1,4 @@
-"""Copies of files in which substitutions have been made, each in a folder that is named by what it holds."""
+"""Copies of files with their substitutions made, each in a folder named by a hash of its content."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from graphflow.folders import state_root
 
 
 def copy_of(content: str, name: str) -> Path:
-    """A file with some content; always the same one for the same content.
+    """Return a file with some content, which is the same file for the same content.
 
     Raises:
-        OSError: There is no place for it.
+        OSError: The file cannot be written.
     """
     file = state_root() / "copies" / hashlib.sha256(content.encode()).hexdigest()[:16] / name
     if file.is_file():
@@ -22,5 +22,5 @@ def copy_of(content: str, name: str) -> Path:
     file.parent.mkdir(parents=True, exist_ok=True)
     with NamedTemporaryFile("w", encoding="utf-8", dir=file.parent, delete=False) as made:
         made.write(content)
-    os.replace(made.name, file)  # whoever else makes it makes the same
+    os.replace(made.name, file)  # atomic: another process may be writing the same content
     return file

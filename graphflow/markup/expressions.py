@@ -1,7 +1,7 @@
-"""What `$(eval ...)` may say: arithmetic, comparisons and choices over a graph's arguments, and nothing else.
+"""Expressions of `$(eval ...)`: arithmetic, comparisons and choices over a graph's arguments, and nothing else.
 
 Numbers, texts and lists, `and`, `or`, `not`, `in`, `x if y else z`, and a few functions. No attributes, no methods, no
-imports; every result is bounded in size, so that no expression can cost the time or memory of whoever looks at a file.
+imports; every result is bounded in size, so that reading a file takes bounded time and memory.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from graphflow.markup.source import Data
 from graphflow.names import did_you_mean
 
 MAX_LENGTH = 1000
 """Characters of an expression."""
 MAX_BITS = 4096
-"""Of a power."""
+"""Bits of a power."""
 MAX_LIST = 10_000
 """Elements of a list."""
 MAX_TEXT = 100_000
@@ -27,14 +28,14 @@ class ExpressionError(ValueError):
     """An expression is malformed, or has no value."""
 
 
-def evaluate(text: str, names: Mapping[str, Any]) -> Any:
-    """The value of an expression.
+def evaluate(text: str, names: Mapping[str, Data]) -> Data:
+    """Evaluate an expression.
 
     Args:
-        names: The values that it may name.
+        names: Values by the names that the expression may use.
 
     Raises:
-        ExpressionError: It is not one that is allowed here, names something unknown, or has no value.
+        ExpressionError: The expression is not allowed, uses an unknown name, or has no value.
     """
     import simpleeval
 
@@ -42,14 +43,14 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionError(f"an expression has at most {MAX_LENGTH} characters")
     evaluator = simpleeval.EvalWithCompoundTypes(
         operators={**simpleeval.DEFAULT_OPERATORS, ast.Pow: _power, ast.Mult: _times, ast.Mod: _modulo},
-        functions=dict(FUNCTIONS),  # it adds to them
+        functions=dict(FUNCTIONS),  # a copy: simpleeval adds to it
         names={"math": _MATH, **names, "true": True, "false": False, "pi": math.pi},
     )
     for kind in (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr):
         evaluator.nodes.pop(kind, None)
     evaluator.nodes[ast.Attribute] = lambda node: _entry(evaluator._eval(node.value), node.attr)
     try:
-        ast.parse(text.strip(), mode="eval")  # simpleeval would take a statement, too
+        ast.parse(text.strip(), mode="eval")  # simpleeval would accept a statement, too
         return _bounded(evaluator.eval(text.strip()))
     except simpleeval.NameNotDefined as error:
         raise ExpressionError(f"{error.name!r} is no argument{did_you_mean(error.name, names)}") from None
@@ -66,42 +67,42 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionError(str(error) or type(error).__name__) from None
 
 
-def _bounded(value: Any) -> Any:
-    """A value that is no larger than what others may be made of: arguments could double it again and again."""
+def _bounded(value: Any) -> Data:
+    """Refuse a value that is too large: arguments made of arguments could double it again and again."""
     if isinstance(value, (list, tuple, dict, set)) and len(value) > MAX_LIST:
         raise ExpressionError(f"a list has at most {MAX_LIST} elements")
     if isinstance(value, str) and len(value) > MAX_TEXT:
         raise ExpressionError(f"a text has at most {MAX_TEXT:,} characters")
-    return value
+    result: Data = value
+    return result
 
 
-def _entry(value: Any, name: str) -> Any:
+def _entry(value: object, name: str) -> object:
     if not isinstance(value, dict) or name not in value:
         raise ExpressionError(f"nothing called {name!r} is in {value!r}")
     return value[name]
 
 
-def _power(base: Any, exponent: Any) -> Any:
-    _refuse_others(base, exponent)
-    if isinstance(base, int) and base.bit_length() * abs(exponent) > MAX_BITS:
+def _power(base: object, exponent: object) -> object:
+    x, y = _number(base), _number(exponent)
+    if isinstance(x, int) and x.bit_length() * abs(y) > MAX_BITS:
         raise ExpressionError(f"{base}**{exponent} is too large")
-    return base**exponent
+    return x**y
 
 
-def _times(left: Any, right: Any) -> Any:
-    _refuse_others(left, right)
-    return left * right
+def _times(left: object, right: object) -> float:
+    return _number(left) * _number(right)
 
 
-def _modulo(left: Any, right: Any) -> Any:
-    _refuse_others(left, right)
-    return left % right
+def _modulo(left: object, right: object) -> float:
+    return _number(left) % _number(right)
 
 
-def _refuse_others(*values: Any) -> None:
-    """Texts and lists grow when they are multiplied or formatted."""
-    if not all(isinstance(value, (int, float)) for value in values):
+def _number(value: object) -> float:
+    """Refuse any other operand: texts and lists grow when they are multiplied or formatted."""
+    if not isinstance(value, (int, float)):
         raise ExpressionError("*, ** and % are for numbers")
+    return value
 
 
 def _range(*bounds: int) -> list[int]:
@@ -111,7 +112,7 @@ def _range(*bounds: int) -> list[int]:
     return list(found)
 
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {
+FUNCTIONS: dict[str, Callable[..., object]] = {
     **{f.__name__: f for f in (abs, bool, float, int, len, max, min, round, str, sum)},
     **{
         f.__name__: f for f in (math.sqrt, math.hypot, math.exp, math.log, math.log10, math.ceil, math.floor, math.fmod)
@@ -120,6 +121,6 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     **{f.__name__: f for f in (math.radians, math.degrees, math.isfinite, math.isinf, math.isnan)},
     "range": _range,
 }
-"""What an expression may call."""
+"""The functions of expressions."""
 _MATH = {**{name: function for name, function in FUNCTIONS.items() if hasattr(math, name)}, "pi": math.pi, "e": math.e}
 """The module `math`, as expressions of launch files name it."""

@@ -1,4 +1,4 @@
-"""The types of parameters in launch files: texts read as what is asked for, or as YAML where nothing is.
+"""Conversion of launch-file texts to parameter types; a text without a declared type is read as YAML.
 
     as_type("float", "10")  ->  10.0        as_type("yaml", "['a1', 'a2']")  ->  ["a1", "a2"]
 
@@ -7,24 +7,23 @@ Source: launch.utilities.type_utils and launch_ros.parameter_descriptions.
 
 from __future__ import annotations
 
-from typing import Any
-
 from graphflow.errors import GraphFileError
 from graphflow.markup import source
+from graphflow.markup.source import Data, Scalar
 from graphflow.names import did_you_mean
 
 _LIST = "list_of_"
 _WORDS = {"str": "a text", "int": "an integer", "float": "a number", "bool": "true or false"}
 TYPES = (*_WORDS, *(f"{_LIST}{name}" for name in _WORDS))
-"""The names that launch files have for types."""
+"""The type names of launch files."""
 _TRUTH = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0": False, "no": False, "off": False}
 
 
-def as_type(name: str, value: Any) -> Any:
-    """A value, such as a text, as one of a type: one of `TYPES`, or `yaml` for what a text reads as.
+def as_type(name: str, value: Data) -> Data:
+    """Convert a value to a type: one of `TYPES`, or `yaml` for the YAML value of a text.
 
     Raises:
-        ValueError: There is no such type, or the value is of another.
+        ValueError: There is no such type, or the value cannot be converted.
     """
     if name == "yaml":
         found = from_yaml(value) if isinstance(value, str) else value
@@ -39,8 +38,8 @@ def as_type(name: str, value: Any) -> Any:
     return [_scalar(name.removeprefix(_LIST), inner) for inner in values]
 
 
-def from_yaml(text: str) -> Any:
-    """The YAML value of a text, where a parameter can have it: a mapping stays a text, and so does nothing."""
+def from_yaml(text: str) -> Data:
+    """Parse a text as the YAML value of a parameter; mappings and nulls, which no parameter can have, stay text."""
     try:
         value = source.read(str(text), "value").data
     except GraphFileError:
@@ -48,21 +47,21 @@ def from_yaml(text: str) -> Any:
     return text if value is None or isinstance(value, dict) else value
 
 
-def uniform(values: list[Any]) -> list[Any]:
-    """A list whose values have one type, as those of a parameter: integers among floats become floats.
+def uniform(values: list[Data]) -> list[Data]:
+    """Give the values of a list one type, as those of a parameter have: integers among floats become floats.
 
     Raises:
-        ValueError: They have several.
+        ValueError: The types differ.
     """
     kinds = {type(value) for value in values}
     if kinds == {int, float}:
-        return [float(value) for value in values]
+        return [float(value) for value in values if isinstance(value, (int, float))]
     if len(kinds) > 1 or kinds & {list, dict, type(None)}:
         raise ValueError(f"expected values of one type, got {values!r}")
     return values
 
 
-def _scalar(name: str, value: Any) -> Any:
+def _scalar(name: str, value: Data) -> Scalar:
     text = str(value).lower() if isinstance(value, bool) else str(value)
     if name == "str":
         return text

@@ -1,4 +1,4 @@
-"""Words of ROS 1's launch files that ROS 2's do not have, each with what to write in its place."""
+"""Actions, attributes and substitutions of ROS 1's launch files that ROS 2 lacks, with their replacements."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ _ATTRIBUTES = {
     "param.textfile": 'write value="$(file-content FILE)"',
     "param.binfile": "a parameter cannot be a file's bytes",
 }
-"""By the action and the attribute, or the element in it."""
+"""Replacements by the action and its attribute or child element."""
 _SUBSTITUTIONS = {"arg": "var", "find": "find-pkg-share"}
 
 
 def action(name: str) -> str:
-    """What to write in place of an action of ROS 1's; empty for others."""
+    """Return the replacement of an action of ROS 1; empty for others."""
     return f"is ROS 1's: {_ACTIONS[name]}" if name in _ACTIONS else ""
 
 
 def attribute(of: str, name: str, value: object = None) -> str:
-    """What to write in place of an attribute of ROS 1's, with its value where that stays; empty for others."""
+    """Return the replacement of an attribute of ROS 1, with its value where that is kept; empty for others."""
     text = _ATTRIBUTES.get(f"{of}.{name}", "")
     keeps = isinstance(value, str) and name == "ns"
     return text.replace('"..."', f'"{value}"') if keeps else text
 
 
 def substitution(inside: str) -> str:
-    """What to write in place of a substitution of ROS 1's; empty for others.
+    """Return the replacement of a substitution of ROS 1; empty for others.
 
     Args:
-        inside: What is between its parentheses.
+        inside: The text between its parentheses.
     """
     name, _, rest = inside.strip().partition(" ")
     if name in _SUBSTITUTIONS and rest:

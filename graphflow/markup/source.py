@@ -1,8 +1,8 @@
-"""YAML text as plain values that remember where they were written.
+"""YAML text as plain values, each with its place.
 
 One reader serves graph files, parameter values and message texts: PyYAML's parser with YAML 1.2's core scalars, so
-that `on`, `12:30` and `1_000` are strings and `1e3` is a number. What makes YAML unsafe or ambiguous is refused with
-its place before anything is built: aliases, tags, duplicate keys, keys that are not strings, excessive size or depth.
+that `on`, `12:30` and `1_000` are strings and `1e3` is a number. Unsafe or ambiguous YAML is refused with its place
+before anything is built: aliases, tags, duplicate keys, keys that are not strings, excessive size or depth.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from __future__ import annotations
 import pathlib
 import re
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple, NoReturn, TypeAlias
 
 import yaml
 
@@ -23,21 +24,31 @@ MAX_BYTES = 1_000_000
 MAX_DEPTH = 40
 MAX_VALUES = 50_000
 
+Scalar: TypeAlias = bool | int | float | str | None
+Data: TypeAlias = "Scalar | list[Data] | dict[str, Data]"
+"""A YAML or JSON value."""
 Path = tuple[str | int, ...]
 """Keys and indices from the top of a file down to a value."""
+Complain = Callable[[Place, str], None]
+"""Reports a problem at a place."""
 
-_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+try:
+    _LOADER: type[yaml.CSafeLoader | yaml.SafeLoader] = yaml.CSafeLoader
+except AttributeError:  # PyYAML was built without libyaml
+    _LOADER = yaml.SafeLoader
 
 _INT = re.compile(r"[-+]?[0-9]+\Z|0o[0-7]+\Z|0x[0-9a-fA-F]+\Z")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z")
 _UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+"""The line breaks that the parser counts."""
 _KEYS_ONLY = re.compile(r"\{\s*([-\d.]+)\s*(?:,[^:{}]*)?\}")
 """A mapping of values without names: `{255, 0}`."""
 _APOSTROPHE = re.compile(r"'[^']*\w'\w")
-"""A quoted text that ends where a word goes on."""
+"""A quoted text whose closing quote is followed by a letter: an apostrophe."""
 _COMMA = re.compile(r"(?<![\w.])([-+]?\d+),\Z")
-"""The whole part of a number with a comma for its point."""
-_SPECIAL: dict[str, Any] = {
+"""The integer part of a number with a decimal comma."""
+_SPECIAL: dict[str, Scalar] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
     **dict.fromkeys(("false", "False", "FALSE"), False),
@@ -47,31 +58,32 @@ _SPECIAL: dict[str, Any] = {
 
 
 class Source(NamedTuple):
-    """A file's values and where each was written."""
+    """The values of a file, with their places."""
 
-    data: Any
+    data: Data
     places: dict[Path, Place]
     """The place of each value."""
     keys: dict[Path, Place]
     """The place of each mapping key; the path ends with the key."""
 
     def place(self, path: Path) -> Place:
-        """The place of a value, or of the nearest thing above it that was written."""
+        """Return the place of a value, or of the nearest ancestor that has one."""
         while path and path not in self.places:
             path = path[:-1]
         return self.places.get(path, Place(self.file))
 
     def key_place(self, path: Path) -> Place:
-        """The place of the key that `path` ends with."""
+        """Return the place of the key at the end of `path`."""
         return self.keys.get(path, self.place(path))
 
     @property
     def file(self) -> str:
+        """The file's name, as messages show it."""
         return self.places[()].file
 
 
-def scalar(text: str) -> Any:
-    """An unquoted YAML scalar as a Python value, by YAML 1.2's core schema.
+def scalar(text: str) -> Scalar:
+    """Convert an unquoted YAML scalar to a Python value, by YAML 1.2's core schema.
 
     Raises:
         ValueError: A number with too many digits.
@@ -85,14 +97,7 @@ def scalar(text: str) -> Any:
     return text
 
 
-class _Frame(NamedTuple):
-    container: Any
-    path: Path
-
-
-def read_file(
-    path: pathlib.Path, name: str, *, is_params: bool = False, complain: Callable[[Place, str], None] | None = None
-) -> Source:
+def read_file(path: pathlib.Path, name: str, *, is_params: bool = False, complain: Complain | None = None) -> Source:
     """Read a YAML file.
 
     Args:
@@ -100,7 +105,7 @@ def read_file(
         is_params, complain: As for `read`.
 
     Raises:
-        GraphFileError: As for `read`; also when there is no such file, it is not a regular one, or it is not text.
+        GraphFileError: As for `read`; also if the file does not exist, is not a regular one, or is not text.
     """
     try:
         data = found_bytes(path, MAX_BYTES)
@@ -113,19 +118,17 @@ def read_file(
         raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
 
 
-def read(
-    text: str, file: str, *, is_params: bool = False, complain: Callable[[Place, str], None] | None = None
-) -> Source:
+def read(text: str, file: str, *, is_params: bool = False, complain: Complain | None = None) -> Source:
     """Read one YAML document.
 
     Args:
-        file: The name to give in messages.
-        is_params: Whether it is read as ROS reads files of parameters: every key is a text, and mappings under the
-            same key are one.
-        complain: Called with each key that is not a text, which is left out then; None for an error.
+        file: The file as messages show it.
+        is_params: Whether to read it as ROS reads parameter files: every key is text, and mappings under the same key
+            are merged.
+        complain: Called with each key that is not text, which is then left out; None raises instead.
 
     Raises:
-        GraphFileError: `text` is not YAML, or uses what is refused here; the first such place.
+        GraphFileError: `text` is not YAML, or uses a refused feature; the first such place.
     """
     if len(text.encode(errors="replace")) > MAX_BYTES:
         raise _error(Place(file), f"the file is larger than {MAX_BYTES:,} bytes")
@@ -135,15 +138,15 @@ def read(
         place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
         raise _error(place, f"the character U+{ord(unprintable[0]):04X} is not allowed in a YAML file; delete it")
     try:
-        return _build(text, file, is_params=is_params, complain=complain or _refuse)
+        return _Builder(text, file, is_params=is_params, complain=complain or _error_at).build()
     except yaml.MarkedYAMLError as error:
-        mark: Any = error.problem_mark or error.context_mark
+        mark = error.problem_mark or error.context_mark
         lines = text.splitlines()
         if mark and mark.line >= len(lines):  # the end of the text: point after its last character
             place = Place(file, len(lines), len(lines[-1]) + 1) if lines else Place(file, 1, 1)
         else:
             place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
-        if "nesting depth" in str(error.problem):  # libyaml, which reads ahead, has a limit of its own
+        if "nesting depth" in str(error.problem):  # libyaml reads ahead and has a limit of its own
             raise _error(place, f"nested more than {MAX_DEPTH} deep") from None
         raise _error(place, f"not valid YAML: {error.problem}{_hint(text, error)}") from None
     except yaml.YAMLError as error:
@@ -151,9 +154,8 @@ def read(
 
 
 def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
-    """What to do about the parser's complaint, for common mistakes."""
-    mark: Any = error.problem_mark
-    start: Any = error.context_mark
+    """Return the correction for a common mistake, in parentheses; empty if none is known."""
+    mark, start = error.problem_mark, error.context_mark
     problem, context = str(error.problem), str(error.context)
     lines = text.splitlines()
     line = lines[mark.line] if mark and mark.line < len(lines) else ""
@@ -165,7 +167,7 @@ def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
         return " (a substitution is written with parentheses, as in $(var x))"
     if "mapping values are not allowed" in problem:
         return " (quote a text that has ': ' in it; indent more below a key)"
-    if "cannot start any token" in problem and line:
+    if "cannot start any token" in problem and mark and line:
         return f" (quote a text that begins with {line[mark.column]})"
     if _APOSTROPHE.search(line[: mark.column + 1 if mark else 0]):
         return " (an apostrophe in quotes is written twice: 'it''s')"
@@ -184,116 +186,138 @@ def _error(place: Place, message: str) -> GraphFileError:
     return GraphFileError([Problem(place, message)])
 
 
-def _refuse(place: Place, message: str) -> None:
+def _error_at(place: Place, message: str) -> NoReturn:
     raise _error(place, message)
 
 
-def _build(text: str, file: str, *, is_params: bool, complain: Callable[[Place, str], None]) -> Source:
-    places: dict[Path, Place] = {}
-    keys: dict[Path, Place] = {}
-    stack: list[_Frame] = []
-    pending: list[str | None] = []
-    root: list[Any] = []
-    told: set[tuple[int, str]] = set()
-    refused: list[tuple[dict[str, Any], str]] = []
-    documents = count = 0
+@dataclass(slots=True)
+class _Frame:
+    """A mapping or list that has begun and not yet ended."""
 
-    def twice(key: str, first: Place, place: Place) -> GraphFileError:
-        return _error(place, f"the key {key!r} is here twice, first on line {first.line}; remove one")
+    container: dict[str, Data] | list[Data]
+    path: Path
+    key: str | None = None
+    """The key of a mapping whose value comes next; None before a key."""
 
-    def put(value: Any, place: Place) -> Path:
-        if not stack:
-            root.append(value)
-            places[()] = place
-            return ()
-        container, above = stack[-1]
-        if isinstance(container, list):
-            path = (*above, len(container))
-            container.append(value)
-        else:
-            key = pending[-1]
-            assert key is not None
-            path = (*above, key)
-            if key in container and not any(one is container and name == key for one, name in refused):
-                raise twice(key, keys[path], place)
-            container[key] = value
-            pending[-1] = None
-        places[path] = place
-        return path
 
-    for event in yaml.parse(text, Loader=_LOADER):
-        mark: Any = event.start_mark
-        place = Place(file, mark.line + 1, mark.column + 1)
+class _Builder:
+    """The values and places of a document, built from the parser's events."""
+
+    def __init__(self, text: str, file: str, *, is_params: bool, complain: Complain) -> None:
+        self._text, self._file, self._is_params, self._complain = text, file, is_params, complain
+        self._lines = _LINE_BREAK.split(text)
+        self._root: list[Data] = []
+        self._places: dict[Path, Place] = {}
+        self._keys: dict[Path, Place] = {}
+        self._stack: list[_Frame] = []
+        self._refused: list[tuple[dict[str, Data], str]] = []
+        """Keys that are not text, with their mappings; they are kept until the end so that their values are read."""
+        self._reported: set[tuple[int, str]] = set()
+        self._documents = self._count = 0
+
+    def build(self) -> Source:
+        for event in yaml.parse(self._text, Loader=_LOADER):
+            mark = event.start_mark
+            assert mark is not None  # the parser sets it for every event
+            self._add(event, Place(self._file, mark.line + 1, mark.column + 1))
+        for mapping, key in self._refused:
+            mapping.pop(key, None)
+        if not self._root:
+            self._root.append(None)
+            self._places[()] = Place(self._file, 1, 1)
+        return Source(self._root[0], self._places, self._keys)
+
+    def _add(self, event: yaml.Event, place: Place) -> None:
         if isinstance(event, yaml.DocumentStartEvent):
-            documents += 1
-            if documents > 1:
+            self._documents += 1
+            if self._documents > 1:
                 raise _error(place, "one document per file: remove the line '---'")
         elif isinstance(event, yaml.AliasEvent):
             raise _error(place, f"*{event.anchor}: aliases are not used here; write the value out")
-        elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
-            if isinstance(stack.pop().container, dict):
-                pending.pop()
-        elif isinstance(event, yaml.NodeEvent):
-            count += 1
-            if count > MAX_VALUES:
+        elif isinstance(event, yaml.CollectionEndEvent):
+            self._stack.pop()
+        elif isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent)):
+            self._count += 1
+            if self._count > MAX_VALUES:
                 raise _error(place, f"the file has more than {MAX_VALUES:,} values")
-            tag = getattr(event, "tag", None)
-            if tag not in (None, "!", "tag:yaml.org,2002:str"):
-                written = tag.replace("tag:yaml.org,2002:", "!!")
+            if event.tag not in (None, "!", "tag:yaml.org,2002:str"):
+                written = event.tag.replace("tag:yaml.org,2002:", "!!")
                 raise _error(place, f"{written}: tags are not used here; write a plain value")
-            waits_for_key = bool(stack) and isinstance(stack[-1].container, dict) and pending[-1] is None
-            if waits_for_key:
-                key = _key(event, place)
-                container, above = stack[-1]
-                if not is_params and (fault := _key_fault(event, place, text)):
-                    if (place.line, fault) not in told:  # a list without brackets has several such keys
-                        complain(place, fault)
-                    told.add((place.line, fault))
-                    refused.append((container, key))
-                elif key in container and not (is_params and isinstance(container[key], dict)):
-                    raise twice(key, keys[(*above, key)], place)
-                keys.setdefault((*above, key), place)
-                pending[-1] = key
-                continue
-            if isinstance(event, yaml.ScalarEvent):
-                put(_scalar_value(event, place), place)
-                continue
-            new: Any = {} if isinstance(event, yaml.MappingStartEvent) else []
-            before = stack[-1].container.get(pending[-1]) if stack and isinstance(stack[-1].container, dict) else None
-            if isinstance(before, dict) and isinstance(new, dict):  # it goes on with what stands there already
-                new, path, pending[-1] = before, (*stack[-1].path, str(pending[-1])), None
+            frame = self._stack[-1] if self._stack else None
+            if frame is not None and isinstance(frame.container, dict) and frame.key is None:
+                self._begin_entry(event, place, frame, frame.container)
+            elif isinstance(event, yaml.ScalarEvent):
+                self._put(_scalar_value(event, place), place)
             else:
-                path = put(new, place)
-            stack.append(_Frame(new, path))
-            if isinstance(new, dict):
-                pending.append(None)
-            if len(stack) > MAX_DEPTH:
-                raise _error(place, f"nested more than {MAX_DEPTH} deep")
-    for mapping, key in refused:
-        mapping.pop(key, None)
-    if not root:
-        root.append(None)
-        places[()] = Place(file, 1, 1)
-    return Source(root[0], places, keys)
+                self._open({} if isinstance(event, yaml.MappingStartEvent) else [], place)
+
+    def _begin_entry(self, event: yaml.NodeEvent, place: Place, frame: _Frame, mapping: dict[str, Data]) -> None:
+        """Take an event as the key of the next entry of a mapping."""
+        if not isinstance(event, yaml.ScalarEvent):
+            raise _error(place, "a key must be a word, not a list or mapping")
+        key, path = str(event.value), (*frame.path, str(event.value))
+        if not self._is_params and (fault := _key_fault(event, place, self._lines[place.line - 1])):
+            if (place.line, fault) not in self._reported:  # a list without brackets has several such keys
+                self._complain(place, fault)
+            self._reported.add((place.line, fault))
+            self._refused.append((mapping, key))
+        elif key in mapping and not (self._is_params and isinstance(mapping[key], dict)):
+            raise self._twice(path, place)
+        self._keys.setdefault(path, place)
+        frame.key = key
+
+    def _open(self, container: dict[str, Data] | list[Data], place: Place) -> None:
+        """Begin a mapping or list; in a parameter file, a mapping under a key that has one continues it."""
+        above = self._stack[-1] if self._stack else None
+        before = None
+        if above is not None and isinstance(above.container, dict) and above.key is not None:
+            before = above.container.get(above.key)
+        if above is not None and above.key is not None and isinstance(before, dict) and isinstance(container, dict):
+            container, path, above.key = before, (*above.path, above.key), None
+        else:
+            path = self._put(container, place)
+        self._stack.append(_Frame(container, path))
+        if len(self._stack) > MAX_DEPTH:
+            raise _error(place, f"nested more than {MAX_DEPTH} deep")
+
+    def _put(self, value: Data, place: Place) -> Path:
+        """Add a value to the innermost open container; returns its path."""
+        if not self._stack:
+            self._root.append(value)
+            self._places[()] = place
+            return ()
+        frame = self._stack[-1]
+        container, path = frame.container, frame.path
+        if isinstance(container, list):
+            path = (*path, len(container))
+            container.append(value)
+        else:
+            key = frame.key
+            assert key is not None
+            path = (*path, key)
+            if key in container and not any(one is container and name == key for one, name in self._refused):
+                raise self._twice(path, place)
+            container[key] = value
+            frame.key = None
+        self._places[path] = place
+        return path
+
+    def _twice(self, path: Path, place: Place) -> GraphFileError:
+        first = self._keys[path].line
+        return _error(place, f"the key {path[-1]!r} is here twice, first on line {first}; remove one")
 
 
-def _key(event: Any, place: Place) -> str:
-    if not isinstance(event, yaml.ScalarEvent):
-        raise _error(place, "a key must be a word, not a list or mapping")
-    return str(event.value)
-
-
-def _key_fault(event: Any, place: Place, text: str) -> str:
-    """Why a key is none: it is no text. Empty for others."""
+def _key_fault(event: yaml.ScalarEvent, place: Place, line: str) -> str:
+    """Return why a key is not text, and the correction; empty for a valid key."""
     if not event.style and is_quoted(event.value):
         return f"{event.value[0]} and {event.value[-1]} are no quotes in YAML; write {plain(event.value)}"
-    if not event.style and (slip := yaml_slips.of_key(event.value, text.split("\n")[event.start_mark.line])):
+    if not event.style and (slip := yaml_slips.of_key(event.value, line)):
         return slip
     if event.style or isinstance(_scalar_value(event, place), str):
         return ""
-    if found := _KEYS_ONLY.search(text.split("\n")[event.start_mark.line]):
+    column = place.column - 1
+    if found := _KEYS_ONLY.search(line):
         return f"values have names: {{name: {found[1]}, ...}}"
-    line, column = text.split("\n")[event.start_mark.line], event.start_mark.column
     before = _COMMA.search(line[:column])
     if before and event.value.isdecimal():
         return f"a number is written with a point: {before[1]}.{event.value}, not {before[1]},{event.value}"
@@ -302,17 +326,17 @@ def _key_fault(event: Any, place: Place, text: str) -> str:
     return f"the key {event.value} is not text; write it in quotes: '{event.value}'"
 
 
-def _scalar_value(event: Any, place: Place) -> Any:
+def _scalar_value(event: yaml.ScalarEvent, place: Place) -> Scalar:
     if event.style or event.tag is not None:  # only the tags ! and !!str get this far, and both mean text
-        return event.value
+        return str(event.value)
     try:
         return scalar(event.value)
     except ValueError:
         raise _error(place, f"{event.value[:20]}... has too many digits for a number; put text in quotes") from None
 
 
-def parse_value(text: str) -> Any:
-    """The value of a YAML text from the command line: `200`, `true`, `{x: 1.0}`.
+def parse_value(text: str) -> Data:
+    """Parse a YAML value from the command line: `200`, `true`, `{x: 1.0}`.
 
     Raises:
         GraphflowError: `text` is not YAML; the message says where.

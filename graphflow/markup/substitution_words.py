@@ -1,9 +1,9 @@
-r"""The words of a substitution: those of `$(if $(var sim) 'two words' three)` are `$(var sim)`, `two words`, `three`.
+r"""The words of a substitution: `$(if $(var sim) 'two words' three)` has `$(var sim)`, `two words` and `three`.
 
-A space separates words. A word in single or double quotes may have spaces and parentheses; a backslash takes the
-meaning from any character, also outside quotes: `\$(var x)` is that text, and no substitution.
+Spaces separate words. A word in single or double quotes may have spaces and parentheses; a backslash escapes any
+character, also outside quotes: `\$(var x)` is text, and no substitution.
 
-Source: launch.frontend, the grammar of its substitutions. Unlike there, words within quotes may have quotes, too.
+Source: launch.frontend, the grammar of its substitutions. Unlike there, a quoted word may contain quotes.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from typing import NamedTuple
 
 QUOTES = ("'", '"')
 _LITERAL = re.compile(r"""[^\s\\'"()$]+\Z""")
-"""Text that needs no quotes as a word."""
+"""A text that needs no quotes as a word."""
 _SPECIAL = re.compile(r"""[\s\\'"()$]""")
 _VARIABLE = re.compile(r"\$\{ *(\w+) *\}|\$(\w+)|\{\{ *(\w+) *\}\}")
-"""A variable in a shell, or in a template."""
+"""A variable as shells and templates write it."""
 _QUOTED = {mark: re.compile(rf"{mark}[^{mark}\\]*(?:\\.[^{mark}\\]*)*{mark}", re.DOTALL) for mark in QUOTES}
-"""A text in quotes of either kind."""
+"""A quoted text, by the kind of quote."""
 
 
 class Word(NamedTuple):
-    """A word as it is written, without its quotes."""
+    """A word of a substitution, without its quotes."""
 
     text: str
     is_quoted: bool
@@ -34,13 +34,13 @@ class UnclosedError(ValueError):
 
 
 def spans(text: str, *, is_word: bool = False) -> Iterator[tuple[str, bool]]:
-    r"""The parts of a text: literal ones, without backslashes, and the insides of substitutions, which are marked.
+    r"""Split a text into literal parts, without backslashes, and the content of substitutions, marked True.
 
     Args:
-        is_word: Whether the text is a word, in which a backslash can stand before any character; else only in `\$(`.
+        is_word: Whether the text is a word, in which a backslash escapes any character; elsewhere it does so in `\$(`.
 
     Raises:
-        UnclosedError: A substitution has no closing parenthesis; with its beginning.
+        UnclosedError: A substitution has no closing parenthesis; its argument is the beginning of the substitution.
     """
     literal, i = "", 0
     while i < len(text):
@@ -59,7 +59,7 @@ def spans(text: str, *, is_word: bool = False) -> Iterator[tuple[str, bool]]:
 
 
 def words(text: str) -> list[Word]:
-    """The words of what is inside a substitution.
+    """Split the content of a substitution into words.
 
     Raises:
         UnclosedError: A quote is not closed, or text follows it without a space.
@@ -84,10 +84,10 @@ def words(text: str) -> list[Word]:
 
 
 def as_word(text: str) -> str:
-    """A text with substitutions, as one word of another substitution."""
+    """Quote a text with substitutions as one word of another substitution."""
     try:
         parts = list(spans(text))
-    except UnclosedError:  # so there is none in it
+    except UnclosedError:  # then there is no substitution in it
         return quoted(text)
     if parts and all(is_inside or _LITERAL.match(part) for part, is_inside in parts):
         return text
@@ -99,12 +99,12 @@ def as_word(text: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """A text without substitutions, as one word of a substitution."""
+    """Quote a text without substitutions as one word of a substitution."""
     return text if _LITERAL.match(text) else "'" + re.sub(r"[\\']|\$(?=\()", r"\\\g<0>", text) + "'"
 
 
 def misspelt(text: str, names: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Places where a name stands as other languages have their variables, as `${rate}`; each with the name."""
+    """Yield names written as variables of other languages, as `${rate}`, each after the text found."""
     for found in _VARIABLE.finditer(text):
         name = next(filter(None, found.groups()))
         if name in names:
@@ -112,7 +112,7 @@ def misspelt(text: str, names: Collection[str]) -> Iterator[tuple[str, str]]:
 
 
 def _closing(text: str, start: int) -> int:
-    """The index of the parenthesis that closes the one at `start + 1`."""
+    """Return the index of the parenthesis that closes the one at `start + 1`."""
     depth, i = 0, start + 1
     while i < len(text):
         if text[i] == "\\":
@@ -128,6 +128,6 @@ def _closing(text: str, start: int) -> int:
 
 
 def _end_of_quote(text: str, start: int) -> int:
-    """The index of the quote that ends what the one at `start` begins; -1 if there is none."""
+    """Return the index of the quote that closes the one at `start`; -1 if there is none."""
     found = _QUOTED[text[start]].match(text, start)
     return found.end() - 1 if found else -1

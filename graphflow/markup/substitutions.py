@@ -1,6 +1,6 @@
 """ROS's substitutions in texts: `$(var x)`, `$(env X default)`, `$(dirname)`, `$(eval ...)` and others, nested freely.
 
-A value that is only `"$(var x)"` keeps the type of x; inside a longer text it becomes text.
+A value that is only `"$(var x)"` has the type of x; within a longer text it becomes text.
 
 Source: launch frontends, "Substitutions".
 """
@@ -15,13 +15,13 @@ import shutil
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.markup import ros1_words
 from graphflow.markup.copies import copy_of
 from graphflow.markup.expressions import ExpressionError, evaluate
 from graphflow.markup.param_types import as_type, from_yaml
-from graphflow.markup.source import scalar
+from graphflow.markup.source import Data, scalar
 from graphflow.markup.substitution_words import UnclosedError, Word, as_word, quoted, spans, words
 from graphflow.names import did_you_mean
 from graphflow.reading import found_bytes
@@ -33,9 +33,7 @@ MAX_DEPTH = 20
 MAX_TEXT = 100_000
 """Characters of a text, and bytes of a file that a substitution reads, or that `$(command ...)` prints."""
 ON_STDERR = ("fail", "ignore", "warn", "capture")
-"""What may be done with what a program of `$(command ...)` writes to its error output."""
-
-
+"""Treatments of the error output of a program of `$(command ...)`."""
 _VALUES = re.compile(r"""(['"]?)\$\(var (\w+)\)\1""")
 """The value of an argument in an expression."""
 
@@ -45,11 +43,11 @@ class SubstitutionError(ValueError):
 
 
 class Written(str):
-    """The value of a launch file's argument: a text, as all are in ROS, which is read where a value is wanted."""
+    """The value of a launch file's argument: a text, as all are in ROS, which is parsed where a value is needed."""
 
     @property
-    def value(self) -> Any:
-        """What it reads as; nothing is an empty text."""
+    def value(self) -> Data:
+        """The YAML value of the text; an empty text stays one."""
         try:
             value = from_yaml(self) if self[:1] in ("[", "'", '"') else scalar(self) if self else ""
         except ValueError:  # a number with too many digits
@@ -58,11 +56,11 @@ class Written(str):
 
 
 Run = Callable[[list[str], str, Path, Mapping[str, str]], str]
-"""Runs a program in a folder and returns what it prints; the second argument is one of `ON_STDERR`."""
+"""Runs a program in a folder and returns its output; the second argument is one of `ON_STDERR`."""
 
 
 class Outside(NamedTuple):
-    """What substitutions find outside their file."""
+    """The environment of substitutions: everything outside their file."""
 
     env: Mapping[str, str] = os.environ
     root: Path = Path()
@@ -70,34 +68,36 @@ class Outside(NamedTuple):
     logs: Path = Path()
     """The folder of the logs."""
     run: Run | None = None
-    """What `$(command ...)` is carried out by; it stays as it is written without."""
-    describe: Callable[[Path, str, Mapping[str, Any] | None], dict[str, Any]] | None = None
-    """What launch files in Python are run by."""
+    """Runs the programs of `$(command ...)`; without it, such a substitution stays as it is."""
+
+    def with_env(self, variables: Mapping[str, str]) -> Outside:
+        """Return the same with more environment variables."""
+        return Outside({**self.env, **variables}, self.root, self.logs, self.run)
 
 
 class Substitutions:
-    """What the substitutions of one file stand for.
+    """The substitutions of one file.
 
     Args:
         args: Values of the file's arguments.
         file: The file.
-        outside: What is around it.
-        params: Values of the parameters that the groups around give to all nodes.
+        outside: The environment.
+        params: Values of the parameters that the surrounding groups give to all nodes.
     """
 
     def __init__(
-        self, args: Mapping[str, Any], file: Path, outside: Outside, params: Mapping[str, Any] | None = None
+        self, args: Mapping[str, Data], file: Path, outside: Outside, params: Mapping[str, Data] | None = None
     ) -> None:
         self._args = args
         self._file = file
-        self._env, self._root, self._logs, self._run, _ = outside
+        self._env, self._root, self._logs, self._run = outside
         self._params = params or {}
 
-    def apply(self, value: Any, *, is_word: bool = False) -> Any:
-        """The value with every substitution in it made; a text that is one substitution takes its type.
+    def apply(self, value: Data, *, is_word: bool = False) -> Data:
+        """Make every substitution in a value; a text that is a single substitution takes its type.
 
         Args:
-            is_word: Whether it is a word of a program, so that it stays a text.
+            is_word: Whether the value is a word of a command line, which stays text.
 
         Raises:
             SubstitutionError: A substitution cannot be made.
@@ -106,13 +106,14 @@ class Substitutions:
             return value
         parts = self._parts(value, 1)
         if len(parts) == 1 and not is_word:
-            return parts[0].value if isinstance(parts[0], Written) else parts[0]
+            [part] = parts
+            return part.value if isinstance(part, Written) else part
         texts = [_text(part) for part in parts]
         if sum(map(len, texts)) > MAX_TEXT:  # arguments made of arguments could grow without end
             raise SubstitutionError(f"the text has more than {MAX_TEXT:,} characters")
         return "".join(texts)
 
-    def _parts(self, text: str, depth: int, *, is_word: bool = False) -> list[Any]:
+    def _parts(self, text: str, depth: int, *, is_word: bool = False) -> list[Data]:
         if depth > MAX_DEPTH:
             raise SubstitutionError(f"substitutions nested more than {MAX_DEPTH} deep")
         try:
@@ -121,7 +122,7 @@ class Substitutions:
             raise SubstitutionError(f"{str(error)!r} has no closing )") from None
         return [self._evaluate(part, depth) if is_inside else part for part, is_inside in parts]
 
-    def _evaluate(self, inside: str, depth: int) -> Any:
+    def _evaluate(self, inside: str, depth: int) -> Data:
         name, _, rest = inside.strip().partition(" ")
         function = _FUNCTIONS.get(name)
         if function is None:
@@ -137,20 +138,22 @@ class Substitutions:
                 raise SubstitutionError(text) from None
             written = []
         if name == "eval" and not (len(written) in (1, 2) and written[0].is_quoted):
-            # Other quotes than those around the whole are the expression's own.
+            # Quotes other than those around the whole expression belong to it.
             try:
                 return self._eval([Word(self._joined(rest.strip(), depth + 1), is_quoted=False)])
             except SubstitutionError as error:
                 way = self._by_name(rest.strip())
                 raise SubstitutionError(f"{str(error).partition('; ')[0]}{way}" if way else str(error)) from None
-        return function(self, [w._replace(text=self._joined(w.text, depth + 1, is_word=True)) for w in written])
+        return function(self, [Word(self._joined(w.text, depth + 1, is_word=True), w.is_quoted) for w in written])
 
     def _by_name(self, expression: str) -> str:
-        """The end of a sentence on an expression that has values of arguments as words: how it names them."""
+        """Return a hint for an expression that has `$(var x)` where it could name x; empty if that is not the fault."""
         found = [name for _, name in _VALUES.findall(expression)]
         if not found or not {*found} <= self._args.keys():
             return ""
-        if any(isinstance(self._args[name], Written) for name in found):  # of a launch file: expressions know no names
+        if any(
+            isinstance(self._args[name], Written) for name in found
+        ):  # arguments of a launch file: ROS has no names in expressions
             expression = _VALUES.sub(r"'$(var \2)'", expression).replace('"', "'")
             return f'; write $(eval "{expression}")'
         expression = _VALUES.sub(lambda value: value[2], expression)
@@ -163,7 +166,7 @@ class Substitutions:
     def _joined(self, text: str, depth: int, *, is_word: bool = False) -> str:
         return "".join(map(_text, self._parts(text, depth, is_word=is_word)))
 
-    def _var(self, given: list[Word]) -> Any:
+    def _var(self, given: list[Word]) -> Data:
         if not given:
             raise SubstitutionError("write $(var NAME), or $(var NAME DEFAULT)")
         word, default = given[0].text, given[1:]
@@ -183,7 +186,7 @@ class Substitutions:
             value = value[part]
         return value
 
-    def _eval(self, given: list[Word]) -> Any:
+    def _eval(self, given: list[Word]) -> Data:
         text = given[0].text
         try:
             values = {name: arg.value if isinstance(arg, Written) else arg for name, arg in self._args.items()}
@@ -235,7 +238,7 @@ class Substitutions:
             )
         return str(found)
 
-    def _param(self, given: list[Word]) -> Any:
+    def _param(self, given: list[Word]) -> Data:
         name, *default = _words(given, (1, 2), "param NAME DEFAULT")
         if name not in self._params and default:
             return _default(given[1:])
@@ -262,7 +265,7 @@ class Substitutions:
             raise SubstitutionError(f"{written}: {error}") from None
 
     def _substituted(self, given: list[Word]) -> str:
-        """The path of a copy of a file, with its substitutions made; those in comments are left out."""
+        """Return the path of a copy of a file with its substitutions made; comments are dropped."""
         text = _joined(given)
         written = f"$(substituted {text})"
         lines = self._read(text, written).splitlines(keepends=True)
@@ -272,22 +275,22 @@ class Substitutions:
         if "$(substituted " in content:  # it could be of itself
             raise SubstitutionError(f"{written}: the file has a substitution of this kind itself")
         try:
-            return str(copy_of(self.apply(content, is_word=True), Path(text).name))
+            return str(copy_of(str(self.apply(content, is_word=True)), Path(text).name))
         except OSError as error:
             raise SubstitutionError(f"{written}: {error}") from None
 
     def _anonymous(self, given: list[Word]) -> str:
         text = _joined(given)
-        # The same word for the same name in a file: its nodes can be referred to.
+        # The same result for the same name throughout a file, so that other actions can refer to the node.
         return f"{text}_{zlib.crc32(f'{self._file.parent} {os.getpid()} {text}'.encode()):08x}"
 
     def _command(self, given: list[Word]) -> str:
-        """What a program prints. In quotes it may be followed by a word on its error output, as in ROS's files."""
+        """Return the output of a program. As in ROS, a quoted command may be followed by one of `ON_STDERR`."""
         texts = [word.text for word in given]
         on_stderr = texts.pop() if len(texts) == 2 and texts[1] in ON_STDERR else "fail"
         try:
             words = shlex.split(texts[0]) if len(texts) == 1 else texts
-        except ValueError:  # a quotation that does not end
+        except ValueError:  # a quote that is not closed
             words = []
         if not words:
             raise SubstitutionError(f"write $(command 'PROGRAM ...') or $(command 'PROGRAM ...' {'|'.join(ON_STDERR)})")
@@ -295,9 +298,9 @@ class Substitutions:
             return f"$(command {' '.join(quoted(word.text) for word in given)})"
         return self._run(words, on_stderr, self._file.parent, self._env)
 
-    def _typed(self, given: list[Word]) -> Any:
+    def _typed(self, given: list[Word]) -> Data:
         kind, text = _words(given, 2, "as TYPE TEXT")
-        if self._run is None and "$(command " in text:  # which has not been run
+        if self._run is None and "$(command " in text:  # it has not been run
             return f"$(as {kind} {as_word(text)})"
         try:
             return as_type(kind, text)
@@ -309,8 +312,8 @@ class Substitutions:
         return yes if _is_true(condition) else "".join(no)
 
 
-def _default(given: list[Word]) -> Any:
-    """What stands behind a name: text in quotes, or a value as YAML has it."""
+def _default(given: list[Word]) -> Data:
+    """Return the default after a name: text in quotes, or a YAML scalar."""
     text = _joined(given)
     try:
         return text if given[0].is_quoted else scalar(text)
@@ -319,11 +322,11 @@ def _default(given: list[Word]) -> Any:
 
 
 def _joined(given: Sequence[Word]) -> str:
-    """Words as the text that they are without quotes."""
+    """Join words to a text without quotes."""
     return " ".join(word.text for word in given)
 
 
-def _text(value: Any) -> str:
+def _text(value: Data) -> str:
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -340,17 +343,17 @@ def _found(folder: Path | None, package: str, written: str, root: Path) -> str:
 
 
 _TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false", "off": "false"}
-"""Words for truth values that conditions do not take, each with the right one."""
+"""Words for truth values that conditions do not accept, with those that they do."""
 
 
-def truth(value: Any, file: str) -> bool:
-    """A condition's value.
+def truth(value: object, file: str) -> bool:
+    """Return the truth value of a condition.
 
     Args:
-        file: Where it stands: a launch file in Python has other comparisons.
+        file: The file of the condition, for the hint: launch files in Python have other comparisons.
 
     Raises:
-        SubstitutionError: It is neither true nor false.
+        SubstitutionError: The value is neither true nor false.
     """
     words = {"true": True, "1": True, "false": False, "0": False}
     if isinstance(value, (bool, int)) and value in (0, 1):
@@ -364,7 +367,7 @@ def truth(value: Any, file: str) -> bool:
 
 
 def _is_true(text: str) -> bool:
-    """The truth value of a text in YAML, which may be `on` or `no`, too."""
+    """Return the truth value of a text by YAML 1.1, which also has `on` and `no`."""
     try:
         return bool(as_type("bool", text))
     except ValueError as error:
@@ -372,12 +375,12 @@ def _is_true(text: str) -> bool:
 
 
 def _truths(texts: list[str]) -> list[bool]:
-    """The truth values of all texts, so that a wrong one is told even if others decide."""
+    """Return the truth values of all texts, so that an invalid one is reported even if others decide the result."""
     return [_is_true(text) for text in texts]
 
 
 def _is_equal(left: str, right: str) -> bool:
-    """Whether two texts are the same: as truth values or numbers, if both are some."""
+    """Return whether two texts are equal: as truth values or numbers, if both are."""
     words = {"true": True, "1": True, "false": False, "0": False}
     truths = [words.get(text.lower()) for text in (left, right)]
     if None not in truths:
@@ -389,14 +392,14 @@ def _is_equal(left: str, right: str) -> bool:
 
 
 def _words(given: Sequence[Word], counts: int | Sequence[int], form: str) -> list[str]:
-    """The texts of words, of which there may be so many."""
+    """Return the texts of words, whose number must be one of `counts`."""
     allowed = (counts,) if isinstance(counts, int) else counts
     if len(given) not in allowed:
         raise SubstitutionError(f"write $({form})")
     return [word.text for word in given]
 
 
-_FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Any]] = {
+_FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Data]] = {
     "var": Substitutions._var,
     "env": Substitutions._environment,
     "optenv": Substitutions._optional_environment,
@@ -424,4 +427,4 @@ _FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Any]] = {
     "equals": lambda _, given: _is_equal(*_words(given, 2, "equals A B")),
     "not-equals": lambda _, given: not _is_equal(*_words(given, 2, "not-equals A B")),
 }
-"""What may stand behind `$(`, and how the rest is read."""
+"""Substitutions by name, each a function of the words after it."""

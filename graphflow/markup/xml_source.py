@@ -1,4 +1,4 @@
-"""ROS's launch files in XML, read as the YAML dialect has them: a list of actions with their attributes.
+"""ROS's launch files in XML, read as trees of the YAML dialect: lists of actions with their attributes.
 
     <node pkg="p" exec="e"><param name="a" value="1"/></node>   ->   {node: {pkg: p, exec: e, param: [{name: a, ...}]}}
 
@@ -9,30 +9,30 @@ from __future__ import annotations
 
 import pathlib
 import re
-from typing import Any
+from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.markup.param_types import from_yaml
 from graphflow.markup.ros1_words import action
-from graphflow.markup.source import MAX_BYTES, MAX_DEPTH
+from graphflow.markup.source import MAX_BYTES, MAX_DEPTH, Data
 from graphflow.markup.tree import Item, located
 from graphflow.reading import found_bytes
 from graphflow.typographic import plain
 
 LISTS = ("param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let")
-"""Elements that are attributes of the one around them, as lists; any other in it is an action."""
+"""Elements that are list attributes of their parent; any other child is an action."""
 _WITH_ACTIONS = ("launch", "group", "timer", "ros_timer")
 
 
 def read_file(path: pathlib.Path, name: str) -> Item:
-    """A launch file.
+    """Read a launch file.
 
     Args:
         name: The file as messages show it.
 
     Raises:
-        GraphFileError: It cannot be read, is no XML, or has what is refused here: entities of its own, great size.
+        GraphFileError: The file cannot be read, is not XML, or is refused: it declares entities, or is too large.
     """
     try:
         data = found_bytes(path, MAX_BYTES)
@@ -42,15 +42,28 @@ def read_file(path: pathlib.Path, name: str) -> Item:
 
 
 _NO_QUOTES = re.compile(r"\s([\w-]+)\s*=\s*([^\s\"'/>]+)")
-"""An attribute whose value stands without quotes."""
+"""An attribute whose value has no quotes."""
+
+
+@dataclass
+class _Element:
+    """An element that has begun and not yet ended."""
+
+    name: str
+    attributes: dict[str, Item]
+    place: Place
+    children: list[tuple[str, Item]] = field(default_factory=list)
+    """Names and attributes of the elements within it."""
 
 
 class _Reader:
+    """The state of expat's parser and its handlers."""
+
     def __init__(self, name: str) -> None:
         self._name = name
         self._parser = expat.ParserCreate()
-        self._open: list[tuple[str, Item, list[Item]]] = []
-        """Elements under way: the name, the attributes, the children."""
+        self._open: list[_Element] = []
+        """The open elements, the outermost first."""
         self._top: Item | None = None
 
     def read(self, data: bytes) -> Item:
@@ -67,7 +80,7 @@ class _Reader:
         return self._top
 
     def _hint(self, error: expat.ExpatError, data: bytes) -> str:
-        """A correction, as far as the mistake shows it."""
+        """Return a correction for a common mistake; empty if none is known."""
         lines = data.decode(errors="replace").splitlines()
         line = lines[error.lineno - 1] if error.lineno <= len(lines) else ""
         if plain(line) != line and "token" in expat.ErrorString(error.code):
@@ -75,8 +88,8 @@ class _Reader:
         if bare := _NO_QUOTES.search(line):
             return f'; write quotes: {bare[1]}="{bare[2]}"'
         if self._open and "tag" in expat.ErrorString(error.code):
-            name, attributes, _ = self._open[-1]
-            return f"; <{name}> of line {attributes.place.line} is not closed: end it with /> or </{name}>"
+            name, begin = self._open[-1].name, self._open[-1].place.line
+            return f"; <{name}> of line {begin} is not closed: end it with /> or </{name}>"
         return ""
 
     @property
@@ -90,51 +103,58 @@ class _Reader:
         if len(self._open) >= MAX_DEPTH:
             raise _error(place, f"nested more than {MAX_DEPTH} deep")
         values = {key: Item(value, place, place) for key, value in attributes.items()}
-        self._open.append((name, Item(values, place, place), []))
+        self._open.append(_Element(name, values, place))
 
-    def _end(self, name: str) -> None:
-        name, attributes, children = self._open.pop()
-        if name == "param" and "value" in attributes.value:
-            attributes = _with_type(attributes)
-        if name in _WITH_ACTIONS:
-            lists = [child for child in children if next(iter(child.value)) == "keep"]
-            actions = [child for child in children if child not in lists]
-            attributes.value["children"] = Item(actions, attributes.place, attributes.key)
+    def _end(self, _name: str) -> None:
+        element = self._open.pop()
+        item = Item(element.attributes, element.place, element.place)
+        if element.name == "param" and "value" in element.attributes:
+            item = _with_type(item)
+        if element.name in _WITH_ACTIONS:
+            actions = [Item({name: child}, child.place) for name, child in element.children if name != "keep"]
+            item = item.with_value({**item.entries, "children": Item(actions, item.place, item.key)})
         else:
-            for child in children:
-                [(kind, item)] = child.value.items()
-                attributes.value.setdefault(kind, Item([], item.place, item.key)).value.append(item)
-        action = Item({name: attributes}, attributes.place)
+            item = item.with_value({**item.entries, **_lists(element.children, item.entries)})
         if self._open:
-            self._open[-1][2].append(action)
+            self._open[-1].children.append((element.name, item))
         else:
-            self._top = Item({"launch": attributes.value["children"]}, attributes.place)
+            self._top = Item({"launch": item.entries["children"]}, item.place)
 
     def _text(self, text: str) -> None:
         if text.strip() and self._open:
-            name, attributes, _ = self._open[-1]
+            name = self._open[-1].name
             if former := action(name):
-                raise _error(attributes.place, f"<{name}> {former}")
+                raise _error(self._open[-1].place, f"<{name}> {former}")
             raise _error(self._place, f"{text.strip()[:40]!r}: text between elements means nothing; use an attribute")
 
-    def _refuse(self, *_: Any) -> None:
+    def _refuse(self, *_: object) -> None:
         raise _error(self._place, "<!DOCTYPE> is not used here; remove it")
 
 
+def _lists(children: list[tuple[str, Item]], attributes: dict[str, Item]) -> dict[str, Item]:
+    """Return the elements within another as its list attributes."""
+    found: dict[str, Item] = {}
+    for name, child in children:
+        before = found.get(name, attributes.get(name, Item([], child.place, child.key)))
+        found[name] = before.with_value([*before.items, child])
+    return found
+
+
 def _with_type(param: Item) -> Item:
-    """A parameter with its value as the YAML dialect has it: in XML all are texts."""
+    """Convert the value of a parameter, which in XML is always a text, to that of the YAML dialect."""
     entries = param.without("value-sep").entries
     item, separator = entries["value"], param.entries.get("value-sep")
     is_typed = "type" in entries
+    value: Data
     if separator is not None:
         value = [part if is_typed else _read(part) for part in str(item.value).split(str(separator.value) or None)]
     else:
-        value = item.value if is_typed else _read(item.value)
-    return param._replace(value={**entries, "value": located(value, item.place)._replace(key=item.key)})
+        value = str(item.value) if is_typed else _read(str(item.value))
+    return param.with_value({**entries, "value": located(value, item.place).with_key(item.key)})
 
 
-def _read(text: str) -> Any:
-    """A text as what it reads as in YAML; one with substitutions only if they stand in quotes or in a list."""
+def _read(text: str) -> Data:
+    """Parse a text as YAML; one with substitutions only if it is quoted or a list."""
     return text if "$(" in text and text[:1] not in ("'", '"', "[") else from_yaml(text)
 
 

@@ -1,4 +1,4 @@
-"""Lines that YAML does not read as they are meant, with what to write."""
+"""Corrections for lines that YAML reads otherwise than they are meant."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ _CLASS = re.compile(r"\b(class\s*:\s*)([A-Za-z_][\w./-]*):\s+([A-Za-z_]\w*)")
 """A class with a space in it: `class: nodes.base: Base`."""
 _KEYS = "class|pkg|exec|command|params|remap|env|template|call|goal|delay|log|default|namespace|file"
 _OPENED = re.compile(rf"\s*(?:- +)?([\w/.-]+): +({_KEYS}): +([^\s{{\[#][^#]*?)\s*(?:#.*)?")
-"""A key behind a key: `/base: class: nodes.base:Base`."""
+"""A key after a key: `/base: class: nodes.base:Base`."""
 _SEVERAL = re.compile(r"\s*(- +)?(\w+): +([^\s:{}\[\]]+),? +(\w+): +([^\s:{}\[\]]+)\s*")
-"""Two keys one after the other: `pkg: turtlesim exec: turtlesim_node`."""
+"""Two keys on a line: `pkg: turtlesim exec: turtlesim_node`."""
 _TUPLE = re.compile(r"\(([^(){}\[\]]*,[^(){}\[\]]*)\)")
 """A list in parentheses: `(1.0, 2.0)`."""
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _BARE = re.compile(rf"([\w./-]+)\s*:\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(?=[,}}])")
-"""A list within braces, without brackets: `{via: 2.0, 5.0, 8.0}`."""
+"""A list without brackets within braces: `{via: 2.0, 5.0, 8.0}`."""
 
 
 def of_line(line: str) -> str:
-    """What to write for a line that YAML refuses; empty if that is not known."""
+    """Return the correction of a line that YAML refuses; empty if none is known."""
     if found := _CLASS.search(line):
         return f"write {found[1]}{found[2]}:{found[3]} without the space"
     if found := _SEVERAL.fullmatch(line):
@@ -32,7 +32,7 @@ def of_line(line: str) -> str:
 
 
 def of_key(key: str, line: str) -> str:
-    """What to write where a word that was read as a key is the end of a list; empty for others."""
+    """Return the correction for a key that is the end of a list in parentheses; empty for others."""
     found = _TUPLE.search(line)
     if found is None or not key.endswith(")") or "(" in key or not found[0].endswith(key):
         return ""
@@ -40,7 +40,7 @@ def of_key(key: str, line: str) -> str:
 
 
 def of_number(line: str, column: int) -> str:
-    """What to write where a number that was read as a key goes on a list without brackets; empty for others."""
+    """Return the correction for a key that is a number within a list without brackets; empty for others."""
     for found in _BARE.finditer(line):
         if found.start(2) < column < found.end(2):
             items = ", ".join(item.strip() for item in found[2].split(","))
@@ -49,7 +49,7 @@ def of_number(line: str, column: int) -> str:
 
 
 def as_list(text: str) -> str:
-    """How a list is written that a text is meant as: `(1.0, 2.0)` or `1.0, 2.0`; empty for other texts."""
+    """Return the correction for a text that is meant as a list, `(1.0, 2.0)` or `1.0, 2.0`; empty for others."""
     inner = found[1] if (found := _TUPLE.fullmatch(text)) else text
     items = [item.strip() for item in inner.split(",")]
     if found is None and (

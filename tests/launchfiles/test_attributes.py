@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.launchfiles.attributes import children, items, output_fault, says, words
+from graphflow.launchfiles.attributes import children, has_value, items, output_fault, words
 from graphflow.markup import source
 from graphflow.markup.tree import Item, tree
 
@@ -49,8 +49,8 @@ def test_words(text: str, expected: list[str]) -> None:
 def test_says(value: Any, holds: bool) -> None:
     """In any case."""
     item = read(f"{{a: {value}}}\n")
-    assert says(item, "a", "true", "1") is holds
-    assert not says(item, "b", "true")
+    assert has_value(item, "a", "true", "1") is holds
+    assert not has_value(item, "b", "true")
 
 
 @pytest.mark.parametrize("output", ["screen", "own_log", "$(var x)", {"stdout": "screen"}, None])

@@ -12,6 +12,7 @@ from graphflow.graph.resolve import load
 from graphflow.launchfiles import conversion
 from graphflow.launchfiles.conversion import FROM_LAUNCH
 from graphflow.markup import source
+from graphflow.markup.source import Data
 from graphflow.markup.tree import tree
 
 CANONICAL = """\
@@ -457,7 +458,7 @@ def test_what_is_delayed_replaces_nothing() -> None:
 
 def test_what_was_recorded_of_python() -> None:
     """Actions with their lines; those that come after a process know it by its number."""
-    actions = [
+    actions: list[dict[str, Data]] = [
         {"node": {"line": 3, "pkg": "turtlesim", "exec": "turtlesim_node", "name": "sim", "number": 1}},
         {"executable": {"line": 5, "cmd": ["echo", "$(var x)"], "after_number": 1, "after_what": "exited"}},
         {"group": {"line": 7, "children": [{"reset_env": {"line": 8}}]}},
@@ -465,7 +466,7 @@ def test_what_was_recorded_of_python() -> None:
     complaints: list[str] = []
     top = conversion.recorded(actions, "f.launch.py")
     made = conversion.native(top, Path("/nowhere"), lambda at, said: complaints.append(str(at)))
-    assert made.plain()["nodes"] == {
+    assert made.entries["nodes"].plain() == {
         **SIM,
         "echo_1": {"command": ["echo", "$(var x)"], "after": {"sim": "exited"}},
     }

@@ -26,7 +26,7 @@ def test_by_name_and_content(tmp_path: Path, name: str, text: str, nodes: list[s
     (tmp_path / name).write_text(text)
     complaints: list[str] = []
     top = read(tmp_path / name, name, lambda _, said: complaints.append(said))
-    assert (list(top.entries["nodes"].value), complaints) == (nodes, [])
+    assert (list(top.entries["nodes"].entries), complaints) == (nodes, [])
 
 
 def test_python(tmp_path: Path) -> None:

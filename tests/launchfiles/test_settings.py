@@ -8,6 +8,7 @@ import pytest
 
 from graphflow.errors import Place
 from graphflow.launchfiles.settings import pair, parameter, params, ros_words, setting
+from graphflow.markup.source import Data
 from graphflow.markup.tree import Item, located
 
 HERE = Place("f.yaml", 1, 1)
@@ -52,14 +53,14 @@ def test_a_missing_attribute_is_told() -> None:
 
 def test_parameters_and_files_of_them() -> None:
     """Values keep their types, unless another is given; nested ones stay nested."""
-    said = [
+    given: list[Data] = [
         {"name": "a", "value": 10, "type": "float"},
         {"name": "b", "value": "1e3"},
         {"from": "p.yaml"},
         {"name": "c", "param": [{"name": "d", "value": "true", "type": "bool"}]},
     ]
     entries: dict[str, Item] = {}
-    params(located({"param": said}, HERE), entries, complained)
+    params(located({"param": given}, HERE), entries, complained)
     assert {key: item.plain() for key, item in entries.items()} == {
         "params_file": ["p.yaml"],
         "params": {"a": 10.0, "b": "1e3", "c": {"d": True}},
@@ -91,8 +92,8 @@ def test_the_type_of_a_parameter(value: Any, kind: str, expected: Any) -> None:
 def test_a_parameter_of_another_type() -> None:
     """Is told with its place, and so is an attribute that means nothing."""
     told: list[str] = []
-    said = {"param": [{"name": "a", "value": "x", "type": "int", "valeu": 1}]}
-    params(located(said, HERE), {}, lambda place, text: told.append(f"{place}: {text}"))
+    given: Data = {"param": [{"name": "a", "value": "x", "type": "int", "valeu": 1}]}
+    params(located(given, HERE), {}, lambda place, text: told.append(f"{place}: {text}"))
     assert told == [
         "f.yaml:1:1: param: unknown attribute 'valeu'; did you mean 'value'?",
         "f.yaml:1:1: param: expected an integer, got 'x'",
@@ -116,6 +117,9 @@ def test_words_for_ros() -> None:
 def test_a_file_with_substitutions() -> None:
     """They are made where that is asked for."""
     entries: dict[str, Item] = {}
-    files = [{"from": "$(dirname)/a b.yaml", "allow_substs": True}, {"from": "c.yaml", "allow_substs": "false"}]
+    files: list[Data] = [
+        {"from": "$(dirname)/a b.yaml", "allow_substs": True},
+        {"from": "c.yaml", "allow_substs": "false"},
+    ]
     params(located({"param": files}, HERE), entries, complained)
     assert entries["params_file"].plain() == ["$(substituted '$(dirname)/a b.yaml')", "c.yaml"]

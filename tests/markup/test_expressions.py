@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from graphflow.markup.expressions import ExpressionError, evaluate
+from graphflow.markup.source import Data
 
-NAMES = {"count": 3, "mode": "sim", "turtle": {"name": "leo", "x": 1.5}, "ids": [4, 5]}
+NAMES: dict[str, Data] = {"count": 3, "mode": "sim", "turtle": {"name": "leo", "x": 1.5}, "ids": [4, 5]}
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from graphflow.errors import GraphFileError, GraphflowError, Place
 from graphflow.markup import source
 from graphflow.markup.source import MAX_BYTES, MAX_DEPTH, MAX_VALUES, parse_value, read, read_file, scalar
+from graphflow.markup.tree import tree
 from tests.cases import count
 
 
@@ -79,15 +80,24 @@ def test_scalars_are_those_of_yaml_1_2(text: str, value: Any) -> None:
         assert read(f"a: {text}", "f.yaml").data == {"a": value}
 
 
+def test_line_breaks_of_other_systems() -> None:
+    """Keys have their places, and their faults are found, whatever ends a line."""
+    src = read("a: 1\rb: 2\r\nc: 3\n", "f.yaml")
+    assert src.data == {"a": 1, "b": 2, "c": 3}
+    assert src.key_place(("c",)) == Place("f.yaml", 3, 1)
+
+
 def test_not_a_number() -> None:
     """`.nan` is the float that is not itself."""
-    assert math.isnan(scalar(".nan"))
+    value = scalar(".nan")
+    assert isinstance(value, float)
+    assert math.isnan(value)
 
 
 @pytest.mark.parametrize("text", ["'1'", '"true"', "''", "|\n  12\n", '"\\u00e9"', "!!str 12", "! 12"])
 def test_what_is_quoted_is_text(text: str) -> None:
     """Quotes, block style and `!!str` keep a scalar from being anything else."""
-    assert isinstance(read(f"a: {text}", "f.yaml").data["a"], str)
+    assert isinstance(tree(read(f"a: {text}", "f.yaml")).entries["a"].value, str)
 
 
 def test_every_value_and_key_knows_its_place() -> None:

@@ -240,7 +240,9 @@ def test_a_copy_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     file = tmp_path / "p.yaml"
     file.write_text("# of $(var nobody)\na:\n  rate: $(var gain)\n  who: '$(env USER)'\n")
-    copies = [Substitutions(ARGS, tmp_path / "lab.yaml", Outside(ENV)).apply("$(substituted p.yaml)") for _ in range(2)]
+    copies = [
+        str(Substitutions(ARGS, tmp_path / "lab.yaml", Outside(ENV)).apply("$(substituted p.yaml)")) for _ in range(2)
+    ]
     assert copies[0] == copies[1]
     assert Path(copies[0]).name == "p.yaml"
     assert Path(copies[0]).read_text() == "\na:\n  rate: 2.5\n  who: 'ada'\n"

@@ -20,7 +20,7 @@ def test_there_and_back() -> None:
     assert source_of(top) == src
     assert top.plain() == src.data
     assert top.entries["b"].at == Place("f.yaml", 2, 1)
-    assert top.entries["b"].entries["c"].value[1].entries["d"].place == Place("f.yaml", 2, 16)
+    assert top.entries["b"].entries["c"].items[1].entries["d"].place == Place("f.yaml", 2, 16)
 
 
 VALUES = st.recursive(
@@ -31,7 +31,7 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-def test_any_value_at_one_place(value: object) -> None:
+def test_any_value_at_one_place(value: source.Data) -> None:
     """A plain value becomes a tree that was written at one place, and is itself again."""
     item = located(value, HERE)
     assert item.plain() == value
@@ -50,7 +50,7 @@ def test_one_over_the_other() -> None:
     }
     params = merged(base, over, ("params",)).entries["params"].entries
     assert (params["a"].place, params["b"].place) == (HERE, THERE)
-    assert merged(base, located({"params": 3}, THERE), ("params",)).plain()["params"] == 3
+    assert merged(base, located({"params": 3}, THERE), ("params",)).entries["params"].value == 3
 
 
 def test_the_first_counts() -> None:

@@ -34,7 +34,7 @@ def test_elements(tmp_path: Path) -> None:
     }
     timer = {"period": "1.0", "children": [{"log": {"message": "hi"}}]}
     assert top.plain() == {"launch": [{"group": {"if": "a", "children": [{"node": node}, {"timer": timer}]}}]}
-    group = top.entries["launch"].value[0].entries["group"]
+    group = top.entries["launch"].items[0].entries["group"]
     assert group.place == Place("f.xml", 2, 3)
 
 
@@ -55,8 +55,8 @@ def test_elements(tmp_path: Path) -> None:
 def test_values_of_parameters(tmp_path: Path, attributes: str, value: object) -> None:
     """They read as in YAML, unless their type is given; with `value-sep` they are lists."""
     top = read_file(written(tmp_path, f'<launch><node><param name="x" {attributes}/></node></launch>'), "f.xml")
-    [param] = top.plain()["launch"][0]["node"]["param"]
-    assert (param["value"], "value-sep" in param) == (value, False)
+    [param] = top.entries["launch"].items[0].entries["node"].entries["param"].items
+    assert (param.entries["value"].plain(), "value-sep" in param.entries) == (value, False)
 
 
 @pytest.mark.parametrize(

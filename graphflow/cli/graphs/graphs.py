@@ -162,7 +162,7 @@ def _show_args(path: Path) -> int:
     problems.raise_any()
     args = top.entries.get("args") if isinstance(top.value, dict) else None
     declared: Any = None if args is None or not isinstance(args.value, dict) else args.plain()
-    texts = top.entries[FROM_LAUNCH].plain() if FROM_LAUNCH in top.entries else {}
+    texts = {n: t.value for n, t in top.entries[FROM_LAUNCH].entries.items()} if FROM_LAUNCH in top.entries else {}
     output.data("Arguments (pass arguments as '<name>:=<value>'):\n")
     for name, spec in (declared or {}).items():
         spec = spec if isinstance(spec, dict) else {}

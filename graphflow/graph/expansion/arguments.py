@@ -72,7 +72,7 @@ class Arguments:
             if name not in outer:
                 if "default" in spec.entries:
                     default = substitute(spec.entries["default"], found)
-                    spec = spec._replace(value={**spec.entries, "default": default})
+                    spec = spec.with_value({**spec.entries, "default": default})
                 found[name] = self._own(name, spec) if texts is None else self._text(name, spec, texts.get(name, "$("))
             self.values[name] = found[name].value if isinstance(found[name], Written) else found[name]
         if texts is not None:  # ROS has what is given for whatever asks for it

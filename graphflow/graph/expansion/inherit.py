@@ -19,7 +19,7 @@ def after_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
     if not afters or afters == [item.entries.get("after")]:
         return item
     names = {name: word for after in afters for name, word in _names(after).items()}
-    return item._replace(value={**item.entries, "after": Item(names, afters[0].place, afters[0].key)})
+    return item.with_value({**item.entries, "after": Item(names, afters[0].place, afters[0].key)})
 
 
 def _names(after: Item) -> dict[str, Item]:
@@ -47,7 +47,7 @@ def with_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
             continue
         if key == "env":
             own = entries.get("env", Item({}, item.place))
-            entries["env"] = own._replace(value=first_of([own.entries, of_groups]))
+            entries["env"] = own.with_value(first_of([own.entries, of_groups]))
         else:
             entries[f"{key}{FROM_GROUPS}"] = Item(of_groups, item.place)
-    return item._replace(value=entries)
+    return item.with_value(entries)

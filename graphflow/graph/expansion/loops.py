@@ -30,7 +30,7 @@ def values_of(over: Item, problems: Problems, *, is_written_out: bool) -> Sequen
         problems.add(over.place, f"in: expected a list or a span such as 1..10, got {values!r}")
         return ()
     taken: set[str] = set()
-    for value, item in zip(values, over.value, strict=True):
+    for value, item in zip(values, over.items, strict=True):
         if repr(value) in taken and over.place.file not in problems.launch_files:
             problems.add(item.place, f"in: {value!r} is in the list twice; remove one")
             return ()

@@ -20,6 +20,6 @@ def as_class(node: Item, root: Path) -> Item:
     found = find(package.value, name.value, root)
     if found is None or "class" in node.entries:  # both is refused later
         return node
-    return node._replace(
-        value={"class": Item(found.class_path, name.place, name.key), **node.without("pkg", "exec").value}
+    return node.with_value(
+        {"class": Item(found.class_path, name.place, name.key), **node.without("pkg", "exec").entries}
     )

@@ -1,496 +1,391 @@
-"""What stand-ins for ROS's launch packages were called with, as actions of ROS's YAML dialect, each with its line."""
+"""Convert recorded calls of launch actions to the YAML launch dialect."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any
 
-import yaml
-
-from graphflow.launchfiles.attributes import output_fault
 from graphflow.launchfiles.python.calls import code_of, is_off
-from graphflow.launchfiles.python.names import NAMES
-from graphflow.launchfiles.python.stand_ins import RECORDING, Context, Said, condition, no_words, plain, text
-from graphflow.markup.source import scalar
+from graphflow.launchfiles.python.events import (
+    HANDLERS,
+    LEFT_OUT,
+    PROCESSES,
+    STATES,
+    handler_of,
+    is_shutdown,
+    state_change,
+    without_functions,
+)
+from graphflow.launchfiles.python.nodes import common, components, condition_of, container, node, parameter, process
+from graphflow.launchfiles.python.stand_ins import (
+    RECORDING,
+    Context,
+    RecordedCall,
+    called_as,
+    no_words,
+    parts,
+    plain,
+    text,
+)
+from graphflow.launchfiles.recorded import Action
+from graphflow.markup.source import Data, scalar
 
-_described: dict[int, Said] = {}
-"""Actions that have been written down, which are kept, so that no other has their number."""
+# Calls are told apart by `id`: a launch file may give them any `__eq__`, and two equal nodes are two nodes.
+_converted: dict[int, RecordedCall] = {}
+"""Calls that have been converted, by id; the reference keeps the id from being reused."""
 _numbers: dict[int, int] = {}
-"""Numbers of actions that others come after."""
-_ending: set[int] = set()
-"""Actions with whose end everything ends."""
-_lives: dict[int, str] = {}
-"""The states that lifecycle nodes are brought to."""
-_SUBSTITUTIONS = frozenset(NAMES["launch.substitutions"].split())
-_STATES = {"configure": "inactive", "activate": "active"}
-"""Where transitions of lifecycle nodes lead."""
-_TRANSITIONS = {1: "configure", 2: "cleanup", 3: "activate", 4: "deactivate", **dict.fromkeys((5, 6, 7), "shutdown")}
-"""Those of lifecycle_msgs/msg/Transition."""
+"""Numbers of actions that others come after, by id."""
+_shutting_down: set[int] = set()
+"""Ids of processes at whose exit the graph shuts down."""
+_states: dict[int, str] = {}
+"""Lifecycle states to which events bring nodes, by id."""
+_carried_out: list[Action] = []
+"""Actions that the launch file's code has executed itself, during the current call."""
 
 
-def actions(said: Any) -> list[dict[str, Any]]:
-    """What was described, as actions of the YAML dialect."""
-    if isinstance(said, (list, tuple)):
-        found, later = [], []
-        for one in said:
+def actions(described: object) -> list[dict[str, Data]]:
+    """Convert a description, or actions in lists, to actions of the YAML launch dialect, as JSON."""
+    return [action.to_json() for action in _actions(described)]
+
+
+def _actions(described: object) -> list[Action]:
+    if isinstance(described, (list, tuple)):
+        found: list[Action] = []
+        early = []
+        for one in described:
             if _is_early(one):
-                later.append(one)
+                early.append(one)
             else:
-                found += actions(one)
-        return found + [action for one in later for action in actions(one)]
-    if said is None:
+                found += _actions(one)
+        return found + [action for one in early for action in _actions(one)]
+    if described is None:
         return []
-    if not isinstance(said, Said):
-        shown = f"the class {said.__name__}" if isinstance(said, type) else repr(said)
+    if not isinstance(described, RecordedCall):
+        shown = f"the class {described.__name__}" if isinstance(described, type) else repr(described)
         RECORDING.problems.append({"line": RECORDING.written_at, "message": f"{shown} is no action, such as Node(...)"})
         return []
-    _described[id(said)] = said
-    RECORDING.written_at = said.line
-    name, attributes = _action(said)
-    if name == "":
-        return list(attributes)
-    attributes |= {
-        "line": said.line,
-        **_condition(said),
+    return _of_call(described)
+
+
+def _of_call(call: RecordedCall) -> list[Action]:
+    """Convert a call to the actions that it makes, and those that follow it."""
+    _converted[id(call)] = call
+    RECORDING.written_at = call.line
+    _note_setting(call)
+    code = code_of(call)
+    if code is not None:
+        return [] if is_off(call) else _made_by(code, call)
+    convert = _CONVERTERS.get(call.kind)
+    if convert is None:
+        RECORDING.problem(call, no_words(call))
+        return []
+    action = convert(call)
+    if isinstance(action, list):
+        return action
+    action.line = call.line
+    action.attributes |= condition_of(call)
+    action.number = _numbers.get(id(call))
+    action.brought_to = _states.get(id(call))
+    if id(call) in _shutting_down:
+        action.attributes["on_exit"] = "shutdown"
+    return [action, *_after_exit(call)]
+
+
+# settings and groups
+
+
+def _argument(call: RecordedCall) -> Action:
+    found: dict[str, Data] = {
+        "name": text(call.get("name", 0)),
+        "description": text(call.get("description", default="")),
     }
-    if id(said) in _numbers:
-        attributes["number"] = _numbers[id(said)]
-    if id(said) in _ending:
-        attributes["on_exit"] = "shutdown"
-    if id(said) in _lives:
-        attributes["brought_to"] = _lives[id(said)]
-    return [{name: attributes}, *_after_exit(said)]
+    if call.get("default_value") is not None:
+        found["default"] = text(call.get("default_value"))
+    if call.get("choices"):
+        found["choice"] = [{"value": text(choice)} for choice in call.get("choices")]
+    return Action("arg", found)
 
 
-def _condition(said: Said) -> dict[str, str]:
-    given = said.get("condition")
-    if given is None:
-        return {}
-    if not isinstance(given, Said) or given.kind in _SUBSTITUTIONS:
-        RECORDING.problem(said, f"condition: write IfCondition({_called_as(given)}) or UnlessCondition(...)")
-        return {}
-    return condition(given)
+def _named_value(call: RecordedCall) -> dict[str, Data]:
+    return {"name": text(call.get("name", 0)), "value": text(call.get("value", 1))}
 
 
-def _called_as(given: Any) -> str:
-    """A value as a launch file has it."""
-    return f"{given.kind}(...)" if isinstance(given, Said) else repr(given)
+def _append_env(call: RecordedCall) -> Action:
+    found = {**_named_value(call), "prepend": str(call.get("prepend", 2, default=False))}
+    if call.get("separator", 3) is not None:
+        found["separator"] = text(call.get("separator", 3))
+    return Action("append_env", found)
 
 
-def _action(said: Said) -> tuple[str, Any]:
-    get = said.get
-    _keep(said)
-    if (code := code_of(said)) is not None:
-        return "", [] if is_off(said) else _called(said, code)
-    match said.kind:
-        case "LaunchDescription":
-            return "", actions(said.entities)
-        case "ReplaceEnvironmentVariables":
-            return "", []
-        case "DeclareLaunchArgument":
-            found: dict[str, Any] = {"name": text(get("name", 0)), "description": text(get("description", default=""))}
-            if get("default_value") is not None:
-                found["default"] = text(get("default_value"))
-            if get("choices"):
-                found["choice"] = [{"value": text(choice)} for choice in get("choices")]
-            return "arg", found
-        case "SetLaunchConfiguration":
-            return "let", {"name": text(get("name", 0)), "value": text(get("value", 1))}
-        case "SetEnvironmentVariable":
-            return "set_env", {"name": text(get("name", 0)), "value": text(get("value", 1))}
-        case "AppendEnvironmentVariable":
-            found = {"name": text(get("name", 0)), "value": text(get("value", 1))}
-            separator = {} if get("separator", 3) is None else {"separator": text(get("separator", 3))}
-            return "append_env", {**found, "prepend": str(get("prepend", 2, default=False)), **separator}
-        case "SetParameter":
-            found = _parameter(get("name", 0), get("value", 1))
-            is_text = isinstance(found["value"], str) and "$(" not in found["value"]  # which is no text to be read
-            return "set_parameter", {"type": "str", **found} if is_text else found
-        case "SetRemap":
-            return "set_remap", {"from": text(get("src", 0)), "to": text(get("dst", 1))}
-        case "SetUseSimTime":
-            return "set_use_sim_time", {"value": plain(get("value", 0))}
-        case "PushRosNamespace" | "PushROSNamespace":
-            return "push_ros_namespace", {"namespace": text(get("namespace", 0))}
-        case "GroupAction":
-            is_scoped, outer = bool(get("scoped", default=True)), (dict(RECORDING.set), dict(RECORDING.env))
-            children = actions(_actions_of(said, 0))
-            if is_scoped:
-                RECORDING.set, RECORDING.env = outer
-            return "group", {"children": children, "scoped": is_scoped}
-        case "TimerAction":
-            return "timer", {"period": _period(said), "children": actions(_actions_of(said))}
-        case "IncludeLaunchDescription":
-            arguments = dict(get("launch_arguments", default=None) or {})
-            pairs = [{"name": text(key), "value": text(value)} for key, value in arguments.items()]
-            return "include", {"file": text(get("launch_description_source", 0)), "arg": pairs}
-        case "LogInfo" | "Log":
-            return "log", {"message": text(get("msg", default=""))}
-        case "UnregisterEventHandler":
-            return "", []
-        case "RegisterEventHandler":
-            return "", [] if is_off(said) else _handled(said)
-        case "EmitEvent" if (change := _change(said)) is not None:
-            node, transition = change
-            if transition in _STATES:  # the node has been told to be brought there
-                return "", []
-            parts = text([node.get("namespace", default=""), "/", node.get("name", default="")]).split("/")
-            name = "/".join(["", *filter(None, parts)])
-            return "executable", {**_common(said), "cmd": ["ros2", "lifecycle", "set", name, transition]}
-        case "Shutdown" | "EmitEvent" if _is_shutdown(said):
-            event = said if said.kind == "Shutdown" else get("event", 0)
-            reason = text(event.get("reason", 0, default="")) or "a launch file asks for it"
-            return "shutdown", {"reason": reason}
-        case "Node" | "LifecycleNode":
-            found = {"autostart": "true"} if get("autostart") is True else {}
-            return "node", {**_node(said), **found}
-        case "ComposableNodeContainer":
-            for key in sorted(_OF_PROCESSES & {key for key, value in said.kwargs.items() if value}):
-                why = "a container is a process that nodes share; write it at the nodes"
-                RECORDING.remark(said, f"{key}: left out, since {why}")
-            return "node_container", {"name": text(get("name")), "composable_node": _components(said)}
-        case "LoadComposableNodes":
-            target = get("target_container")
-            is_action = isinstance(target, Said) and target.kind == "ComposableNodeContainer"
-            name = text(target.get("name") if is_action else target)
-            return "load_composable_node", {"target": name, "composable_node": _components(said)}
-        case "ExecuteProcess" | "ExecuteLocal":
-            first, *rest = get("cmd", 0, [""])
-            if isinstance(first, Said) and first.kind == "ExecutableInPackage":  # a node, by another way
-                found = {"pkg": text(first.get("package", 1)), "exec": text(first.get("executable", 0))}
-                return "node", {**_common(said), **found, "args": [text(word) for word in rest]}
-            return "executable", _process(said)
-    RECORDING.problem(said, no_words(said))
-    return "", []
+def _set_parameter(call: RecordedCall) -> Action:
+    found = parameter(call.get("name", 0), call.get("value", 1))
+    # The YAML dialect would parse a text as YAML; in Python it is a string.
+    if isinstance(found["value"], str) and "$(" not in found["value"]:
+        found = {"type": "str", **found}
+    return Action("set_parameter", found)
 
 
-_SETTING = ("SetLaunchConfiguration", "SetEnvironmentVariable", "AppendEnvironmentVariable")
+def _set_remap(call: RecordedCall) -> Action:
+    return Action("set_remap", {"from": text(call.get("src", 0)), "to": text(call.get("dst", 1))})
 
 
-def _keep(said: Said) -> None:
-    """Note what an action sets, for functions that come after it and ask."""
-    given = said.kwargs.get("condition")
-    if said.kind not in _SETTING or RECORDING.values is None or (given is not None and not given.evaluate()):
-        return
-    name, value = (RECORDING.known(text(said.get(key, place))) for key, place in (("name", 0), ("value", 1)))
-    if said.kind == "SetLaunchConfiguration":
-        RECORDING.set[name] = value
-        return
-    former = Context().environment.get(name)
-    if said.kind == "AppendEnvironmentVariable" and former is not None:
-        parts = [former, value]
-        is_first = bool(said.get("prepend", 2, default=False))
-        value = text(said.get("separator", 3, os.pathsep)).join(parts[::-1] if is_first else parts)
-    RECORDING.env[name] = value
+def _group(call: RecordedCall) -> Action:
+    is_scoped, outer = bool(call.get("scoped", default=True)), (dict(RECORDING.set), dict(RECORDING.env))
+    children = _actions(_actions_argument(call, 0))
+    if is_scoped:
+        RECORDING.set, RECORDING.env = outer
+    return Action("group", {"scoped": is_scoped}, children=children)
 
 
-_carried_out: list[dict[str, Any]] = []
-"""Actions that the code which is being called has carried out itself so far."""
+def _timer(call: RecordedCall) -> Action:
+    return Action("timer", {"period": _period(call)}, children=_actions(_actions_argument(call)))
 
 
-def _carry_out(said: Said) -> None:
-    """Write down an action where the code of a launch file calls its `execute` or `visit`."""
-    number_targets(said)
-    _carried_out.extend(actions(said))
+def _include(call: RecordedCall) -> Action:
+    arguments = dict(call.get("launch_arguments", default=None) or {})
+    pairs: list[Data] = [{"name": text(key), "value": text(value)} for key, value in arguments.items()]
+    return Action("include", {"file": text(call.get("launch_description_source", 0)), "arg": pairs})
 
 
-RECORDING.carry_out = _carry_out
-
-
-def _called(said: Said, code: Callable[[], list[Any]]) -> list[dict[str, Any]]:
-    """The actions that code makes: those it sets, carries out itself and returns."""
-    if RECORDING.values is None and said.kind in ("ForEach", "ForLoop"):  # over what is not known yet
-        RECORDING.problem(
-            said, f"{said.kind} has no words in a graph file; `graphflow launch` starts the file as it is"
-        )
-        return []
-    if RECORDING.values is None:
-        text = f"{said.kind}: it was called once, with $(var ...) in place of each value; look what it made"
-        RECORDING.problem(said, text)
-    outer, before = _carried_out[:], dict(RECORDING.set)
-    _carried_out.clear()
-    found = code()
-    number_targets(found)
-    number_targets(RECORDING.descriptions)  # to which it may have added
-    changed = {name: value for name, value in RECORDING.set.items() if before.get(name) != value}
-    settings = [{"let": {"name": name, "value": value, "line": said.line}} for name, value in changed.items()]
-    inner, _carried_out[:] = _carried_out[:], outer
-    return [*settings, *inner, *actions(found)]
-
-
-_HANDLERS = {
-    "OnProcessExit": ("target_action", "on_exit", "exited"),
-    "OnExecutionComplete": ("target_action", "on_completion", "exited"),
-    "OnProcessStart": ("target_action", "on_start", "ready"),
-    "OnStateTransition": ("target_lifecycle_node", "entities", "ready"),
-}
-"""Event handlers with words here: the arguments with whose event and with what follows, and what must have become."""
-
-
-_LEFT_OUT = {
-    "OnProcessIO": "OnProcessIO is left out: what a process prints is in its log, and the function is not called",
-    "OnShutdown": "OnShutdown is left out: nothing is done when the graph stops",
-}
-"""Event handlers that are left out, and what is said of them."""
-
-
-def _change(said: Any) -> tuple[Said, str] | None:
-    """The lifecycle node that an event is for, and the transition."""
-    event = said.get("event", 0) if isinstance(said, Said) and said.kind == "EmitEvent" else None
-    if not isinstance(event, Said) or event.kind != "ChangeState":
-        return None
-    matcher, transition = event.get("lifecycle_node_matcher"), _TRANSITIONS.get(event.get("transition_id"))
-    node = matcher.get("action", 0) if isinstance(matcher, Said) and matcher.kind == "matches_action" else None
-    return (node, transition) if isinstance(node, Said) and transition else None
-
-
-def _handled(said: Said) -> list[dict[str, Any]]:
-    """Actions that begin when a process has started or ended, or a lifecycle node has come to a state."""
-    handler = said.get("event_handler", 0)
-    if isinstance(handler, Said) and handler.kind in _LEFT_OUT:
-        RECORDING.remark(said, _LEFT_OUT[handler.kind])
-        return []
-    if not isinstance(handler, Said) or handler.kind not in _HANDLERS:
-        RECORDING.problem(said, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
-        return []
-    whose, key, what = _HANDLERS[handler.kind]
-    target, then = handler.get(whose), handler.get(key)
-    if callable(target) and not isinstance(target, Said):
-        RECORDING.problem(said, f"{handler.kind}: only for one process, and not for those that a function chooses")
-        return []
-    then, functions = _without_functions(then)
-    if functions or not isinstance(target, Said):
-        whose = "a function" if functions else "what it does for every process"
-        RECORDING.remark(said, f"{handler.kind}: {whose} is left out: nothing is called while the graph runs")
-    if not isinstance(target, Said):
-        return []
-    goal = handler.get("goal_state")
-    if goal is not None and goal not in (_lives.get(id(target)), "inactive" if id(target) in _lives else None):
-        text = (
-            f"OnStateTransition: nothing in this file brings the node to {goal!r} by EmitEvent(event=ChangeState(...))"
-        )
-        RECORDING.problem(said, text)
-        return []
-    return _after(target, [] if id(target) in _ending and all(map(_is_shutdown, then)) else then, what)
-
-
-def _after(target: Said, then: list[Any], what: str) -> list[dict[str, Any]]:
-    """Actions that come after another."""
-    number = _numbers.setdefault(id(target), len(_numbers) + 1)
-    found = actions(then)
-    for action in found:
-        for attributes in action.values():
-            attributes["after_number"], attributes["after_what"] = number, what
-    return found
-
-
-def _after_exit(said: Said) -> list[dict[str, Any]]:
-    """What is to be done when a process has ended, as it says itself."""
-    then, functions = _without_functions(said.get("on_exit") if said.kind in _PROCESSES else None)
-    if functions:
-        RECORDING.remark(said, "on_exit: a function is left out: nothing is called while the graph runs")
-    then = [one for one in then if not _is_shutdown(one)]
-    return _after(said, then, "exited") if then else []
-
-
-_PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess", "ExecuteLocal")
-
-
-def _without_functions(then: Any) -> tuple[list[Any], int]:
-    """What follows an event, and how many functions in it would be called then."""
-    whole = list(then) if isinstance(then, (list, tuple)) else [] if then is None else [then]
-    kept = [one for one in whole if isinstance(one, Said) and code_of(one) is None]
-    return kept, len(whole) - len(kept)
-
-
-def _common(said: Said) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for key in ("name", "namespace", "cwd", "respawn", "respawn_delay", "respawn_max_retries", "shell"):
-        if said.get(key) is not None:
-            found[key] = text(said.get(key))
-    output = said.get("output")
-    fault = output_fault(text(output) if isinstance(output, Said) else output)
-    if fault is not None:
-        RECORDING.problem(said, f"{said.kind}: {fault}")
-    if said.get("prefix") is not None:
-        found["launch-prefix"] = text(said.get("prefix"))
-    variables = {**(said.get("env") or {}), **(said.get("additional_env") or {})}
-    if variables:
-        found["env"] = [{"name": text(key), "value": text(value)} for key, value in variables.items()]
-    if any(map(_is_shutdown, _without_functions(said.get("on_exit"))[0])):
-        found["on_exit"] = "shutdown"
-    return found
-
-
-def _process(said: Said) -> dict[str, Any]:
-    cmd = said.get("cmd", 0, [])
-    if isinstance(cmd, str):
-        RECORDING.problem(said, f"cmd: expected a list of words, such as {cmd.split()!r}, got {cmd!r}")
-        cmd = cmd.split()
-    return {**_common(said), "cmd": [text(word) for word in cmd]}
-
-
-def _actions_of(said: Said, place: int = -1) -> Any:
-    given = said.get("actions", place, [])
-    if not isinstance(given, Said):
+def _actions_argument(call: RecordedCall, position: int = -1) -> object:
+    given = call.get("actions", position, [])
+    if not isinstance(given, RecordedCall):
         return given
-    RECORDING.problem(said, f"{said.kind}: actions is a list: write [ ] around {_called_as(given)}")
+    RECORDING.problem(call, f"{call.kind}: actions is a list: write [ ] around {called_as(given)}")
     return []
 
 
-def _period(said: Said) -> Any:
-    """The seconds of a timer, which may be a substitution; anything else is a problem."""
-    given = said.get("period")
+def _period(call: RecordedCall) -> Data:
+    """Return the seconds of a timer, or a substitution for them; anything else is reported as a problem."""
+    given = call.get("period")
     value = plain(given)
     if isinstance(value, str) and ("$(" in value or isinstance(scalar(value), (int, float))):
         return value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return value
-    if given is None and said.args:  # which is told already
-        return 1.0
-    RECORDING.problem(said, f"{said.kind}: period is a number of seconds, such as 2.0, and not {given!r}")
+    if given is not None or not call.args:  # a period by position is already reported
+        RECORDING.problem(call, f"{call.kind}: period is a number of seconds, such as 2.0, and not {given!r}")
     return 1.0
 
 
-def _list(said: Said, key: str, example: str) -> list[Any]:
-    """A list that a node is given; anything else is a problem."""
-    given = said.get(key)
-    if given is None or isinstance(given, (list, tuple)):
-        return list(given or ())
-    RECORDING.problem(said, f"{key}: expected a list, such as {example}, got {given!r}")
-    return []
+# nodes and processes
 
 
-def _node(said: Said) -> dict[str, Any]:
-    found = _common(said)
-    for place, (key, ours) in enumerate((("package", "pkg"), ("executable", "exec"))):
-        given = said.get(key, place, said.get(f"node_{key}"))  # without a name, or by its former one, is told already
-        if given is not None:
-            found[ours] = text(given)
-    for key, ours in (("arguments", "args"), ("ros_arguments", "ros_args")):
-        words = _list(said, key, "['--fast']")
-        if words:
-            found[ours] = [text(word) for word in words]
-    pairs = _list(said, "remappings", "[('from', 'to')]")
-    if any(not isinstance(pair, (list, tuple)) or len(pair) != 2 for pair in pairs):
-        RECORDING.problem(said, f"remappings: expected pairs, such as [('from', 'to')], got {pairs!r}")
-    elif pairs:
-        found["remap"] = [{"from": text(old), "to": text(new)} for old, new in pairs]
-    params: list[dict[str, Any]] = []
-    for given in _list(said, "parameters", "[{'rate': 2.0}]"):
-        if isinstance(given, dict):
-            params += [_parameter(key, value) for key, value in given.items()]
-        elif isinstance(given, Said) and given.kind == "Parameter":
-            params.append(_parameter(given.get("name", 0), given))
-        elif isinstance(given, (set, int, float)):
-            meant = "; write {'name': value}, with a colon" if isinstance(given, set) else ""
-            RECORDING.problem(said, f"parameters: {given!r} is neither a dictionary nor a file{meant}")
-        else:
-            params.append({"from": text(given), **_substituted(given)})
-    if params:
-        found["param"] = params
+def _node(call: RecordedCall) -> Action:
+    autostart: dict[str, Data] = {"autostart": "true"} if call.get("autostart") is True else {}
+    return Action("node", {**node(call), **autostart})
+
+
+def _load_components(call: RecordedCall) -> Action:
+    target = call.get("target_container")
+    is_action = isinstance(target, RecordedCall) and target.kind == "ComposableNodeContainer"
+    name = text(target.get("name") if is_action else target)
+    return Action("load_composable_node", {"target": name, "composable_node": components(call)})
+
+
+def _execute(call: RecordedCall) -> Action:
+    first, *rest = call.get("cmd", 0, [""])
+    if isinstance(first, RecordedCall) and first.kind == "ExecutableInPackage":  # a node that is started as a process
+        of_node = {"pkg": text(first.get("package", 1)), "exec": text(first.get("executable", 0))}
+        return Action("node", {**common(call), **of_node, "args": [text(word) for word in rest]})
+    return Action("executable", process(call))
+
+
+# events
+
+
+def _emit(call: RecordedCall) -> Action | list[Action]:
+    change = state_change(call)
+    if change is None:
+        if is_shutdown(call):
+            return _shutdown(call)
+        RECORDING.problem(call, no_words(call))
+        return []
+    target, transition = change
+    if transition in STATES:  # `number_targets` has noted the state at the node
+        return []
+    parts = text([target.get("namespace", default=""), "/", target.get("name", default="")]).split("/")
+    name = "/".join(["", *filter(None, parts)])
+    return Action("executable", {**common(call), "cmd": ["ros2", "lifecycle", "set", name, transition]})
+
+
+def _shutdown(call: RecordedCall) -> Action:
+    event = call if call.kind == "Shutdown" else call.get("event", 0)
+    return Action("shutdown", {"reason": text(event.get("reason", 0, default="")) or "a launch file asks for it"})
+
+
+def _register(call: RecordedCall) -> list[Action]:
+    """Convert an event handler to its actions, which begin after its event."""
+    if is_off(call):
+        return []
+    handler = call.get("event_handler", 0)
+    if isinstance(handler, RecordedCall) and handler.kind in LEFT_OUT:
+        RECORDING.remark(call, LEFT_OUT[handler.kind])
+        return []
+    if not isinstance(handler, RecordedCall) or handler.kind not in HANDLERS:
+        RECORDING.problem(call, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
+        return []
+    form = HANDLERS[handler.kind]
+    target = handler.get(form.target)
+    if callable(target) and not isinstance(target, RecordedCall):
+        RECORDING.problem(call, f"{handler.kind}: only for one process, and not for those that a function chooses")
+        return []
+    then, functions = without_functions(handler.get(form.then))
+    if functions or not isinstance(target, RecordedCall):
+        whose = "a function" if functions else "what it does for every process"
+        RECORDING.remark(call, f"{handler.kind}: {whose} is left out: nothing is called while the graph runs")
+    if not isinstance(target, RecordedCall):
+        return []
+    goal = handler.get("goal_state")
+    if not _reaches(target, goal):
+        why = f"nothing in this file brings the node to {goal!r} by EmitEvent(event=ChangeState(...))"
+        RECORDING.problem(call, f"OnStateTransition: {why}")
+        return []
+    if id(target) in _shutting_down and all(map(is_shutdown, then)):  # it has `on_exit: shutdown`
+        return []
+    return _after(target, then, form.outcome)
+
+
+def _reaches(call: RecordedCall, state: object) -> bool:
+    """Return whether events bring a lifecycle node to a state, perhaps on the way to another; None is any state."""
+    final = _states.get(id(call))
+    return state is None or (final is not None and state in (final, "inactive"))
+
+
+def _after(target: RecordedCall, then: list[RecordedCall], outcome: str) -> list[Action]:
+    """Convert actions that begin when another has come to an outcome."""
+    number = _numbers.setdefault(id(target), len(_numbers) + 1)
+    found = _actions(then)
+    for action in found:
+        action.after_number, action.after_what = number, outcome
     return found
 
 
-def _substituted(given: Any) -> dict[str, str]:
-    """Whether substitutions are made in a file of parameters."""
-    is_asked = isinstance(given, Said) and given.kind == "ParameterFile" and given.get("allow_substs", default=False)
-    return {"allow_substs": RECORDING.known(text(is_asked))} if is_asked else {}
+def _after_exit(call: RecordedCall) -> list[Action]:
+    """Convert the `on_exit` actions of a process."""
+    then, functions = without_functions(call.get("on_exit") if call.kind in PROCESSES else None)
+    if functions:
+        RECORDING.remark(call, "on_exit: a function is left out: nothing is called while the graph runs")
+    then = [one for one in then if not is_shutdown(one)]
+    return _after(call, then, "exited") if then else []
 
 
-_OF_PROCESSES = {
-    "respawn",
-    "parameters",
-    "remappings",
-    "env",
-    "additional_env",
-    "on_exit",
-    "ros_arguments",
-    "arguments",
-}
-"""Attributes of containers that count only at their nodes here."""
-
-
-def _components(said: Said) -> list[dict[str, Any]]:
-    described = said.get("composable_node_descriptions") or []
-    nodes = [one for one in described if isinstance(one, Said)]
-    return [
-        {**{k: v for k, v in _node(one).items() if k != "exec"}, "plugin": text(one.get("plugin")), **_condition(one)}
-        for one in nodes
-    ]
-
-
-def _parameter(name: Any, value: Any) -> dict[str, Any]:
-    if isinstance(value, dict):
-        return {"name": text(name), "param": [_parameter(key, inner) for key, inner in value.items()]}
-    found = {"name": text(name), "value": plain(value)}
-    if isinstance(value, Said) and value.kind in _TYPED:
-        kind, inner = _type_name(value.get("value_type")), value.get("value", _TYPED[value.kind])
-        return _parameter(name, inner) | ({"type": kind} if kind else {})
-    if isinstance(value, str) and "$(" not in value and _is_number_to_ros(value):
-        found["value"] = scalar(value)
-    is_made = isinstance(value, Said) or (isinstance(value, (list, tuple)) and not all(map(_is_plain, value)))
-    if is_made and "$(" not in str(found["value"]):  # ROS reads what substitutions have made
-        found["type"] = "yaml"
-    return found
-
-
-def _is_plain(value: Any) -> bool:
-    return isinstance(value, (bool, int, float, str))
-
-
-_TYPED = {"ParameterValue": 0, "Parameter": 1}
-"""Descriptions of parameters that may have a type, and where their values stand."""
-
-
-def _type_name(given: Any) -> str:
-    """A Python type by the name that it has in launch files: `list_of_int` for `List[int]`."""
-    inner = getattr(given, "__args__", ())
-    return f"list_of_{inner[0].__name__}" if inner else getattr(given, "__name__", "")
-
-
-def _is_number_to_ros(value: str) -> bool:
-    """Whether ROS writes a text without quotes, and reads it back as a number: PyYAML takes 1e-3 for a text."""
-    return isinstance(scalar(value), float) and isinstance(yaml.safe_load(value), str)
-
-
-def _is_early(said: Any) -> bool:
-    """Whether an event handler stands before what it waits for."""
-    handler = said.get("event_handler", 0) if isinstance(said, Said) and said.kind == "RegisterEventHandler" else None
-    if not isinstance(handler, Said) or handler.kind not in _HANDLERS:
+def _is_early(described: object) -> bool:
+    """Return whether an action registers an event handler before the action that it waits for."""
+    registered = handler_of(described)
+    if registered is None:
         return False
-    return id(handler.get(_HANDLERS[handler.kind][0])) not in _described
+    handler, form = registered
+    return id(handler.get(form.target)) not in _converted
 
 
-def _is_shutdown(said: Any) -> bool:
-    event = said.get("event", 0) if isinstance(said, Said) and said.kind == "EmitEvent" else said
-    return isinstance(event, Said) and event.kind == "Shutdown"
+def number_targets(described: object) -> None:
+    """Number the actions that event handlers wait for, and note the effects of events on them.
 
-
-def number_targets(said: Any) -> None:
-    """Number the actions that event handlers wait for, and note what events bring about, before all is written down."""
-    todo, known = [said], set[int]()
+    Call it before `actions`: an action's number must be known when the action is converted.
+    """
+    todo, seen = [described], set[int]()
     while todo:
         one = todo.pop()
         if isinstance(one, (list, tuple)):
             todo += reversed(one)
-        elif isinstance(one, Said) and id(one) not in known:  # a description may hold itself
-            known.add(id(one))
+        elif isinstance(one, RecordedCall) and id(one) not in seen:  # a description may contain itself
+            seen.add(id(one))
             _number(one)
-            todo += reversed([*one.args, *one.kwargs.values(), *one.__dict__.get("entities", ())])
+            todo += reversed(parts(one))
 
 
-def _number(said: Said) -> None:
-    if said.kind in _PROCESSES and said.get("on_exit") is not None:
-        _numbers.setdefault(id(said), len(_numbers) + 1)
-    whose, key, _ = _HANDLERS.get(said.kind, ("", "", ""))
-    if isinstance(target := said.get(whose), Said):
+def _number(call: RecordedCall) -> None:
+    if call.kind in PROCESSES and call.get("on_exit") is not None:
+        _numbers.setdefault(id(call), len(_numbers) + 1)
+    form = HANDLERS.get(call.kind)
+    if form is not None and isinstance(target := call.get(form.target), RecordedCall):
         _numbers.setdefault(id(target), len(_numbers) + 1)
-        then = said.get(key) if key in ("on_exit", "on_completion") else None
-        kept = _without_functions(then)[0]
-        if kept and all(map(_is_shutdown, kept)):
-            _ending.add(id(target))
-    if (change := _change(said)) and change[1] in _STATES:
-        node, state = change[0], _STATES[change[1]]
-        _lives[id(node)] = "active" if "active" in (state, _lives.get(id(node))) else state
+        then, _ = without_functions(call.get(form.then) if form.then in ("on_exit", "on_completion") else None)
+        if then and all(map(is_shutdown, then)):
+            _shutting_down.add(id(target))
+    if (change := state_change(call)) and change[1] in STATES:
+        lifecycle_node, state = change[0], STATES[change[1]]
+        _states[id(lifecycle_node)] = "active" if "active" in (state, _states.get(id(lifecycle_node))) else state
+
+
+# code of the launch file
+
+_SETTINGS = ("SetLaunchConfiguration", "SetEnvironmentVariable", "AppendEnvironmentVariable")
+
+
+def _note_setting(call: RecordedCall) -> None:
+    """Record the effect of an action on configurations or the environment, for functions that are called later."""
+    given = call.kwargs.get("condition")
+    if call.kind not in _SETTINGS or RECORDING.values is None or (given is not None and not given.evaluate()):
+        return
+    name, value = (RECORDING.known(text(call.get(key, i))) for i, key in enumerate(("name", "value")))
+    if call.kind == "SetLaunchConfiguration":
+        RECORDING.set[name] = value
+        return
+    former = Context().environment.get(name)
+    if call.kind == "AppendEnvironmentVariable" and former is not None:
+        parts = [former, value]
+        is_first = bool(call.get("prepend", 2, default=False))
+        value = text(call.get("separator", 3, os.pathsep)).join(parts[::-1] if is_first else parts)
+    RECORDING.env[name] = value
+
+
+def _carry_out(call: RecordedCall) -> None:
+    """Convert an action where the launch file's code calls its `execute` or `visit`."""
+    number_targets(call)
+    _carried_out.extend(_actions(call))
+
+
+RECORDING.carry_out = _carry_out
+
+
+def _made_by(code: Callable[[], list[object]], call: RecordedCall) -> list[Action]:
+    """Call code of the launch file; returns the actions that it sets, carries out itself and returns."""
+    if RECORDING.values is None and call.kind in ("ForEach", "ForLoop"):  # the values of the loop are not known yet
+        RECORDING.problem(
+            call, f"{call.kind} has no words in a graph file; `graphflow launch` starts the file as it is"
+        )
+        return []
+    if RECORDING.values is None:
+        message = f"{call.kind}: it was called once, with $(var ...) in place of each value; look what it made"
+        RECORDING.problem(call, message)
+    outer, before = _carried_out[:], dict(RECORDING.set)
+    _carried_out.clear()
+    returned = code()
+    number_targets(returned)
+    number_targets(RECORDING.descriptions)  # the code may have added to them
+    changed = {name: value for name, value in RECORDING.set.items() if before.get(name) != value}
+    settings = [Action("let", {"name": name, "value": value}, call.line) for name, value in changed.items()]
+    inner, _carried_out[:] = _carried_out[:], outer
+    return [*settings, *inner, *_actions(returned)]
+
+
+_CONVERTERS: dict[str, Callable[[RecordedCall], Action | list[Action]]] = {
+    "LaunchDescription": lambda call: _actions(call.entities),
+    "ReplaceEnvironmentVariables": lambda _: [],
+    "DeclareLaunchArgument": _argument,
+    "SetLaunchConfiguration": lambda call: Action("let", _named_value(call)),
+    "SetEnvironmentVariable": lambda call: Action("set_env", _named_value(call)),
+    "AppendEnvironmentVariable": _append_env,
+    "SetParameter": _set_parameter,
+    "SetRemap": _set_remap,
+    "SetUseSimTime": lambda call: Action("set_use_sim_time", {"value": plain(call.get("value", 0))}),
+    **dict.fromkeys(
+        ("PushRosNamespace", "PushROSNamespace"),
+        lambda call: Action("push_ros_namespace", {"namespace": text(call.get("namespace", 0))}),
+    ),
+    "GroupAction": _group,
+    "TimerAction": _timer,
+    "IncludeLaunchDescription": _include,
+    **dict.fromkeys(("LogInfo", "Log"), lambda call: Action("log", {"message": text(call.get("msg", default=""))})),
+    "UnregisterEventHandler": lambda _: [],
+    "RegisterEventHandler": _register,
+    "EmitEvent": _emit,
+    "Shutdown": _shutdown,
+    **dict.fromkeys(("Node", "LifecycleNode"), _node),
+    "ComposableNodeContainer": lambda call: Action("node_container", container(call)),
+    "LoadComposableNodes": _load_components,
+    **dict.fromkeys(("ExecuteProcess", "ExecuteLocal"), _execute),
+}
+"""Converters by the class of a call; they return an action, or the actions in place of the call."""

@@ -1,7 +1,7 @@
-"""Uses of substitutions in launch files before they have a value: `if LaunchConfiguration('sim'):` is always true.
+"""Uses of substitutions before they have a value: `if LaunchConfiguration('sim'):` is always true.
 
-They have none while the description is made, and ROS 2 says nothing: a test is true as of any object, a comparison with
-a text false, and `str` makes the name of an object.
+A substitution has no value while the description is made, and ROS 2 does not report its use: like any object it is true
+in a test, unequal to any text, and `str` returns its `repr`.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
 def early_uses(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """The lines of such uses, each with what to write."""
+    """Yield the lines of such uses, each with a correction."""
     yield from _of_scope(tree, {})
 
 
 def _of_scope(scope: ast.AST, outer: dict[str, ast.Call]) -> Iterator[tuple[int, str]]:
-    """Those of a module or function, and of the functions in it.
+    """Yield the early uses in a module or function, and in the functions within it.
 
     Args:
-        outer: Names of the scope around it that are substitutions, with the calls that make them.
+        outer: Substitutions of the enclosing scopes, by name.
     """
     nodes = list(_own(scope))
     known = {name: call for name, call in outer.items() if name not in _bound(scope, nodes)} | _made(scope, nodes)
     performs = isinstance(scope, _SCOPES) and any(arg.arg == "context" for arg in scope.args.args)
-    seen: set[ast.AST] = set()  # what has been told of with what is around it
+    seen: set[ast.AST] = set()  # already reported as part of a larger expression
     for node in nodes:
         match node:
             case ast.If(test=test) | ast.IfExp(test=test) | ast.While(test=test):
@@ -61,7 +61,7 @@ def _of_scope(scope: ast.AST, outer: dict[str, ast.Call]) -> Iterator[tuple[int,
 
 
 def _own(scope: ast.AST) -> Iterator[ast.AST]:
-    """What is in a scope; of functions in it, only themselves."""
+    """Yield the nodes of a scope, without the bodies of functions within it."""
     todo = list(ast.iter_child_nodes(scope))
     while todo:
         node = todo.pop(0)
@@ -71,14 +71,14 @@ def _own(scope: ast.AST) -> Iterator[ast.AST]:
 
 
 def _bound(scope: ast.AST, nodes: list[ast.AST]) -> set[str]:
-    """The names that a scope binds."""
+    """Return the names that a scope binds."""
     arguments = scope.args if isinstance(scope, _SCOPES) else None
     taken = {arg.arg for arg in ast.walk(arguments) if isinstance(arg, ast.arg)} if arguments is not None else set()
     return taken | {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
 
 
 def _made(scope: ast.AST, nodes: list[ast.AST]) -> dict[str, ast.Call]:
-    """The names that are bound once in a scope, and to a substitution."""
+    """Return the names that a scope binds once, and to a substitution."""
     stores = [node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
     found: dict[str, ast.Call] = {}
     for node in nodes:
@@ -91,7 +91,7 @@ def _made(scope: ast.AST, nodes: list[ast.AST]) -> dict[str, ast.Call]:
 
 
 def _name(call: ast.Call) -> str:
-    """The name of what is called, without its modules."""
+    """Return the name of the called function or class, without its module."""
     match call.func:
         case ast.Name(id=name) | ast.Attribute(attr=name):
             return name
@@ -99,17 +99,17 @@ def _name(call: ast.Call) -> str:
 
 
 def _substitution(value: ast.expr) -> ast.Call | None:
-    """A call that makes a substitution or a condition."""
+    """Return the expression if it calls a substitution or condition class."""
     return value if isinstance(value, ast.Call) and _name(value) in (*_SUBSTITUTIONS, *_CONDITIONS) else None
 
 
 def _value(value: ast.expr, known: Mapping[str, ast.Call]) -> ast.Call | None:
-    """The call that makes a substitution or a condition, of an expression which is one."""
+    """Return the call that makes the substitution or condition to which an expression evaluates, if it is one."""
     return known.get(value.id) if isinstance(value, ast.Name) else _substitution(value)
 
 
 def _as_text(value: ast.expr) -> ast.expr:
-    """What `str(...)` or an f-string around it makes a text of."""
+    """Return the expression within `str(...)` or an f-string; any other unchanged."""
     match value:
         case ast.Call(func=ast.Name(id="str"), args=[inner]):
             return inner
@@ -119,7 +119,7 @@ def _as_text(value: ast.expr) -> ast.expr:
 
 
 def _parts(test: ast.expr) -> Iterator[ast.expr]:
-    """What a test asks."""
+    """Yield the operands of the boolean operators of a test."""
     match test:
         case ast.BoolOp(values=values):
             for value in values:
@@ -131,7 +131,7 @@ def _parts(test: ast.expr) -> Iterator[ast.expr]:
 
 
 def _way(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
-    """The substitution that does what is asked of substitutions; None where it is asked of anything else."""
+    """Return the substitution equivalent to an expression of substitutions; None for other expressions."""
     match value:
         case ast.BoolOp(op=op, values=values):
             ways = [_way(part, known) for part in values]
@@ -160,7 +160,7 @@ def _way(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
 
 
 def _side(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
-    """A substitution or a literal, as substitutions take it."""
+    """Return a substitution or literal as an argument of another substitution."""
     if isinstance(value, ast.Constant) and isinstance(value.value, (str, int, float)):
         return repr(str(value.value).lower() if isinstance(value.value, bool) else str(value.value))
     call = _value(value, known)
@@ -168,7 +168,7 @@ def _side(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
 
 
 def _of_test(part: ast.expr, known: Mapping[str, ast.Call], performs: bool) -> str:
-    """What to say of a part of a test; empty for one whose outcome is not fixed."""
+    """Return the problem of an operand of a test; empty if its outcome is not fixed."""
     if isinstance(part, ast.Compare):
         way = _way(part, known)
         return "" if way is None else _compared(part, known, performs, f"condition=IfCondition({way}) at the action")
@@ -181,10 +181,10 @@ def _of_test(part: ast.expr, known: Mapping[str, ast.Call], performs: bool) -> s
 
 
 def _compared(comparison: ast.Compare, known: Mapping[str, ast.Call], performs: bool, way: str) -> str:
-    """What to say of a comparison of a substitution.
+    """Return the problem of a comparison with a substitution.
 
     Args:
-        performs: Whether it stands in a function that is given the context.
+        performs: Whether the function around it has the launch context.
     """
     sides = [_as_text(side) for side in (comparison.left, comparison.comparators[0])]
     call = next(call for side in sides if (call := _value(side, known)) is not None)

@@ -1,38 +1,38 @@
-"""Functions of ROS's launch packages that launch files, and substitutions and actions of their own, call.
+"""Functions of ROS's launch packages, for launch files and for their own actions and substitutions.
 
 Source: launch.utilities, launch.conditions, launch.frontend, launch_ros.utilities and ament_index_python.resources.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import PurePath
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, PackageNotFoundError, Said, stand_in_of, text
+from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, PackageNotFoundError, RecordedCall, stand_in_of, text
 from graphflow.markup.substitutions import truth
 
 _T = TypeVar("_T")
 
 
-class LaunchIntrospector(Said):
-    """Shows what there is in a description."""
+class LaunchIntrospector(RecordedCall):
+    """A tool that shows the actions of a description."""
 
     kind = "LaunchIntrospector"
 
-    def format_launch_description(self, description: Said) -> str:
-        """The actions, each on a line."""
-        return "\n".join(one.describe() for one in description.entities)
+    def format_launch_description(self, description: RecordedCall) -> str:
+        """Return the actions, each on a line."""
+        return "\n".join(one.describe() for one in description.entities if isinstance(one, RecordedCall))
 
 
-def normalize_to_list_of_substitutions(given: Any) -> list[Said]:
-    """Texts, paths and substitutions, alone or in a list, as a list of substitutions.
+def normalize_to_list_of_substitutions(given: object) -> list[RecordedCall]:
+    """Convert texts, paths and substitutions, alone or in a list, to a list of substitutions.
 
     Raises:
-        TypeError: There is something else among them.
+        TypeError: A part is of another type.
     """
     match given:
-        case Said():
+        case RecordedCall():
             return [given]
         case str() | PurePath():
             return [stand_in_of("TextSubstitution")(text=str(given))]
@@ -41,44 +41,44 @@ def normalize_to_list_of_substitutions(given: Any) -> list[Said]:
     raise TypeError(f"expected a text, a substitution, or a list of them, got {given!r}")
 
 
-def perform_substitutions(_context: Any, given: Any) -> str:
-    """The text that substitutions make."""
+def perform_substitutions(_context: object, given: object) -> str:
+    """Return the text that substitutions make."""
     return RECORDING.known(text(given))
 
 
-def evaluate_condition_expression(_context: Any, given: Any) -> bool:
-    """The truth value of the text that substitutions make.
+def evaluate_condition_expression(_context: object, given: object) -> bool:
+    """Return the truth value of the text that substitutions make.
 
     Raises:
-        SubstitutionError: It is neither true nor false.
+        SubstitutionError: The text is neither true nor false.
     """
     return truth(RECORDING.known(text(given)), RECORDING.file)
 
 
 def is_a(value: object, kind: type) -> bool:
-    """As `isinstance`."""
+    """Return whether a value is an instance of a class."""
     return isinstance(value, kind)
 
 
-def is_a_subclass(value: Any, kind: type) -> bool:
-    """As `issubclass`; also for an instance of the class."""
+def is_a_subclass(value: object, kind: type) -> bool:
+    """Return whether a class, or the class of an instance, is a subclass of another."""
     return issubclass(value if isinstance(value, type) else type(value), kind)
 
 
-def ensure_argument_type(value: object, kinds: Any, name: str, caller: str = "") -> None:
-    """Refuse a value that is of none of some classes.
+def ensure_argument_type(value: object, kinds: type | Iterable[type], name: str, caller: str = "") -> None:
+    """Check that a value is an instance of one of some classes.
 
     Raises:
-        TypeError: It is of none of them.
+        TypeError: It is an instance of none of them.
     """
-    allowed = tuple(kinds) if isinstance(kinds, (list, tuple)) else (kinds,)
+    allowed = (kinds,) if isinstance(kinds, type) else tuple(kinds)
     if not isinstance(value, allowed):
         names = " or ".join(kind.__name__ for kind in allowed)
         raise TypeError(f"{f'{caller}: ' if caller else ''}{name}: expected {names}, got {value!r}")
 
 
-def expose(_name: str) -> Any:
-    """Leave a class as it is: launch files in XML and YAML have graphflow's own actions and substitutions."""
+def expose(_name: str) -> Callable[[_T], _T]:
+    """Decorate a class without effect: launch files in XML and YAML have graphflow's own actions and substitutions."""
 
     def unchanged(exposed: _T) -> _T:
         return exposed
@@ -87,22 +87,22 @@ def expose(_name: str) -> Any:
 
 
 def is_root_namespace(namespace: str) -> bool:
-    """Whether it is that of all others."""
+    """Return whether a namespace is the root."""
     return namespace == "/"
 
 
 def is_namespace_absolute(namespace: str) -> bool:
-    """Whether it stands for itself."""
+    """Return whether a namespace begins with a slash."""
     return namespace.startswith("/")
 
 
 def make_namespace_absolute(namespace: str) -> str:
-    """A namespace with the slash that it begins with."""
+    """Return a namespace with a leading slash."""
     return namespace if is_namespace_absolute(namespace) else f"/{namespace}"
 
 
 def prefix_namespace(base: str | None, namespace: str | None) -> str | None:
-    """A namespace below another, of which one may be missing."""
+    """Join two namespaces, of which either may be None."""
     if namespace is None or base is None:
         whole = base if namespace is None else namespace
     elif not base or is_namespace_absolute(namespace):
@@ -113,7 +113,7 @@ def prefix_namespace(base: str | None, namespace: str | None) -> str | None:
 
 
 def has_resource(kind: str, name: str) -> str | bool:
-    """The folder of a package, as the index of resources tells it; False if there is no such package or resource."""
+    """Return the folder of a package by the resource index; False if the package or resource does not exist."""
     try:
         return RECORDING.folder("prefix", name) if kind == "packages" else False
     except PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""The classes in modules of ROS's launch packages, and their bases. Source: `__all__` of the modules."""
+"""The classes of ROS's launch packages by module, and their base classes. Source: `__all__` of the modules."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NAMES = {
     "launch_ros.descriptions": "ComposableNode Parameter ParameterFile ParameterValue",
     "launch_ros.substitutions": "ExecutableInPackage FindPackagePrefix FindPackageShare Parameter",
 }
-"""By module: what `from launch.actions import *` brings."""
+"""The names that `from MODULE import *` imports, by module."""
 
 _BASES = {
     "launch.actions": "Action",
@@ -50,13 +50,13 @@ BASES = {
     "FrontendLaunchDescriptionSource": "LaunchDescriptionSource",
     **dict.fromkeys(("Action", "LaunchDescription"), "LaunchDescriptionEntity"),
 }
-"""The class that each is derived from, for those who ask."""
+"""The base class of each class, for `isinstance` in launch files."""
 
 
 def home(module: str, name: str) -> str | None:
-    """The module that has a class which is imported from another; None where that may be right.
+    """Return the right module for a class that is imported from a wrong one; None if the import may be right.
 
-    Modules that are not listed here, such as those inside of others, may have any class.
+    Modules that are not listed here, such as submodules, may have any class.
     """
     if module not in {*NAMES, "launch_ros"} or name in NAMES.get(module, "").split():
         return None

@@ -1,7 +1,7 @@
-"""The parameters of classes of ROS's launch packages: by place or by name, and after a bar by name only.
+"""The parameters of classes of ROS's launch packages: positional ones, then a bar, then keyword-only ones.
 
 Source: the signatures of launch and launch_ros, of Humble, Jazzy and Rolling together. Classes that are not listed,
-such as those that a launch file derives its own from, take anything.
+such as base classes for those of launch files, take anything.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Shutdown | reason due_to_sigint
 TimerAction | period actions cancel_on_shutdown
 """
 _OF_XML = {"exec": "executable", "pkg": "package", "ns": "namespace", "param": "parameters", "remap": "remappings"}
-"""Arguments by their names in XML and YAML launch files."""
+"""Parameters by their attribute names in XML and YAML launch files."""
 _PROCESS = (
     "name prefix cwd env additional_env shell sigterm_timeout sigkill_timeout emulate_tty output output_format "
     "cached_output log_cmd on_exit respawn respawn_delay respawn_max_retries"
@@ -100,7 +100,7 @@ _TEXTS = {
     "SetEnvironmentVariable": "name value",
     "SetLaunchConfiguration": "name value",
 }
-"""The parameters that are texts with substitutions, or hold such; launch refuses a number among them."""
+"""Parameters that take texts and substitutions, perhaps in lists; launch refuses numbers there."""
 
 
 class Parameters(NamedTuple):
@@ -111,7 +111,7 @@ class Parameters(NamedTuple):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All of them."""
+        """The names of all parameters."""
         return self.by_place + self.by_name
 
 
@@ -123,26 +123,26 @@ def _read(text: str, *more: str) -> Iterator[tuple[str, Parameters]]:
 
 
 PARAMETERS = dict([*_read(_ACTIONS + _PROGRAMS, "condition"), *_read(_OTHERS)])
-"""By class."""
+"""Parameters by class."""
 
 
 def wrong(kind: str, given: Sequence[object], names: Sequence[str]) -> Iterator[str]:
-    """Faults of a call of a class.
+    """Yield the faults of a call: too many positional arguments, and unknown keyword arguments.
 
     Args:
-        given: What is given by place.
-        names: The names of what is given by name.
+        given: The positional arguments.
+        names: The names of the keyword arguments.
     """
     if kind not in PARAMETERS:
         return
     known = PARAMETERS[kind]
-    if len(given) > len(known.by_place) and kind != "LaunchDescription":  # of which all are told
+    if len(given) > len(known.by_place) and kind != "LaunchDescription":  # its own error lists all arguments
         one = given[len(known.by_place)]
         hint = f"; write {known.by_name[0]}={one!r}" if known.by_name else ""
         hint = "; write package=..., executable=..." if "executable" in known.names else hint
         yield f"{kind} takes {len(known.by_place) or 'nothing'} without a name, and not {one!r}{hint}"
     for name in sorted({*names} - {*known.names}):
-        now = name.removeprefix("node_")  # as it was in ROS 2's first distributions
+        now = name.removeprefix("node_")  # the spelling of ROS 2's first distributions
         is_former = now != name and now in known.names
         hint = f"; it is called {now!r} now" if is_former else did_you_mean(name, (), hidden=known.names)
         if _OF_XML.get(name) in known.names:
@@ -151,11 +151,11 @@ def wrong(kind: str, given: Sequence[object], names: Sequence[str]) -> Iterator[
 
 
 def not_texts(kind: str, given: Sequence[object], named: Mapping[str, object]) -> Iterator[str]:
-    """Faults of a call of a class: numbers where launch takes texts only.
+    """Yield the faults of a call that passes numbers where launch takes texts only.
 
     Args:
-        given: What is given by place.
-        named: What is given by name.
+        given: The positional arguments.
+        named: The keyword arguments.
     """
     if kind not in _TEXTS:
         return
@@ -167,7 +167,7 @@ def not_texts(kind: str, given: Sequence[object], named: Mapping[str, object]) -
 
 
 def _numbers(value: object) -> Iterator[object]:
-    """The numbers in a value, which may be a list or a mapping."""
+    """Yield the numbers in a value, which may be a list or a mapping."""
     if isinstance(value, (bool, int, float)):
         yield value
     elif isinstance(value, Mapping):

@@ -1,12 +1,12 @@
-"""Stand-ins for ROS's launch packages, which remember what they are called with, and with which line.
+"""Stand-ins for ROS's launch packages, which record the calls of a launch file, each with its line.
 
-They have the names of `launch`, `launch_ros` and `ament_index_python`. Substitutions become their texts, `$(var x)`; so
-a value that only a running launch would know stays a text, unless a function asks for it (`perform`) when the file is
-about to be started.
+They have the names of `launch`, `launch_ros` and `ament_index_python`. Substitutions become their texts, `$(var x)`: a
+value that only a running launch would have stays a text, unless code calls `perform` when the file is being started.
 """
 
 from __future__ import annotations
 
+import inspect
 import json
 import logging
 import os
@@ -19,11 +19,13 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import MappingProxyType, ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 from graphflow.folders import newest_logs
 from graphflow.launchfiles.python.names import BASES, NAMES, home
 from graphflow.launchfiles.python.parameters import PARAMETERS, Parameters, not_texts, wrong
+from graphflow.launchfiles.recorded import Finding
+from graphflow.markup.source import Data
 from graphflow.markup.substitution_words import QUOTES, as_word
 from graphflow.markup.substitutions import Outside, Run, SubstitutionError, Substitutions, truth
 from graphflow.names import nearest
@@ -31,62 +33,62 @@ from graphflow.workspace.executables import package_prefix, package_share
 from graphflow.workspace.project import project_root
 
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
-"""The packages that there are stand-ins for."""
+"""The packages with stand-ins."""
 
 
 class PackageNotFoundError(KeyError):
-    """As of ament_index_python: there is no such package."""
+    """The error of ament_index_python for a package that is not found."""
 
     def __str__(self) -> str:
         return f"package {self.args[0]!r} not found; it is neither in the workspace nor installed"
 
 
 class Recording:
-    """One launch file, and what is known of it while it is run."""
+    """The state of a launch file while it runs against the stand-ins."""
 
     def __init__(self) -> None:
         self.file = ""
-        """Its path, as its frames name it."""
+        """The file's path, as its frames have it."""
         self.values: dict[str, str] | None = None
-        """The arguments that it is to be started with; None if it is only written down."""
+        """The arguments with which it is being started; None if it is only converted."""
         self.defaults: dict[str, str] = {}
-        """Those of the arguments that have been declared so far."""
+        """Defaults of the arguments declared so far."""
         self.needed: set[str] = set()
-        """The arguments that have been declared without one."""
+        """Arguments declared without a default."""
         self.set: dict[str, str] = {}
-        """The launch configurations that have been set so far."""
+        """Launch configurations set so far."""
         self.env: dict[str, str] = {}
-        """The variables of the environment that have been set so far."""
-        self.descriptions: list[Said] = []
-        """All that were made, to which a function may add while it is called."""
-        self.problems: list[dict[str, Any]] = []
-        """What has no words in a graph file, each with its `line` and a `message`."""
-        self.remarks: list[dict[str, Any]] = []
-        """What is left out, likewise."""
+        """Environment variables set so far."""
+        self.descriptions: list[RecordedCall] = []
+        """All launch descriptions, to which functions may add while they are called."""
+        self.problems: list[Finding] = []
+        """Parts that a graph file cannot express."""
+        self.remarks: list[Finding] = []
+        """Parts that are left out."""
         self.written_at = 1
-        """The line of the action that was written down last."""
+        """The line of the action that was converted last."""
         self.run: Run | None = None
-        """Carries out `$(command ...)`; without it, such a substitution stays as it is written."""
-        self.carry_out: Callable[[Said], None] = lambda _: None
-        """Writes down an action that code of the file carries out itself."""
+        """Runs the programs of `$(command ...)`; without it, such a substitution stays as it is."""
+        self.carry_out: Callable[[RecordedCall], None] = lambda _: None
+        """Converts an action that the file's code executes itself; `actions` sets it."""
 
-    def problem(self, said: Said, message: str) -> None:
-        """Add one."""
-        self.problems.append({"line": said.line, "message": message})
+    def problem(self, call: RecordedCall, message: str) -> None:
+        """Add a problem at a call's line."""
+        self.problems.append({"line": call.line, "message": message})
 
-    def remark(self, said: Said, message: str) -> None:
-        """Say that something is left out."""
-        self.remarks.append({"line": said.line, "message": message})
+    def remark(self, call: RecordedCall, message: str) -> None:
+        """Add a remark at a call's line."""
+        self.remarks.append({"line": call.line, "message": message})
 
     def line(self) -> int:
-        """The line of the file that is being carried out."""
-        frame = sys._getframe(1)
+        """Return the line of the launch file that is being executed."""
+        frame = inspect.currentframe()
         while frame is not None and frame.f_code.co_filename != self.file:
-            frame = frame.f_back  # type: ignore[assignment]
+            frame = frame.f_back
         return frame.f_lineno if frame is not None else 1
 
     def known(self, text: str) -> str:
-        """A text with its substitutions made, if the file is to be started.
+        """Return a text with its substitutions made if the file is being started; unchanged if not.
 
         Raises:
             SubstitutionError: A substitution cannot be made.
@@ -101,7 +103,7 @@ class Recording:
         return self._made(text, self.arguments())
 
     def arguments(self) -> dict[str, str]:
-        """The values of launch configurations that are known: what is given, defaults, and what has been set."""
+        """Return the known launch configurations: given arguments, defaults, and values set so far."""
         found = dict(self.values or {})
         for name, default in self.defaults.items():
             if name not in found:
@@ -115,7 +117,7 @@ class Recording:
         return as_text(Substitutions(values, file, outside).apply(text))
 
     def folder(self, what: str, package: str) -> str:
-        """The `share` folder or `prefix` of a package; the substitution for it, if the file is only written down.
+        """Return the `share` folder or `prefix` of a package; its substitution if the file is only converted.
 
         Raises:
             PackageNotFoundError: There is no such package.
@@ -130,48 +132,49 @@ class Recording:
 
 
 RECORDING = Recording()
-"""A process runs one launch file."""
+"""The state of this process's launch file: a process runs only one."""
 
 
-def as_text(value: Any) -> str:
-    """A value as launch configurations have it: they are all texts."""
+def as_text(value: object) -> str:
+    """Convert a value to text, as launch configurations are all texts."""
     return value if isinstance(value, str) else json.dumps(value)
 
 
 class Configurations(UserDict[str, str]):
-    """Launch configurations, as a function sees and sets them."""
+    """Launch configurations, as functions of a launch file read and set them."""
 
     def __init__(self) -> None:
         super().__init__()
         self.data.update(RECORDING.arguments())
 
-    def __setitem__(self, name: str, value: Any) -> None:
+    def __setitem__(self, name: str, value: object) -> None:
         self.data[name] = RECORDING.set[name] = as_text(value)
 
 
 class Context:
-    """What an `OpaqueFunction` is called with."""
+    """The launch context that functions of a launch file are called with."""
 
     @property
     def launch_configurations(self) -> Configurations:
-        """The values of arguments, and of what has been set."""
+        """The values of arguments, and those set so far."""
         return Configurations()
 
     @property
     def environment(self) -> dict[str, str]:
-        """The variables of the environment, with those that have been set."""
+        """The environment, with the variables set so far."""
         return {**os.environ, **RECORDING.env}
 
-    def perform_substitution(self, value: Any) -> str:
-        """A value with its substitutions made."""
+    def perform_substitution(self, value: object) -> str:
+        """Return a value with its substitutions made."""
         return RECORDING.known(text(value))
 
 
-class Said:
-    """A call of one of the stand-ins."""
+class RecordedCall:
+    """A recorded call of a class of ROS's launch packages; the base class of their stand-ins."""
 
     kind = ""
-    """The name of the class of ROS's; those of a launch file's own have their base's."""
+    """The name of the class; classes of the launch file itself have that of their base."""
+    # The arguments may be anything, and code of the launch file uses them without type checks, as it does with ROS 2.
     args: tuple[Any, ...] = ()
     kwargs: Mapping[str, Any] = MappingProxyType({})
     line = 1
@@ -189,7 +192,8 @@ class Said:
                 RECORDING.defaults[name] = text(default)
         if self.kind == "LaunchDescription":
             given = self.get("initial_entities", 0) or ()
-            if isinstance(given, Said) or len(args) > 1:
+            self.entities: list[object]
+            if isinstance(given, RecordedCall) or len(args) > 1:
                 raise TypeError(f"LaunchDescription takes a list: write [ ] around {', '.join(map(repr, args))}")
             self.entities = list(given)
             RECORDING.descriptions.append(self)
@@ -197,14 +201,14 @@ class Said:
     def __repr__(self) -> str:
         return f"{self.kind}(...)"
 
-    def get(self, key: str, place: int = -1, default: Any = None) -> Any:
-        """An argument by its name, or by its place among those without."""
+    def get(self, key: str, position: int = -1, default: object = None) -> Any:
+        """Return an argument by name, or by position."""
         if key in self.kwargs:
             return self.kwargs[key]
-        return self.args[place] if 0 <= place < len(self.args) else default
+        return self.args[position] if 0 <= position < len(self.args) else default
 
     def __getattr__(self, name: str) -> Any:
-        """The argument that was given for a parameter; None for none."""
+        """Return the argument given for a parameter; None if there is none."""
         if name in self.kwargs:
             return self.kwargs[name]
         known = PARAMETERS.get(self.kind, Parameters((), ()))
@@ -212,39 +216,39 @@ class Said:
             raise AttributeError(f"{self.kind} has no {name!r} here: a launch file is read, and not run by launch")
         return self.get(name, known.by_place.index(name) if name in known.by_place else -1)
 
-    def execute(self, context: Any = None) -> Any:
-        """Carry an action out, here and now; those of a file's own return the actions that they make."""
+    def execute(self, context: object = None) -> list[object] | None:
+        """Execute an action at once, from code of the launch file; overrides return the actions that they make."""
         RECORDING.carry_out(self)
         return [] if self.kind in ("GroupAction", "IncludeLaunchDescription") else None
 
-    def visit(self, context: Any = None) -> Any:
-        """The same under its condition, which is written down with it."""
+    def visit(self, context: object = None) -> list[object] | None:
+        """Execute an action under its condition, which is converted with it."""
         return self.execute(context)
 
     def describe(self) -> str:
-        """The call, as ROS's tools show it."""
+        """Return the call as ROS's tools show it."""
         return f"{self.kind}({', '.join(map(text, self.args or self.kwargs.values()))})"
 
-    def add_action(self, action: Any) -> None:
-        """As a LaunchDescription has it, also while it is carried out."""
+    def add_action(self, action: object) -> None:
+        """Add an action to a launch description, perhaps while it is being executed."""
         if "entities" not in self.__dict__:
             raise AttributeError(f"{self.kind} has no add_action")
         self.entities.append(action)
 
     add_entity = add_action
 
-    def find(self, package: Any = None) -> str:
-        """As a FindPackageShare has it."""
+    def find(self, package: object = None) -> str:
+        """Return the folder of a package, as `FindPackageShare.find` does."""
         return RECORDING.folder("share", text(package))
 
-    def perform(self, context: Any = None) -> str:
-        """As a substitution has it."""
-        return RECORDING.known(_written(self))
+    def perform(self, context: object = None) -> str:
+        """Return the value of a substitution."""
+        return RECORDING.known(_substitution(self))
 
-    def evaluate(self, context: Any = None) -> bool:
-        """As a condition has it."""
-        ((word, said),) = condition(self).items()
-        return truth(RECORDING.known(said), RECORDING.file) is (word == "if")
+    def evaluate(self, context: object = None) -> bool:
+        """Return the value of a condition."""
+        ((attribute, expression),) = condition(self).items()
+        return truth(RECORDING.known(expression), RECORDING.file) is (attribute == "if")
 
     def __str__(self) -> str:
         return text(self)
@@ -254,124 +258,147 @@ class Said:
             RECORDING.remark(self, f"{self.kind} in an f-string is an object to ROS 2; write a list: ['text', ...]")
         return format(text(self), spec)
 
-    def __add__(self, other: Any) -> str:
+    def __add__(self, other: object) -> NoReturn:
         raise TypeError(_no_sum(self, self, other))
 
-    def __radd__(self, other: Any) -> str:
+    def __radd__(self, other: object) -> NoReturn:
         raise TypeError(_no_sum(self, other, self))
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: object) -> Any:
         """Join paths, as substitutions that are paths do."""
         return stand_in_of("PathJoinSubstitution")([self, other])
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: object) -> Any:
         return stand_in_of("PathJoinSubstitution")([other, self])
 
 
-def _no_sum(said: Said, *parts: Any) -> str:
-    """What to say where something that only a launch knows is added to a text, as Python lets no one do with ROS 2."""
-    shown = ", ".join(f"{part.kind}(...)" if isinstance(part, Said) else repr(part) for part in parts)
-    return f"{said.kind} is no text before the launch, and has no +; write a list: [{shown}]"
+def called_as(value: object) -> str:
+    """Return a value as messages show it: a recorded call without its arguments."""
+    return f"{value.kind}(...)" if isinstance(value, RecordedCall) else repr(value)
 
 
-def text(value: Any) -> str:
-    """A value with its substitutions, as launch files in YAML have it."""
+def parts(call: RecordedCall) -> list[object]:
+    """Return the arguments of a call, and the actions added to a launch description."""
+    # Not `call.entities`: OnStateTransition has an argument of that name.
+    return [*call.args, *call.kwargs.values(), *call.__dict__.get("entities", ())]
+
+
+def _no_sum(call: RecordedCall, *operands: object) -> str:
+    """Return the error for `+` with a substitution, which ROS 2's classes do not have either."""
+    shown = ", ".join(map(called_as, operands))
+    return f"{call.kind} is no text before the launch, and has no +; write a list: [{shown}]"
+
+
+def text(value: object) -> str:
+    """Convert a value to the text that it is in the YAML dialect, with substitutions as `$(...)`."""
     if isinstance(value, (list, tuple)):
         return "".join(map(text, value))
-    if not isinstance(value, Said):
+    if not isinstance(value, RecordedCall):
         return str(value)
-    if type(value).perform is not Said.perform and RECORDING.values is not None:  # a class of the file's own
+    # A substitution class of the launch file itself.
+    if type(value).perform is not RecordedCall.perform and RECORDING.values is not None:
         return text(value.perform(Context()))
-    return _written(value)
+    return _substitution(value)
 
 
-def _written(value: Said) -> str:
-    """A substitution of ROS's as a text."""
-    first = value.args[0] if value.args else next(iter(value.kwargs.values()), "")
-    match value.kind:
-        case "LaunchConfiguration":
-            default = value.get("default", 1)
-            return f"$(var {_word(first)}{'' if default is None else f' {_word(default)}'})"
-        case "EnvironmentVariable":
-            default = value.get("default_value", 1)
-            return f"$(env {_word(first)}{'' if default is None else f' {_word(default)}'})"
-        case "FindPackageShare" | "FindPackagePrefix":
-            return f"$(find-pkg-{value.kind[11:].lower()} {_word(first)})"
+def _substitution(call: RecordedCall) -> str:
+    """Convert a substitution to text."""
+    first = call.args[0] if call.args else next(iter(call.kwargs.values()), "")
+    name, optional = _WITH_DEFAULT.get(call.kind, ("", ""))
+    if name:
+        rest = call.get(optional, -1 if call.kind == "Parameter" else 1)
+        return f"$({name} {_word(first)}{'' if rest is None else f' {_word(rest)}'})"
+    if call.kind in _OF_ALL_ARGUMENTS:
+        words = [_word("" if one is None else one) for one in call.args]
+        return f"$({' '.join([_OF_ALL_ARGUMENTS[call.kind], *words])})"
+    if call.kind in _OF_ONE_ARGUMENT:
+        return f"$({_OF_ONE_ARGUMENT[call.kind]} {_word(first)})"
+    if call.kind in _WITHOUT_ARGUMENTS:
+        return f"$({_WITHOUT_ARGUMENTS[call.kind]})"
+    match call.kind:
         case "ExecutableInPackage":
-            return f"$(exec-in-pkg {_word(value.get('executable', 0))} {_word(value.get('package', 1))})"
+            return f"$(exec-in-pkg {_word(call.get('executable', 0))} {_word(call.get('package', 1))})"
         case "PathJoinSubstitution":
             return os.path.join("", *map(text, first))
         case "PythonExpression":
             expression = text(first)
             return f"$(eval {as_word(expression) if expression[:1] in QUOTES else expression})"
-        case "ThisLaunchFileDir":
-            return "$(dirname)"
-        case "ThisLaunchFile":
-            return "$(filename)"
-        case "LaunchLogDir" | "LogDir":
-            return "$(log_dir)"
-        case "Parameter":
-            default = value.get("default")
-            return f"$(param {_word(first)}{'' if default is None else f' {_word(default)}'})"
         case "IfElseSubstitution":
-            ways = (value.get("if_value", 1, ""), value.get("else_value", 2, ""))
-            return f"$(if {' '.join(map(_word, (value.get('condition', 0), *ways)))})"
-        case "AnySubstitution" | "AllSubstitution":
-            return f"$({' '.join([value.kind[:3].lower(), *map(_word, value.args)])})"
-        case "Command":
-            on_stderr = value.get("on_stderr", 1)
-            return f"$(command {_word(first)}{'' if on_stderr is None else f' {_word(on_stderr)}'})"
-        case "FileContent":
-            return f"$(file-content {_word(first)})"
-        case "FindExecutable":
-            return f"$(find-exec {_word(first)})"
-        case "AnonName":
-            return f"$(anon {_word(first)})"
-        case "NotSubstitution":
-            return f"$(not {_word(first)})"
-        case "EqualsSubstitution" | "NotEqualsSubstitution" | "AndSubstitution" | "OrSubstitution":
-            word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.kind[:-12]]
-            return f"$({word} {' '.join(_word('' if part is None else part) for part in value.args)})"
+            values = (call.get("condition", 0), call.get("if_value", 1, ""), call.get("else_value", 2, ""))
+            return f"$(if {' '.join(map(_word, values))})"
         case "TextSubstitution" | "PathSubstitution" | "ParameterValue" | "ParameterFile":
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
             return text(first)
-    RECORDING.problem(value, no_words(value))
+    RECORDING.problem(call, no_words(call))
     return ""
 
 
-def _word(value: Any) -> str:
-    """A value as a word of a substitution."""
+_WITH_DEFAULT = {
+    "LaunchConfiguration": ("var", "default"),
+    "EnvironmentVariable": ("env", "default_value"),
+    "Parameter": ("param", "default"),
+    "Command": ("command", "on_stderr"),
+}
+"""Substitutions of one argument and an optional second, with its name."""
+_OF_ONE_ARGUMENT = {
+    "FindPackageShare": "find-pkg-share",
+    "FindPackagePrefix": "find-pkg-prefix",
+    "FileContent": "file-content",
+    "FindExecutable": "find-exec",
+    "AnonName": "anon",
+    "NotSubstitution": "not",
+}
+_OF_ALL_ARGUMENTS = {
+    "AnySubstitution": "any",
+    "AllSubstitution": "all",
+    "EqualsSubstitution": "equals",
+    "NotEqualsSubstitution": "not-equals",
+    "AndSubstitution": "and",
+    "OrSubstitution": "or",
+}
+_WITHOUT_ARGUMENTS = {
+    "ThisLaunchFileDir": "dirname",
+    "ThisLaunchFile": "filename",
+    "LaunchLogDir": "log_dir",
+    "LogDir": "log_dir",
+}
+
+
+def _word(value: object) -> str:
+    """Convert a value to a word of a substitution."""
     return as_word(text(value))
 
 
-def condition(said: Said) -> dict[str, str]:
-    """A condition, as the attribute that actions of the YAML dialect have for it."""
-    words = {"IfCondition": "if", "UnlessCondition": "unless"}
-    if said.kind in words:
-        return {words[said.kind]: text(said.args[0] if said.args else "")}
-    if said.kind in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
-        word = "equals" if said.kind.endswith("nEquals") else "not-equals"
-        variable, value = said.args
-        return {"if": f"$({word} $(var {_word(variable)}) {_word(value)})"}
-    RECORDING.problem(said, no_words(said))
+def condition(call: RecordedCall) -> dict[str, str]:
+    """Convert a condition to the attribute `if` or `unless` of an action."""
+    attributes = {"IfCondition": "if", "UnlessCondition": "unless"}
+    if call.kind in attributes:
+        return {attributes[call.kind]: text(call.args[0] if call.args else "")}
+    if call.kind in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
+        comparison = "equals" if call.kind.endswith("nEquals") else "not-equals"
+        variable, value = call.args
+        return {"if": f"$({comparison} $(var {_word(variable)}) {_word(value)})"}
+    RECORDING.problem(call, no_words(call))
     return {}
 
 
-def no_words(said: Said) -> str:
-    """What to say of a class that graph files have nothing for, perhaps because its name is misspelt."""
+def no_words(call: RecordedCall) -> str:
+    """Return the problem of a class that a graph file cannot express, with the class that may be meant."""
     known = {name for names in NAMES.values() for name in names.split()}
-    near = nearest(said.kind, known, cutoff=0.85) if said.kind not in known else None
-    return f"{said.kind} has no words in a graph file" + (f"; did you mean {near!r}?" if near else "")
+    near = nearest(call.kind, known, cutoff=0.85) if call.kind not in known else None
+    return f"{call.kind} has no words in a graph file" + (f"; did you mean {near!r}?" if near else "")
 
 
-def plain(value: Any) -> Any:
-    """A value as JSON has it: numbers stay numbers."""
+def plain(value: object) -> Data:
+    """Convert a value to JSON: numbers stay numbers, substitutions become texts."""
     if isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, (list, tuple)):
-        is_text = any(isinstance(part, Said) for part in value) and all(isinstance(part, (Said, str)) for part in value)
-        if not is_text:  # each of its values is one, of which a list stands for a text
+        is_text = any(isinstance(part, RecordedCall) for part in value) and all(
+            isinstance(part, (RecordedCall, str)) for part in value
+        )
+        if not is_text:  # a list of values, in which a list of substitutions is a text again
             return [text(part) if isinstance(part, (list, tuple)) else plain(part) for part in value]
     return text(value)
 
@@ -382,28 +409,28 @@ OWN: dict[str, Any] = {
     "InvalidConditionExpressionError": SubstitutionError,
     "LaunchContext": Context,
 }
-"""Classes that do more than remember, and functions, by name; the module that defines one adds it."""
+"""Functions, and classes that do more than record, by name; the module that defines one adds it."""
 _SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
 _SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle", "logging", "utilities"}
 _SUBMODULES |= {"frontend", "some_substitutions_type", "type_utils"}
 
 
-class _StandIn(ModuleType):
-    """A module that has whatever is asked for."""
+class _Module(ModuleType):
+    """A module that makes its attributes on first access."""
 
     def __getattr__(self, name: str) -> Any:
         if name == "__all__" and self.__name__ in NAMES:
             return NAMES[self.__name__].split()
         if name.startswith("__"):
             raise AttributeError(name)
-        made = _made(self.__name__, name)
-        setattr(self, name, made)
-        return made
+        attribute = _attribute(self.__name__, name)
+        setattr(self, name, attribute)
+        return attribute
 
 
-def _made(module: str, name: str) -> Any:
-    """What a module of ROS's launch packages has under a name."""
-    if name in _SUBMODULES:  # also for those who have only imported `launch`
+def _attribute(module: str, name: str) -> Any:
+    """Return the attribute of a module of ROS's launch packages."""
+    if name in _SUBMODULES:  # `import launch` alone is enough for `launch.actions`, as in ROS 2
         return import_module(f"{module}.{name}")
     elsewhere = home(module, name)
     if elsewhere is not None:
@@ -415,27 +442,27 @@ def _made(module: str, name: str) -> Any:
 
 @cache
 def stand_in_of(name: str) -> Any:
-    """The class that stands for one of ROS's."""
-    if name.endswith(("Error", "Failure", "Exception")):  # which a file may want to catch
+    """Return the stand-in for a class."""
+    if name.endswith(("Error", "Failure", "Exception")):  # a file may want to catch it
         return type(name, (Exception,), {})
-    base = stand_in_of(BASES[name]) if name in BASES else Said
+    base = stand_in_of(BASES[name]) if name in BASES else RecordedCall
     return type(name, (base,), {"kind": name})
 
 
 def stand_in(package: str) -> Callable[[str], Any]:
-    """The `__getattr__` of a package outside of launch files, whose modules can be imported from now on."""
+    """Return the `__getattr__` of a package for use outside of launch files, and make its modules importable."""
     if not any(isinstance(finder, StandIns) for finder in sys.meta_path):
         sys.meta_path.append(StandIns())
 
     def get(name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        return _made(package, name)
+        return _attribute(package, name)
 
     return get
 
 
-def _function(module: str, name: str) -> Any:
+def _function(module: str, name: str) -> Callable[..., object]:
     what = "prefix" if name.endswith("prefix") else "share"
     if name in ("get_package_share_directory", "get_package_prefix"):
         return lambda package, *_: RECORDING.folder(what, package)
@@ -444,7 +471,7 @@ def _function(module: str, name: str) -> Any:
     if name == "get_logger":
         return logging.getLogger
 
-    def missing(*_: Any, **__: Any) -> Any:
+    def missing(*_: object, **__: object) -> NoReturn:
         raise NotImplementedError(
             f"{module}.{name} is not here: graphflow reads launch files without launch's own code"
         )
@@ -453,13 +480,13 @@ def _function(module: str, name: str) -> Any:
 
 
 class StandIns(MetaPathFinder, Loader):
-    """Finds a stand-in for every module of ROS's launch packages."""
+    """Importer of the stand-ins for ROS's launch packages."""
 
-    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         return ModuleSpec(name, self, is_package=True) if name.partition(".")[0] in PACKAGES else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        return _StandIn(spec.name)
+        return _Module(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Nothing is in it before it is asked for."""
+        """Do nothing: attributes are made on first access."""

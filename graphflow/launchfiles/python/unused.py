@@ -1,4 +1,4 @@
-"""Actions that a launch file makes and uses nowhere: `node = Node(...)`, and no `node` in the description."""
+"""Unused actions of launch files: `node = Node(...)` without `node` in the description."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ _ACTIONS = {name for module in ("launch.actions", "launch_ros.actions") for name
 
 
 class Unused(NamedTuple):
-    """One of them."""
+    """An action that no description contains."""
 
     line: int
     message: str
     argument: str
-    """The name of the argument that it declares; empty for other actions."""
+    """The name of the launch argument that it declares; empty for other actions."""
 
 
 def unused_actions(tree: ast.Module) -> Iterator[Unused]:
-    """Those that are given a name which nothing in the file reads."""
+    """Yield the actions assigned to a name that the file never reads."""
     read = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
     if "locals" in read or "globals" in read:
         return

@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.launchfiles.recorded import Description
 
 PYTHON_LIMIT = 20.0
 """Seconds that a launch file may take to describe itself."""
 
 
-def described(file: Path, name: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
+def described(file: Path, name: str, values: Mapping[str, Any] | None) -> Description:
     """What a launch file says: its `actions`, and `problems` and `remarks` on what it says in vain. It is run.
 
     Args:
@@ -36,7 +37,7 @@ def described(file: Path, name: str, values: Mapping[str, Any] | None) -> dict[s
     if values is not None:  # what it prints is for whoever starts it
         sys.stderr.write(ran.stderr.decode(errors="replace"))
     try:
-        told: dict[str, Any] = json.loads(ran.stdout)
+        told: Description = json.loads(ran.stdout)
     except ValueError:
         words = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
         raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {words}")]) from None

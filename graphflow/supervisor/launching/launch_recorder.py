@@ -24,7 +24,7 @@ from typing import Any
 from graphflow.launchfiles.python.actions import actions, number_targets
 from graphflow.launchfiles.python.early_uses import early_uses
 from graphflow.launchfiles.python.names import BASES, NAMES
-from graphflow.launchfiles.python.stand_ins import RECORDING, Said, StandIns, as_text
+from graphflow.launchfiles.python.stand_ins import RECORDING, RecordedCall, StandIns, as_text
 from graphflow.launchfiles.python.unused import unused_actions
 from graphflow.names import nearest
 from graphflow.supervisor.launching.launch_service import Described
@@ -167,7 +167,7 @@ def _described(path: str, tree: ast.Module) -> list[Any]:
         where = f"; rename {near} in line {functions[near]}" if near else ""
         raise NameError(f"it has no function {_FUNCTION}(){where}")
     described = space[_FUNCTION]()
-    if not isinstance(described, Said):
+    if not isinstance(described, RecordedCall):
         what, hint = repr(described), ""
         if isinstance(described, (list, tuple)):
             what, hint = "a list", "; write LaunchDescription(...) around it"

@@ -11,7 +11,7 @@ import threading
 from typing import Any
 
 import graphflow.launchfiles.python.functions  # noqa: F401 - which belong to the packages, too
-from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, Said
+from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, RecordedCall
 from graphflow.supervisor.launching.command_output import printed
 
 RECORDING.run = printed
@@ -29,7 +29,7 @@ class Described(BaseException):
         self.description = description
 
 
-class LaunchService(Said):
+class LaunchService(RecordedCall):
     """What starts a description from a program.
 
     Args:

@@ -7,20 +7,26 @@ from typing import Any
 
 import pytest
 
-from graphflow.launchfiles.python.actions import actions, number_targets
-from graphflow.launchfiles.python.stand_ins import RECORDING, Said
+from graphflow.launchfiles.python import actions as converter
+from graphflow.launchfiles.python.actions import number_targets
+from graphflow.launchfiles.python.stand_ins import RECORDING, RecordedCall
+from graphflow.launchfiles.recorded import Finding
 
 
 @pytest.fixture(autouse=True)
-def problems() -> Iterator[list[dict[str, Any]]]:
+def problems() -> Iterator[list[Finding]]:
     """What has no words, of this test alone."""
     RECORDING.problems = []
     yield RECORDING.problems
     RECORDING.problems = []
 
 
-def said(name: str, /, *args: Any, **kwargs: Any) -> Said:
-    made: Said = type(name, (Said,), {"kind": name})(*args, **kwargs)
+def actions(described: object) -> list[dict[str, Any]]:
+    return list(converter.actions(described))
+
+
+def said(name: str, /, *args: Any, **kwargs: Any) -> RecordedCall:
+    made: RecordedCall = type(name, (RecordedCall,), {"kind": name})(*args, **kwargs)
     made.line = 7
     return made
 
@@ -30,18 +36,6 @@ def test_an_action_and_its_condition() -> None:
     var = said("LaunchConfiguration", "x")
     node = said("Node", package="p", executable=["e_", var], condition=said("UnlessCondition", var))
     assert actions([None, [node]]) == [{"node": {"pkg": "p", "exec": "e_$(var x)", "line": 7, "unless": "$(var x)"}}]
-
-
-def test_where_components_are_loaded() -> None:
-    """By a container, or by a name that is a substitution; each may have a condition."""
-    x = said("LaunchConfiguration", "x")
-    node = said("ComposableNode", package="p", plugin="p::P", condition=said("UnlessCondition", x))
-    for target in ("box", said("ComposableNodeContainer", name="box"), x):
-        load = said("LoadComposableNodes", target_container=target, composable_node_descriptions=[node])
-        [action] = actions([load])
-        found = action["load_composable_node"]
-        assert found["target"] == ("$(var x)" if target is x else "box")
-        assert found["composable_node"] == [{"pkg": "p", "plugin": "p::P", "unless": "$(var x)"}]
 
 
 def test_what_comes_after_what() -> None:
@@ -82,18 +76,18 @@ def test_what_follows_the_end_of_a_program() -> None:
     assert RECORDING.remarks == [{"line": 7, "message": "OnShutdown is left out: nothing is done when the graph stops"}]
 
 
-def change(node: Any, number: int) -> Said:
+def change(node: Any, number: int) -> RecordedCall:
     """The event that asks a lifecycle node for a transition."""
     matches = said("matches_action", node)
     return said("EmitEvent", event=said("ChangeState", lifecycle_node_matcher=matches, transition_id=number))
 
 
-def on_state(node: Said, state: str, *then: Said) -> Said:
+def on_state(node: RecordedCall, state: str, *then: RecordedCall) -> RecordedCall:
     handler = said("OnStateTransition", target_lifecycle_node=node, goal_state=state, entities=list(then))
     return said("RegisterEventHandler", handler)
 
 
-def test_a_lifecycle_node_that_events_bring_up(problems: list[dict[str, Any]]) -> None:
+def test_a_lifecycle_node_that_events_bring_up(problems: list[Finding]) -> None:
     """It is brought as far as they do; what follows comes after it, wherever the handlers stand."""
     node = said("LifecycleNode", package="p", executable="e")
     after = said("Node", package="p", executable="other")
@@ -139,7 +133,7 @@ def test_a_handler_before_what_it_waits_for() -> None:
         ),
     ],
 )
-def test_states_that_have_no_words(made: Any, told: str, problems: list[dict[str, Any]]) -> None:
+def test_states_that_have_no_words(made: Any, told: str, problems: list[Finding]) -> None:
     """It is told."""
     whole = made(said("LifecycleNode", package="p", executable="e"))
     number_targets(whole)
@@ -147,7 +141,7 @@ def test_states_that_have_no_words(made: Any, told: str, problems: list[dict[str
     assert problems == [{"line": 7, "message": told}]
 
 
-def test_an_end_and_another_event(problems: list[dict[str, Any]]) -> None:
+def test_an_end_and_another_event(problems: list[Finding]) -> None:
     """Only the event `Shutdown` ends all."""
     ends = said("Node", package="p", executable="e", on_exit=said("EmitEvent", event=said("Shutdown", reason="over")))
     goes_on = said("Node", package="p", executable="e", on_exit=change(ends, 1))
@@ -168,7 +162,7 @@ def test_what_a_process_says_is_done_at_its_end() -> None:
     ]
 
 
-def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
+def test_what_is_no_action(problems: list[Finding]) -> None:
     """It is a problem, with its line if there is one."""
     RECORDING.written_at = 1
     assert actions(3) == []
@@ -192,72 +186,27 @@ def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
         ({"period": 2.0, "actions": said("Node")}, "actions is a list: write [ ] around Node(...)"),
     ],
 )
-def test_a_timer_of_other_types(given: dict[str, Any], told: str, problems: list[dict[str, Any]]) -> None:
+def test_a_timer_of_other_types(given: dict[str, Any], told: str, problems: list[Finding]) -> None:
     """Is told once, by the names that launch files have."""
     actions(said("TimerAction", **given))
     assert problems == [{"line": 7, "message": f"TimerAction: {told}"}]
 
 
 @pytest.mark.parametrize("period", [2, 2.5, "2.0", said("LaunchConfiguration", "x")])
-def test_the_period_of_a_timer(period: Any, problems: list[dict[str, Any]]) -> None:
+def test_the_period_of_a_timer(period: Any, problems: list[Finding]) -> None:
     """Is a number, a text of one, or a substitution."""
     (made,) = actions(said("TimerAction", period=period, actions=[]))
-    assert made["timer"]["period"] == ("$(var x)" if isinstance(period, Said) else period)
+    assert made["timer"]["period"] == ("$(var x)" if isinstance(period, RecordedCall) else period)
     assert problems == []
 
 
 @pytest.mark.parametrize(
     ("given", "shown"), [(said("LaunchConfiguration", "x"), "LaunchConfiguration(...)"), ("1", "'1'")]
 )
-def test_a_condition_that_is_none(given: Any, shown: str, problems: list[dict[str, Any]]) -> None:
+def test_a_condition_that_is_none(given: Any, shown: str, problems: list[Finding]) -> None:
     """Is answered with the one around it."""
     actions(said("LogInfo", msg="x", condition=given))
     assert problems == [{"line": 7, "message": f"condition: write IfCondition({shown}) or UnlessCondition(...)"}]
-
-
-@pytest.mark.parametrize(
-    ("given", "said_of_it"),
-    [
-        ({"parameters": {"rate": 2.0}}, "parameters: expected a list, such as [{'rate': 2.0}], got {'rate': 2.0}"),
-        ({"arguments": "--fast"}, "arguments: expected a list, such as ['--fast'], got '--fast'"),
-        ({"output": "scren"}, "Node: output: 'scren' is none of launch's; did you mean 'screen'?"),
-        (
-            {"parameters": [{"rate"}]},
-            "parameters: {'rate'} is neither a dictionary nor a file; write {'name': value}, with a colon",
-        ),
-        ({"parameters": [2]}, "parameters: 2 is neither a dictionary nor a file"),
-        ({"remappings": ["a"]}, "remappings: expected pairs, such as [('from', 'to')], got ['a']"),
-    ],
-)
-def test_what_a_node_cannot_be_given(given: dict[str, Any], said_of_it: str, problems: list[dict[str, Any]]) -> None:
-    """It is told with the line; ROS would have failed, or done something else."""
-    actions([said("Node", package="p", executable="e", **given)])
-    assert problems == [{"line": 7, "message": said_of_it}]
-
-
-def test_what_a_node_must_be_given() -> None:
-    """Nothing is made up in its place."""
-    assert actions([said("Node", package="p")]) == [{"node": {"pkg": "p", "line": 7}}]
-
-
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [
-        (said("ParameterValue", said("LaunchConfiguration", "x"), value_type=float), ("$(var x)", "float")),
-        (said("ParameterValue", value="0042", value_type=str), ("0042", "str")),
-        (said("ParameterValue", "[1]", value_type=list[int]), ("[1]", "list_of_int")),
-        (said("ParameterValue", 3), (3, None)),
-        (said("TextSubstitution", text="[1]"), ("[1]", "yaml")),
-        ([[said("TextSubstitution", text="1")], ["2"]], (["1", "2"], "yaml")),
-        (["1", "2"], (["1", "2"], None)),
-        ([["a", said("LaunchConfiguration", "x")], ["b"]], (["a$(var x)", "b"], None)),
-    ],
-)
-def test_types_of_parameters(value: Any, expected: tuple[Any, str | None]) -> None:
-    """They are written down by the names that launch files have for them."""
-    given = [{"rate": value}, said("Parameter", "rate", value)]
-    found = [actions(said("Node", package="p", executable="e", parameters=[one]))[0]["node"]["param"] for one in given]
-    assert [(param["value"], param.get("type")) for [param] in found] == [expected, expected]
 
 
 def test_a_text_that_is_set_for_all_stays_one() -> None:
@@ -265,10 +214,3 @@ def test_a_text_that_is_set_for_all_stays_one() -> None:
     settings = [said("SetParameter", "a", value) for value in ("0042", said("LaunchConfiguration", "x"), 2)]
     found = [action["set_parameter"] for action in actions(settings)]
     assert [(one["value"], one.get("type")) for one in found] == [("0042", "str"), ("$(var x)", None), (2, None)]
-
-
-def test_files_of_parameters() -> None:
-    """In which substitutions are made where that is asked for."""
-    files = ["a", said("ParameterFile", "b"), said("ParameterFile", param_file="c", allow_substs=True)]
-    [action] = actions([said("Node", package="p", executable="e", parameters=files)])
-    assert action["node"]["param"] == [{"from": "a"}, {"from": "b"}, {"from": "c", "allow_substs": "True"}]

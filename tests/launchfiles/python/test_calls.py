@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from graphflow.launchfiles.python.actions import actions
-from graphflow.launchfiles.python.stand_ins import RECORDING, Context, Said
+from graphflow.launchfiles.python import actions as converter
+from graphflow.launchfiles.python.stand_ins import RECORDING, Context, RecordedCall
 
 
 @pytest.fixture(autouse=True)
@@ -19,16 +19,20 @@ def started() -> Iterator[None]:
     RECORDING.values, RECORDING.set, RECORDING.problems = None, {}, []
 
 
-def said(kind: str, /, *args: Any, **kwargs: Any) -> Said:
-    made: Said = type(kind, (Said,), {"kind": kind})(*args, **kwargs)
+def actions(described: object) -> list[dict[str, Any]]:
+    return list(converter.actions(described))
+
+
+def said(kind: str, /, *args: Any, **kwargs: Any) -> RecordedCall:
+    made: RecordedCall = type(kind, (RecordedCall,), {"kind": kind})(*args, **kwargs)
     return made
 
 
-def variable(name: str) -> Said:
+def variable(name: str) -> RecordedCall:
     return said("LaunchConfiguration", name)
 
 
-def log(message: str) -> Said:
+def log(message: str) -> RecordedCall:
     return said("LogInfo", msg=message)
 
 
@@ -43,7 +47,7 @@ class Twice(said("Action").__class__):  # type: ignore[misc]
         super().__init__(**kwargs)
         self.word = word
 
-    def execute(self, context: Context) -> list[Said]:
+    def execute(self, context: Context) -> list[RecordedCall]:
         return [log(self.word), log(context.launch_configurations["n"])]
 
 
@@ -72,7 +76,7 @@ def test_code_with_a_condition() -> None:
 def test_what_a_function_carries_out_itself() -> None:
     """It comes before what the function returns, and what is set so is known at once."""
 
-    def function(context: Context) -> list[Said]:
+    def function(context: Context) -> list[RecordedCall]:
         said("SetLaunchConfiguration", "n", "3").execute(context)
         assert Twice("inner").visit(context)
         log("now").visit(context)

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from graphflow.launchfiles.python import functions as functions
-from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, Context, Said, StandIns
+from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, Context, RecordedCall, StandIns
 from graphflow.markup.substitutions import SubstitutionError
 
-Substitution = type("Substitution", (Said,), {"kind": "Substitution"})
+Substitution = type("Substitution", (RecordedCall,), {"kind": "Substitution"})
 
 
 class Upper(Substitution):  # type: ignore[misc, valid-type]
@@ -22,7 +22,7 @@ class Upper(Substitution):  # type: ignore[misc, valid-type]
         self._source = functions.normalize_to_list_of_substitutions(source)
 
     @property
-    def name(self) -> list[Said]:
+    def name(self) -> list[RecordedCall]:
         return self._source
 
     def perform(self, context: Context) -> str:
@@ -36,8 +36,8 @@ def started() -> Iterator[None]:
     RECORDING.values = None
 
 
-def variable(name: str) -> Said:
-    made: Said = type("LaunchConfiguration", (Said,), {"kind": "LaunchConfiguration"})(name)
+def variable(name: str) -> RecordedCall:
+    made: RecordedCall = type("LaunchConfiguration", (RecordedCall,), {"kind": "LaunchConfiguration"})(name)
     return made
 
 
@@ -45,7 +45,7 @@ def variable(name: str) -> Said:
 def test_what_a_substitution_is_made_of(given: object) -> None:
     """Texts, paths, and substitutions, in lists or alone."""
     found = functions.normalize_to_list_of_substitutions(given)
-    assert all(isinstance(one, Said) for one in found)
+    assert all(isinstance(one, RecordedCall) for one in found)
     assert functions.perform_substitutions(Context(), found) == functions.perform_substitutions(Context(), given)
 
 
@@ -71,7 +71,7 @@ def test_conditions() -> None:
 def test_classes() -> None:
     """Values and classes of a class, and the refusal of others."""
     assert functions.is_a(1, int)
-    assert functions.is_a_subclass(Upper, Said)
+    assert functions.is_a_subclass(Upper, RecordedCall)
     assert functions.is_a_subclass(True, int)
     functions.ensure_argument_type(1, [str, int], "x")
     with pytest.raises(TypeError, match="f: x: expected str or float, got 1"):

@@ -8,7 +8,7 @@ from importlib.machinery import ModuleSpec
 import pytest
 
 from graphflow.launchfiles.python.names import NAMES, home
-from graphflow.launchfiles.python.stand_ins import PACKAGES, Context, Said, StandIns
+from graphflow.launchfiles.python.stand_ins import PACKAGES, Context, RecordedCall, StandIns
 
 
 @pytest.mark.parametrize("module", NAMES)
@@ -21,7 +21,7 @@ def test_a_star_brings_them(module: str) -> None:
     made = finder.create_module(spec)
     assert made.__all__ == NAMES[module].split()
     assert import_module("graphflow.supervisor.launching.launch_service")  # where one of them is
-    assert all(issubclass(getattr(made, name), (Said, Context)) for name in made.__all__)
+    assert all(issubclass(getattr(made, name), (RecordedCall, Context)) for name in made.__all__)
 
 
 @pytest.mark.parametrize(

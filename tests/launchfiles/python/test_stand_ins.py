@@ -8,7 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.launchfiles.python.stand_ins import RECORDING, Context, Said, StandIns, as_text, plain, stand_in_of, text
+from graphflow.launchfiles.python.stand_ins import (
+    RECORDING,
+    Context,
+    RecordedCall,
+    StandIns,
+    as_text,
+    plain,
+    stand_in_of,
+    text,
+)
 from graphflow.markup.substitutions import SubstitutionError
 
 
@@ -19,8 +28,8 @@ def nothing_is_known() -> Iterator[None]:
     RECORDING.values, RECORDING.defaults, RECORDING.needed = None, {}, set()
 
 
-def said(name: str, /, *args: object, **kwargs: object) -> Said:
-    made: Said = type(name, (Said,), {"kind": name})(*args, **kwargs)
+def said(name: str, /, *args: object, **kwargs: object) -> RecordedCall:
+    made: RecordedCall = type(name, (RecordedCall,), {"kind": name})(*args, **kwargs)
     return made
 
 
