@@ -1,8 +1,8 @@
-"""Changing a graph file: a new text from the old one, in which comments and order are kept."""
+"""Edits of graph files that keep comments and order."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from io import StringIO
 from pathlib import Path
 from types import MappingProxyType
@@ -18,19 +18,19 @@ from graphflow.interface import GroupChange
 from graphflow.machines.regrouping import plain
 
 KeyPath = tuple[str, ...]
-"""Where a node's mapping is in a file: `("nodes", "/turtle1/follower")`, or below `override`."""
+"""The keys that lead to a node's mapping: `("nodes", "/turtle1/follower")`, or below `override`."""
 _WIDTH = 4096
-"""Characters of a line: long ones are left as they are."""
+"""Line length in characters, long enough that no line is wrapped."""
 
 
 def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
-    """Where nodes can be changed in the graph's own file: where they are written or, if included, under `override`.
+    """Find the keys of nodes in the graph's own file: under `nodes`, or under `override` for included nodes.
 
     Args:
-        folder: What the plan's file names are relative to.
+        folder: The folder to which the plan's file names are relative.
 
     Raises:
-        GraphFileError: A node is not where the plan says: the file has been changed meanwhile.
+        GraphFileError: A node is not at its place in the plan: the file has changed meanwhile.
     """
     top = (folder / plan.file).resolve()
     found: dict[str, KeyPath] = {}
@@ -48,7 +48,7 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
 
 
 def _key_at(file: Path, place: Place) -> str:
-    """The key of `nodes`, or of `override`, that stands on a line."""
+    """Return the key of `nodes` or `override` on a line."""
     data = _load(file.read_text(encoding="utf-8"), str(file))
     for section in ("nodes", "override"):
         nodes = data.get(section)
@@ -62,8 +62,8 @@ def _key_at(file: Path, place: Place) -> str:
     raise GraphFileError([Problem(place, text)])
 
 
-def _key_lines(data: Any) -> set[int]:
-    """The lines on which a file has keys."""
+def _key_lines(data: object) -> set[int]:
+    """Return the lines with keys."""
     if isinstance(data, list):
         return {line for item in data for line in _key_lines(item)}
     if not isinstance(data, CommentedMap):
@@ -76,37 +76,25 @@ def with_group(
     path: KeyPath,
     group: str,
     handlers: Sequence[str],
-    said: Mapping[str, GroupChange] = MappingProxyType({}),
-    settings: Mapping[str, Any] = MappingProxyType({}),
+    inherited: Mapping[str, GroupChange] = MappingProxyType({}),
+    settings: Mapping[str, object] = MappingProxyType({}),
 ) -> str:
-    """A file in which a node's handlers are in a group, and in no other of its groups.
+    """Move handlers of a node to one of its groups.
 
     Args:
-        said: What another file says of the node's groups, which this one would replace as a whole.
-        settings: What is set for the group besides: its `limit`, `thread`.
+        inherited: The groups of the node in an included file, which this file would replace as a whole.
+        settings: Other settings of the group: its `limit`, `thread`.
     """
 
     def change(node: CommentedMap) -> None:
-        base = {} if "concurrency" in node else said
+        base = {} if "concurrency" in node else inherited
         groups = _below(node, "concurrency")
-        for name, about in base.items():
-            groups[name] = _flow(plain(about))
-        for other in list(groups):
-            members = groups[other]
-            listed = members.get("handlers") if isinstance(members, CommentedMap) else members
-            if isinstance(listed, list):
-                for handler in handlers:
-                    while other != group and handler in listed:
-                        listed.remove(handler)
-        present = groups.get(group)
-        if isinstance(present, CommentedMap):
-            if handlers:
-                here = present.setdefault("handlers", [])
-                here.extend(h for h in handlers if h not in here)
-        elif isinstance(present, list):
-            present.extend(h for h in handlers if h not in present)
-        else:
-            groups[group] = _flow_list(handlers)
+        for name, of_base in base.items():
+            groups[name] = _flow(plain(of_base))
+        for other in groups:
+            if other != group:
+                _remove(groups[other], handlers)
+        _add(groups, group, handlers)
         if settings:
             members = groups[group]
             if not isinstance(members, CommentedMap):
@@ -116,8 +104,30 @@ def with_group(
     return _changed(text, path, change)
 
 
-def with_params(text: str, path: KeyPath, values: Mapping[str, Any]) -> str:
-    """A file in which a node's parameters have other values."""
+def _remove(members: object, handlers: Sequence[str]) -> None:
+    """Remove handlers from a group, which is a mapping or a list of handlers."""
+    listed = members.get("handlers") if isinstance(members, CommentedMap) else members
+    if isinstance(listed, list):
+        for handler in handlers:
+            while handler in listed:
+                listed.remove(handler)
+
+
+def _add(groups: CommentedMap, group: str, handlers: Sequence[str]) -> None:
+    """Add handlers to a group, which may be new."""
+    present = groups.get(group)
+    if isinstance(present, CommentedMap):
+        if handlers:
+            listed = present.setdefault("handlers", [])
+            listed.extend(h for h in handlers if h not in listed)
+    elif isinstance(present, list):
+        present.extend(h for h in handlers if h not in present)
+    else:
+        groups[group] = _flow_list(handlers)
+
+
+def with_params(text: str, path: KeyPath, values: Mapping[str, object]) -> str:
+    """Set parameters of a node."""
 
     def change(node: CommentedMap) -> None:
         params = _below(node, "params")
@@ -128,7 +138,7 @@ def with_params(text: str, path: KeyPath, values: Mapping[str, Any]) -> str:
 
 
 def with_console(text: str, section: Mapping[str, Any]) -> str:
-    """A file with other windows in its `console:` section; what else the section says is kept."""
+    """Replace the windows of the `console:` section, and keep its other settings."""
     data = _load(text, "the graph file")
     console = data.get("console")
     if not isinstance(console, CommentedMap):
@@ -141,9 +151,9 @@ def with_console(text: str, section: Mapping[str, Any]) -> str:
     return _dump(data, text)
 
 
-def _changed(text: str, path: KeyPath, change: Any) -> str:
+def _changed(text: str, path: KeyPath, change: Callable[[CommentedMap], None]) -> str:
     data = _load(text, "the graph file")
-    node: Any = data
+    node = data
     for key in path:
         if not isinstance(node.get(key), CommentedMap):
             node[key] = CommentedMap()
@@ -160,12 +170,12 @@ def _below(node: CommentedMap, key: str) -> CommentedMap:
     return found
 
 
-def _flow_list(values: Sequence[Any]) -> Any:
+def _flow_list(values: Iterable[object]) -> object:
     return _flow(list(values))
 
 
-def _flow(value: Any) -> Any:
-    """Plain data to be written on one line."""
+def _flow(value: object) -> Any:
+    """Convert plain data to ruamel.yaml's types in flow style, which it writes on one line."""
     from ruamel.yaml.comments import CommentedSeq
 
     if isinstance(value, dict):
@@ -190,7 +200,7 @@ def _yaml(text: str) -> YAML:
 
 
 def _indent(text: str) -> int:
-    """The first indentation of the file."""
+    """Return the width of the first indentation in the file."""
     for line in text.split("\n"):
         bare = line.lstrip(" ")
         if bare and not bare.startswith(("#", "-")) and len(bare) < len(line):

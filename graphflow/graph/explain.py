@@ -1,4 +1,4 @@
-"""How the names of a graph come about: what a class says, the namespace, and the rule that changed it, with lines."""
+"""Explanations of a graph's names: the name in the class, the namespace, and the remap rule, with their places."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _VERBS = {
 
 
 def names(plan: Plan, interfaces: Interfaces) -> dict[str, list[str]]:
-    """Lines that explain each name of a graph: its nodes, topics, services and actions.
+    """Return lines that explain each name of a graph: nodes, topics, services and actions.
 
-    Names that are made at run time are not among them.
+    Names made at run time are not included.
     """
     found: dict[str, list[str]] = {}
     for node in plan.nodes:

@@ -24,10 +24,10 @@ from graphflow.machines.restarts import BACKOFF, POLICIES
 from graphflow.names import nearest
 
 FROM_GROUPS = " of groups"
-"""Ends the keys under which a node has what its groups give it; no file can say them."""
+"""Suffix of the keys for what a node has from its groups; no file can contain them."""
 
 NO_CLASS = "-"
-"""Stands for the class of a foreign program, which has none."""
+"""Placeholder for the class of a foreign program, which has none."""
 _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
 
 
@@ -38,7 +38,7 @@ def _class_path(text: str) -> str:
 
 
 def class_meant(text: str) -> str:
-    """What to write in place of a class that is none: of a file, of dots only, of a module with a hyphen."""
+    """Return the correction of an invalid class path: of a file, of dots only, of a module with a hyphen."""
     path, colon, name = text.partition(":")
     module = re.sub(r"\.py$", "", path.strip()).replace("/", ".").strip(".")
     if "-" in module and _CLASS.match(f"{module.replace('-', '_')}:{name.strip() or 'A'}"):
@@ -61,25 +61,25 @@ def _interface_type(text: str) -> str:
 
 
 def _graph_name(text: str) -> str:
-    # The name becomes a folder.
+    # A run has a folder of this name.
     if not re.match(r"\w[\w.-]*\Z", text):
         raise ValueError(f"{text!r} is not a name for a graph; use letters, digits, _, - and .")
     return text
 
 
-def _command(words: list[Any]) -> list[Any]:
+def _command(words: list[object]) -> list[object]:
     if not words:
         raise ValueError("command: is empty; write the program and its words: command: [rviz2, -d, robot.rviz]")
     return words
 
 
-def _limit(value: Any) -> Any:
+def _limit(value: object) -> object:
     if value != "none" and (not isinstance(value, int) or isinstance(value, bool) or value < 1):
         raise ValueError(f"limit: expected 1 or more, or none for no limit, got {value!r}")
     return value
 
 
-def _call_timeout(value: Any) -> Any:
+def _call_timeout(value: object) -> object:
     if value != "never" and (not isinstance(value, (int, float)) or isinstance(value, bool) or not value > 0):
         raise ValueError(f"call_timeout: expected seconds, or never, got {value!r}")
     return value
@@ -98,7 +98,7 @@ _MEANT = {
     "type: double": "float",
     "type: boolean": "bool",
 }
-"""Words of other tools for values."""
+"""Values of other tools, with those of graph files."""
 
 
 def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
@@ -113,22 +113,22 @@ def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
 
 
 def _enum(words: Iterable[str]) -> WithJsonSchema:
-    """One of these, or a text with a substitution that becomes one of them."""
+    """Return the schema of one of some texts, or of a text with a substitution that becomes one."""
     return WithJsonSchema({"anyOf": [{"enum": list(words)}, {"type": "string", "pattern": r"\$\("}]})
 
 
 _OF_COMPOSE = {"service_started": "ready", "service_healthy": "ready", "service_completed_successfully": "done"}
-"""What docker-compose waits for."""
+"""The conditions of docker-compose, with those of `after:`."""
 
 
-def _awaited(value: Any) -> str:
-    """What is waited for, in docker-compose's words too; empty if it is none of those."""
+def _awaited(value: object) -> str:
+    """Return a condition of `after:`, perhaps from one of docker-compose; empty for any other value."""
     word = value.get("condition") if isinstance(value, dict) else value
     return _OF_COMPOSE.get(word, word if word in AFTER else "") if isinstance(word, str) else ""
 
 
-def _after(value: Any) -> Any:
-    """As a mapping from names to what is waited for; a word alone waits for the usual."""
+def _after(value: object) -> object:
+    """Convert `after:` to a mapping from names to conditions; a name alone has the default condition, empty here."""
     if isinstance(value, str):
         return {value: ""}
     if isinstance(value, list) and all(isinstance(name, str) for name in value):
@@ -144,8 +144,8 @@ def _after(value: Any) -> Any:
 
 Scalar = StrictBool | StrictInt | StrictFloat | StrictStr
 EnvValue = StrictStr | StrictInt | StrictFloat
-Condition = Any
-"""True, false, or a text that is one of them once substitutions are made."""
+Condition = object
+"""True, false, or a text that becomes one of them by substitution."""
 
 ARG_TYPES: Mapping[str, tuple[tuple[type, ...], str]] = {
     "bool": ((bool,), "true or false"),
@@ -154,9 +154,9 @@ ARG_TYPES: Mapping[str, tuple[tuple[type, ...], str]] = {
     "str": ((str,), "text"),
     "list": ((list,), "a list"),
 }
-"""What `type:` of an argument may say: Python's types, and words for them."""
+"""The values of an argument's `type:`, with Python's types and their names in messages."""
 AFTER = ("ready", "exited", "done")
-"""What can be waited for: a node that is ready, one that has ended in any way, one that has ended well."""
+"""The conditions of `after:`: a node is ready, has exited in any way, or has exited successfully."""
 ON_EXIT = ("ignore", "restart", "shutdown")
 STRATEGIES = ("one_for_one", "rest_for_one", "one_for_all")
 LIFECYCLE = ("unconfigured", "inactive", "active")
@@ -170,8 +170,8 @@ class _Model(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _drop_empty(cls, data: Any) -> Any:
-        """A key with no value, perhaps because its lines are commented out, counts as absent."""
+    def _drop_empty(cls, data: object) -> object:
+        """Drop keys without a value, perhaps because the lines below them are commented out."""
         if data is None:
             return {}
         if not isinstance(data, dict):
@@ -181,9 +181,9 @@ class _Model(BaseModel):
 
 
 class Arg(_Model):
-    """A value that `name:=value` on the command line sets."""
+    """An argument, set by `name:=value` on the command line."""
 
-    default: Any = None
+    default: object = None
     doc: StrictStr = ""
     unit: StrictStr = ""
     type: Annotated[StrictStr, AfterValidator(_one_of("type", tuple(ARG_TYPES))), _enum(ARG_TYPES)] | None = None
@@ -191,7 +191,7 @@ class Arg(_Model):
 
 
 class GroupSpec(_Model):
-    """One concurrency group of a node; written as a list of handlers when nothing else needs saying."""
+    """A concurrency group of a node; a list of handlers for short."""
 
     handlers: StrictStr | list[StrictStr] = []
     limit: Annotated[Any, AfterValidator(_limit)] = None
@@ -202,12 +202,12 @@ class GroupSpec(_Model):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_list(cls, data: Any) -> Any:
+    def _from_list(cls, data: object) -> object:
         return {"handlers": data} if isinstance(data, (list, str)) else data
 
 
 class RestartSpec(_Model):
-    """When a node that has ended is started again; written as one word when nothing else needs saying."""
+    """The restart policy of a node; one word for short."""
 
     policy: Annotated[StrictStr, AfterValidator(_one_of("restart", POLICIES)), _enum(POLICIES)] = "on_failure"
     delay: StrictFloat | StrictInt = Field(BACKOFF.delay, gt=0)
@@ -217,17 +217,17 @@ class RestartSpec(_Model):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_word(cls, data: Any) -> Any:
+    def _from_word(cls, data: object) -> object:
         if isinstance(data, bool):
             raise ValueError(f"restart: expected a word; write restart: {'always' if data else 'never'}")
         return {"policy": data} if isinstance(data, str) else data
 
 
 class _Settings(_Model):
-    """What a node, or a group for all its nodes, may say."""
+    """The settings of a node, or of a group for all its nodes."""
 
     namespace: StrictStr = ""
-    params: dict[str, Any] = {}
+    params: dict[str, object] = {}
     remap: dict[str, StrictStr] = {}
     env: dict[str, EnvValue] = {}
     restart: RestartSpec | None = None
@@ -240,9 +240,9 @@ class _Settings(_Model):
 
 
 OF_CLASSES = ("class", "concurrency", "process")
-"""Keys that only a node with a class can have."""
+"""Keys that need a class."""
 OF_PACKAGES = ("pkg", "exec", "args", "keep_names", "prefix")
-"""Keys that only an executable of a package can have."""
+"""Keys that need an executable of a package."""
 OF_NODES = (*OF_CLASSES, *OF_PACKAGES, "lifecycle", "params", "params_file", "remap", "log_level")
 """Keys that a foreign program cannot have."""
 _HELP = {
@@ -271,13 +271,13 @@ class NodeSpec(_Settings):
     process: StrictStr = ""
     after: After = {}
     concurrency: dict[str, GroupSpec] = {}
-    shared_params: dict[str, Any] = Field({}, alias="params of groups")
+    shared_params: dict[str, object] = Field({}, alias="params of groups")
     shared_remap: dict[str, StrictStr] = Field({}, alias="remap of groups")
 
     @model_validator(mode="before")
     @classmethod
-    def _program(cls, data: Any) -> Any:
-        """A program has no class, and none of what only a node can be given; one of a package has names and values."""
+    def _program(cls, data: object) -> object:
+        """Validate the keys that depend on whether a node is a class, an executable of a package, or a program."""
         if not isinstance(data, dict):
             return data
         has = {key for key in data if data[key] is not None}
@@ -310,7 +310,7 @@ class NodeSpec(_Settings):
 
 
 class StepSpec(_Model):
-    """Something done once, after nodes and other steps: a call, parameters set, a goal, a wait, a message, the end."""
+    """A step, done once: a call, parameters, a goal, a wait, a delay, a log message, or a shutdown."""
 
     call: StrictStr = ""
     set_: StrictStr = Field("", alias="set")
@@ -320,8 +320,8 @@ class StepSpec(_Model):
     log: StrictStr = ""
     shutdown: StrictStr = ""
     type: Annotated[StrictStr, AfterValidator(_interface_type)] | None = None
-    request: dict[str, Any] = {}
-    params: dict[str, Any] = {}
+    request: dict[str, object] = {}
+    params: dict[str, object] = {}
     after: After = {}
     timeout: StrictFloat | StrictInt = Field(10.0, gt=0)
     if_: Condition = Field(None, alias="if")
@@ -332,44 +332,44 @@ class GroupBlock(_Settings):
     """Nodes and steps that share a namespace and settings."""
 
     after: After = {}
-    nodes: dict[str, Any] = {}
-    steps: dict[str, Any] = {}
-    group: Any = None
-    for_: Any = Field(None, alias="for")
-    include: Any = None
+    nodes: dict[str, object] = {}
+    steps: dict[str, object] = {}
+    group: object = None
+    for_: object = Field(None, alias="for")
+    include: object = None
 
 
 class ForBlock(GroupBlock):
-    """A group that is there once for each of several values."""
+    """A group that is repeated for each of several values."""
 
     var: StrictStr
-    in_: Any = Field(alias="in")
+    in_: object = Field(alias="in")
 
 
 class IncludeBlock(_Model):
-    """Another graph file as a part of this one; written as its name when nothing else needs saying."""
+    """An included graph file; its name for short."""
 
     file: StrictStr
-    args: dict[str, Any] = {}
-    override: dict[str, Any] = {}
+    args: dict[str, object] = {}
+    override: dict[str, object] = {}
     namespace: StrictStr = ""
     if_: Condition = Field(None, alias="if")
     unless: Condition = None
 
     @model_validator(mode="before")
     @classmethod
-    def _from_name(cls, data: Any) -> Any:
+    def _from_name(cls, data: object) -> object:
         return {"file": data} if isinstance(data, str) else data
 
 
 class Net(_Model):
-    """What others may do over the network."""
+    """Permissions of others on the network."""
 
     allow_control: StrictBool = False
 
 
 class GraphFile(_Model):
-    """A whole file."""
+    """A graph file."""
 
     name: Annotated[StrictStr, AfterValidator(_graph_name)] | None = None
     domain: StrictInt | None = Field(None, ge=0)
@@ -379,24 +379,24 @@ class GraphFile(_Model):
     steps: dict[str, StepSpec] = {}
     group: GroupBlock | list[GroupBlock] = []
     for_: ForBlock | list[ForBlock] = Field([], alias="for")
-    templates: dict[str, Any] = {}
+    templates: dict[str, object] = {}
     include: IncludeBlock | list[IncludeBlock] = []
-    override: dict[str, Any] = {}
+    override: dict[str, object] = {}
     deadlock: Annotated[
         StrictStr, AfterValidator(_one_of("deadlock", get_args(DeadlockPolicy))), _enum(get_args(DeadlockPolicy))
     ] = "raise"
     call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
     strategy: Annotated[StrictStr, AfterValidator(_one_of("strategy", STRATEGIES)), _enum(STRATEGIES)] = "one_for_one"
-    console: Any = None
-    """Read by `graph.console`."""
+    console: object = None
+    """Read by `console.section`."""
 
 
 def keys_of(model: type[BaseModel]) -> list[str]:
-    """The keys a model knows, as written in a file."""
+    """Return the keys of a model, as files have them."""
     keys = [f.alias or name for name, f in model.model_fields.items()]
     return [key for key in keys if not key.endswith(FROM_GROUPS)]
 
 
 TOP_KEYS = tuple(keys_of(GraphFile))
 BLOCKS = ("nodes", "steps", "group", "for", "include")
-"""Keys of a file, group or loop under which nodes and steps are."""
+"""Keys of a file, group or loop that contain nodes and steps."""

@@ -1,17 +1,17 @@
-"""Net profiles: files that say how a machine's graphs may be reached over a network, and by whom.
+"""Net profiles: files with the addresses and certificates by which graphs are reached over a network.
 
     listen: tls/0.0.0.0:7448
     tls: {ca: ca.pem, certificate: laptop.pem, key: laptop.key}
     allow: [/turtle1/**]
 
-Both sides of a link show a certificate that `ca` has signed; nothing else gets in. What is not allowed stays here,
-and graphflow's own traffic always does.
+Both sides of a link present a certificate signed by `ca`; no other connection is accepted. Names that are not allowed,
+and all of graphflow's own traffic, stay on the machine.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictStr, ValidationError
 
@@ -20,6 +20,9 @@ from graphflow.graph.model import keys_of
 from graphflow.graph.zenoh_address import endpoint
 from graphflow.markup import source
 from graphflow.names import did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 
 def _encrypted(text: str) -> str:
@@ -47,7 +50,7 @@ class Certificates(_Model):
 
 
 class NetProfile(_Model):
-    """A net profile. Names in `allow` are topics and services, with * for one part and ** for any number."""
+    """A net profile; names in `allow` are topics and services, with * for one part and ** for any number."""
 
     listen: Annotated[StrictStr, AfterValidator(_encrypted)] | None = None
     connect: list[Annotated[StrictStr, AfterValidator(_encrypted)]] = []
@@ -56,10 +59,10 @@ class NetProfile(_Model):
 
 
 def read_profile(path: Path) -> NetProfile:
-    """Read a net profile; its files become absolute paths.
+    """Read a net profile and make its file names absolute.
 
     Raises:
-        GraphFileError: Every mistake in it, with its place.
+        GraphFileError: The profile has mistakes; all of them, with their places.
     """
     src = source.read_file(path, str(path))
     try:
@@ -80,7 +83,7 @@ def read_profile(path: Path) -> NetProfile:
     return profile.model_copy(update={"tls": Certificates(**files)})
 
 
-def _problem(src: source.Source, fault: Any) -> Problem:
+def _problem(src: source.Source, fault: ErrorDetails) -> Problem:
     path = tuple(part for part in fault["loc"])
     if fault["type"] == "extra_forbidden":
         known = keys_of(Certificates if path[0] == "tls" else NetProfile)

@@ -1,14 +1,14 @@
-"""ROS 2's parameter files: which parameters they hold for which node, and how to write one.
+"""ROS 2's parameter files: parameters by node.
 
     /turtle1/follower:            the node's full name, or /** for all nodes, /* for those of one level
       ros__parameters:
         gain: 2.0
         limits: {speed: 1.0}      the same as limits.speed
 
-A key without its leading slash means the same, and namespaces may be nested mappings. Where several sections match a
-node, the later one counts.
+A key without its leading slash means the same, and namespaces may be nested mappings. If several sections match a
+node, the last one wins.
 
-Source: rcl_yaml_param_parser. Unlike there, a section that matches no node is reported as a mistake.
+Source: rcl_yaml_param_parser. Unlike there, a section that matches no node is an error.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.plan import Setting
@@ -29,34 +29,36 @@ PARAMETERS = "ros__parameters"
 
 
 class Section(NamedTuple):
-    """What a file has for the nodes that a pattern matches."""
+    """The parameters for the nodes that match a pattern."""
 
     pattern: str
-    """A node's full name, perhaps with `*` for one part of it and `**` for any number."""
+    """A node's full name; `*` matches one part of it and `**` any number."""
     place: Place
     params: dict[str, Setting]
 
     @property
     def is_exact(self) -> bool:
-        """Whether the section is for one node by name."""
+        """Whether the section names a single node."""
         return "*" not in self.pattern
 
     def fits(self, node: str) -> bool:
-        """Whether the section is for the node with this full name."""
+        """Return whether the section matches a node's full name."""
         parts = [{"**": ".*", "*": "[^/]+"}.get(p, re.escape(p)) for p in self.pattern[1:].split("/")]
         return re.fullmatch("/" + "/".join(parts).replace(".*/", "(?:.*/)?"), node) is not None
 
 
-def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems: list[Problem]) -> dict[str, Setting]:
-    """Parameters with nested mappings flattened to dotted names.
+def flatten(
+    src: Source, params: Mapping[str, object], path: source.Path, problems: list[Problem]
+) -> dict[str, Setting]:
+    """Flatten nested mappings of parameters to dotted names.
 
     Args:
-        path: Where `params` is in `src`.
-        problems: Collects what is wrong.
+        path: The path of `params` in `src`.
+        problems: The list to which problems are added.
     """
     found: dict[str, Setting] = {}
 
-    def walk(prefix: str, values: Mapping[str, Any], at: source.Path) -> None:
+    def walk(prefix: str, values: Mapping[str, object], at: source.Path) -> None:
         for key, value in values.items():
             name, place = prefix + key, src.place((*at, key))
             if isinstance(value, dict):
@@ -75,23 +77,23 @@ def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems:
 
 
 def _instead_of(key: str) -> str:
-    """The line to write for a key without a value."""
+    """Return the correction of a key without a value."""
     if key.isdecimal():
         return "a number is written with a point, as 2.5"
-    word, sign, given = re.fullmatch(r"([^:=]*)(:?=?)(.*)", key, re.DOTALL).groups()  # type: ignore[union-attr]
+    word, sign, given = re.findall(r"\A([^:=]*)(:?=?)(.*)\Z", key, re.DOTALL)[0]
     if sign == ":" and given:
         return f"as a whole it is read as a name: write {word}: {given.strip()}, without quotes"
     return f"write {word}: {given.strip()}" if sign and given else "an empty string is ''"
 
 
 def read(path: Path, name: str) -> list[Section]:
-    """The sections of a file.
+    """Read the sections of a file.
 
     Args:
         name: The file as messages show it.
 
     Raises:
-        GraphFileError: The file cannot be read, or is not a parameter file; every mistake with its place.
+        GraphFileError: The file cannot be read, or is no parameter file; all mistakes, with their places.
     """
     src = source.read_file(path, name, is_params=True)
     problems: list[Problem] = []
@@ -104,7 +106,7 @@ def read(path: Path, name: str) -> list[Section]:
 
 
 def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
-    def walk(values: Mapping[str, Any], at: source.Path) -> Iterator[Section]:
+    def walk(values: Mapping[str, object], at: source.Path) -> Iterator[Section]:
         fault = _not_indented(src, values, at)
         if fault is not None:
             problems.append(fault)
@@ -139,8 +141,8 @@ def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
     yield from walk(src.data, ())
 
 
-def _not_indented(src: Source, values: Mapping[str, Any], at: source.Path) -> Problem | None:
-    """The problem of a mapping in which the parameters stand beside their node, or beside what they are below."""
+def _not_indented(src: Source, values: Mapping[str, object], at: source.Path) -> Problem | None:
+    """Return the problem of a mapping whose parameters are not indented below their node."""
     if PARAMETERS not in values:
         return None
     bare = next((key for key, value in values.items() if value is None), None)
@@ -154,13 +156,13 @@ def _not_indented(src: Source, values: Mapping[str, Any], at: source.Path) -> Pr
 
 
 def _with_colon(value: object) -> str:
-    """The end of a sentence on what is no mapping: how its first parameter is written."""
+    """Return the correction of a text in place of a mapping of parameters."""
     found = re.match(r"([\w.]+)\s*[=:]\s*(\S+)", value) if isinstance(value, str) else None
     return ", for example {rate: 2.0}" if found is None else f"; write {found[1]}: {found[2]}"
 
 
 def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
-    """What the sections have for the node with this full name."""
+    """Return the parameters of all sections that match a node's full name."""
     found: dict[str, Setting] = {}
     for section in sections:
         if section.fits(node):
@@ -169,7 +171,7 @@ def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
 
 
 def meant(sections: Sequence[Section], node: str) -> str:
-    """The end of a sentence on a file that has nothing for a node: the section that is to be written otherwise."""
+    """Return a hint for a file without parameters for a node: the section that may be misspelt."""
     places = {section.pattern: section.place for section in sections}
     near = nearest(node, places)
     return (
@@ -178,7 +180,7 @@ def meant(sections: Sequence[Section], node: str) -> str:
 
 
 def strays(sections: Sequence[Section], nodes: Sequence[str]) -> list[Problem]:
-    """The sections that match none of the nodes, as problems that name the nearest."""
+    """Return the problems of sections that match none of the nodes."""
     return [
         Problem(s.place, f"there is no node {s.pattern}{did_you_mean(s.pattern, nodes)}")
         for s in sections
@@ -186,20 +188,20 @@ def strays(sections: Sequence[Section], nodes: Sequence[str]) -> list[Problem]:
     ]
 
 
-# Words that ROS 2's parser or YAML 1.1 would not read as text.
+# ROS 2's parser and YAML 1.1 do not read these as text.
 _NOT_TEXT = re.compile(r"(y|yes|n|no|on|off|true|false|null|nan|inf|infinity)\Z", re.IGNORECASE)
 _PLAIN = re.compile(r"[A-Za-z_/][\w./-]*( [\w./-]+)*\Z")
 
 
-def write(node: str, values: Mapping[str, Any]) -> str:
-    """A node's parameters as a file that both this reader and ROS 2's read back as the same values and types."""
-    tree: dict[str, Any] = {}
+def write(node: str, values: Mapping[str, object]) -> str:
+    """Return a node's parameters as a file that this reader and ROS 2's both read with the same values and types."""
+    tree: dict[str, object] = {}
     for name in sorted(values):
         *above, last = name.split(".")
         branch = tree
         for part in above:
             inner = branch.setdefault(part, {})
-            if not isinstance(inner, dict):  # both `a` and `a.b` are parameters: one cannot be nested in the other
+            if not isinstance(inner, dict):  # `a` and `a.b` are both parameters, so `a` cannot be a mapping
                 break
             branch = inner
         else:
@@ -210,7 +212,7 @@ def write(node: str, values: Mapping[str, Any]) -> str:
     return "\n".join([f"{node}:", f"  {PARAMETERS}:", *lines]) + "\n"
 
 
-def _written(tree: Mapping[str, Any], depth: int) -> Iterator[str]:
+def _written(tree: Mapping[str, object], depth: int) -> Iterator[str]:
     pad = "  " * depth
     for key, value in tree.items():
         name = key if _PLAIN.match(key) else _quoted(key)
@@ -221,7 +223,7 @@ def _written(tree: Mapping[str, Any], depth: int) -> Iterator[str]:
             yield f"{pad}{name}: {_value(value)}"
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):

@@ -1,4 +1,4 @@
-"""A Plan: everything that would run, resolved. Frozen, complete, printable, and readable back from JSON."""
+"""Plans: resolved graph files, with everything that would run."""
 
 from __future__ import annotations
 
@@ -13,41 +13,42 @@ from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import Remap, did_you_mean
 
-Deed = Literal["call", "set", "goal", "wait", "delay", "log", "shutdown"]
-"""What a step does: a service call, parameters set, a goal to its end, a wait for a name, or for some seconds."""
+StepKind = Literal["call", "set", "goal", "wait", "delay", "log", "shutdown"]
+"""Kinds of steps: a service call, parameters, a goal until its end, waits for a name or a time, a message, the end."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A parameter value and where it was written."""
+    """A parameter value and its place."""
 
     value: Any
     place: Place
     is_optional: bool = False
-    """Whether nodes without such a parameter ignore it, since it was written for many nodes at once."""
+    """Whether nodes without such a parameter ignore it, as it is set for many nodes at once."""
     is_unchecked: bool = False
-    """Whether it may be that no node has such a parameter."""
+    """Whether no node need have such a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A remap rule and where it was written."""
+    """A remap rule and its place."""
 
     match: str
     replacement: str
     place: Place
     is_optional: bool = False
-    """Whether nodes without such a name ignore it, since it was written for many nodes at once."""
+    """Whether nodes without such a name ignore it, as it is set for many nodes at once."""
     is_unchecked: bool = False
-    """Whether it may be that no node has such a name."""
+    """Whether no node need have such a name."""
 
     def remap(self) -> Remap:
+        """Return the rule without flags, for a resolver."""
         return Remap(self.match, self.replacement, source=str(self.place))
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedGroup:
-    """A group of a node, and where each handler was put in it."""
+    """A concurrency group of a node, with the places of its handlers."""
 
     change: GroupChange
     place: Place
@@ -67,7 +68,7 @@ class PlannedGroup:
 
 @dataclass(frozen=True, slots=True)
 class PlannedNode:
-    """One node as it would run."""
+    """A node as it would run."""
 
     name: str
     """Full name."""
@@ -77,42 +78,42 @@ class PlannedNode:
     params: dict[str, Setting] = field(default_factory=dict)
     remaps: tuple[Rule, ...] = ()
     process: str = ""
-    """Nodes with the same word share a process; empty for a process of its own."""
+    """Name of the process, which nodes may share; empty for a process of its own."""
     env: dict[str, str] = field(default_factory=dict)
     after: dict[str, str] = field(default_factory=dict)
-    """Full names of nodes, or names of steps, that come first, and whether they must be `ready`, `exited` or `done`."""
+    """Predecessors: full names of nodes or names of steps, each with its condition, `ready`, `exited` or `done`."""
     concurrency: dict[str, PlannedGroup] = field(default_factory=dict)
-    """What differs from the groups the class declares, by group name."""
+    """Changes of the groups that the class declares, by group name."""
     command: tuple[str, ...] = ()
-    """A foreign program with its words, in place of a class."""
+    """The command line of a foreign program, in place of a class."""
     executable: str = ""
-    """Package and executable of a program that is passed its name, remaps and parameters as ROS 2's words."""
+    """Package and executable of a program that takes ROS 2's arguments: name, remaps and parameters."""
     keeps_names: bool = False
-    """Whether the nodes of such a program are called as its code has it."""
+    """Whether the nodes of such a program keep the names in its code."""
     params_files: tuple[str, ...] = ()
-    """Parameter files that such a program reads itself, since only it knows the names of its nodes."""
+    """Parameter files that such a program reads itself, as only it knows the names of its nodes."""
     restart: Backoff = BACKOFF
     on_exit: str = "ignore"
     critical: bool = False
-    """Whether the graph goes down with it when it fails."""
+    """Whether the graph shuts down when it fails."""
     log_level: str = ""
     lifecycle: str = ""
-    """The state that a lifecycle node is brought to before it counts as ready; empty to leave it alone."""
+    """The state to which a lifecycle node is brought before it counts as ready; empty for none."""
     lifecycle_place: Place = NOWHERE
     is_debugged: bool = False
     """Whether its process waits for a debugger."""
 
     @property
     def what(self) -> str:
-        """What it is, for a reader: a class, an executable of a package, or a program and its words."""
+        """The class, the executable of a package, or the command line, for messages."""
         return self.class_path or self.executable or shlex.join(self.command)
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data that `node_from_json` reads back."""
+        """Return the node as JSON, which `node_from_json` reads."""
         return asdict(self)
 
     def with_threads(self, handlers: Sequence[str]) -> PlannedNode:
-        """The same node with handlers in threads."""
+        """Return the node with some handlers in threads."""
         groups = self.regrouping("").in_threads(handlers).groups
         planned = {
             name: self.concurrency.get(name, PlannedGroup(change, self.place)) for name, change in groups.items()
@@ -120,10 +121,10 @@ class PlannedNode:
         return replace(self, concurrency={name: replace(group, change=groups[name]) for name, group in planned.items()})
 
     def regrouping(self, file: str) -> Regrouping:
-        """What the graph file says of the node's groups, and where.
+        """Return the graph file's changes of the node's groups, and their place.
 
         Args:
-            file: The graph's own file, which may include the one that has the node.
+            file: The graph's own file, which may include the node's file.
         """
         groups = {name: group.change for name, group in self.concurrency.items()}
         if self.place.file == file:
@@ -133,18 +134,18 @@ class PlannedNode:
 
 @dataclass(frozen=True, slots=True)
 class PlannedStep:
-    """Something done once."""
+    """A step of the graph, done once."""
 
     name: str
-    do: Deed
+    do: StepKind
     target: str
-    """Full name of the service, node or action, or of what is waited for; the text of a `log` or `shutdown`."""
+    """Full name of the service, node or action, or of the name waited for; the text of a `log` or `shutdown`."""
     place: Place
     target_place: Place
     request_place: Place
     request: dict[str, Any] = field(default_factory=dict)
     field_places: dict[str, Place] = field(default_factory=dict)
-    """Where each field of the request was written."""
+    """Places of the fields of the request."""
     type: str | None = None
     after: dict[str, str] = field(default_factory=dict)
     timeout: float = 10.0
@@ -152,33 +153,33 @@ class PlannedStep:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A graph file resolved with its arguments."""
+    """A resolved graph file: frozen, complete, printable, and convertible to JSON and back."""
 
     name: str
     file: str
     root: str
-    """The folder its classes are imported from."""
+    """The folder from which its classes are imported."""
     nodes: tuple[PlannedNode, ...]
     steps: tuple[PlannedStep, ...] = ()
     args: dict[str, Any] = field(default_factory=dict)
     domain: int | None = None
     deadlock: DeadlockPolicy = "raise"
     call_timeout: float | None = CALL_TIMEOUT
-    """Seconds that calls without a timeout of their own wait; None for ever."""
+    """Default timeout of calls in seconds; None for no limit."""
     strategy: str = "one_for_one"
-    """What is started again with a process that has failed: it alone, `rest_for_one` or `one_for_all`."""
+    """The restart strategy: which processes restart when one fails, `one_for_one`, `rest_for_one` or `one_for_all`."""
     allow_control: bool = False
     """Whether nodes may be loaded and unloaded over the network."""
     console: dict[str, Any] | None = None
-    """The windows and panes that a console opens with, as `graph.console` reads them."""
+    """The windows and panes of the console at its start, as `console.section` reads them."""
     remarks: tuple[str, ...] = ()
-    """Remarks, each with its place: oddities of ROS launch files, and settings that let others in."""
+    """Remarks, each with its place: oddities of ROS launch files, and settings that give others access."""
 
     def only(self, names: Iterable[str]) -> Plan:
-        """The part of the graph that some nodes need: they, and what comes before them.
+        """Return the part of the graph with some nodes and all their predecessors.
 
         Raises:
-            GraphFileError: There is no such node.
+            GraphFileError: A node does not exist.
         """
         items: list[PlannedNode | PlannedStep] = [*self.nodes, *self.steps]
         known = {item.name: item.after for item in items}
@@ -197,21 +198,23 @@ class Plan:
         return replace(self, nodes=nodes, steps=tuple(step for step in self.steps if step.name in needed))
 
     def classes(self) -> list[str]:
-        """The classes of the nodes, each once; foreign programs have none."""
+        """Return the classes of the nodes, each once; foreign programs have none."""
         return sorted({node.class_path for node in self.nodes if not node.command})
 
     def processes(self) -> dict[str, list[PlannedNode]]:
-        """Nodes by the process they share, in the order of the file; a process of one node has the node's name."""
+        """Return the nodes by process, in the order of the file; a process of one node has the node's name."""
         found: dict[str, list[PlannedNode]] = {}
         for node in self.nodes:
             found.setdefault(node.process or node.name, []).append(node)
         return found
 
     def to_json(self) -> dict[str, Any]:
+        """Return the plan as JSON, which `from_json` reads."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Plan:
+        """Read a plan from JSON."""
         return cls(
             **{k: v for k, v in data.items() if k not in ("nodes", "steps", "remarks")},
             nodes=tuple(node_from_json(n) for n in data["nodes"]),
@@ -223,7 +226,7 @@ class Plan:
         return "\n".join(self.lines())
 
     def lines(self) -> Iterable[str]:
-        """The plan for a reader, with the place of every setting."""
+        """Yield the plan as lines for a reader, with the place of every setting."""
         yield f"graph {self.name}  ({self.file}; classes from {self.root})"
         if self.domain is not None:
             yield f"domain {self.domain}"
@@ -238,39 +241,47 @@ class Plan:
         for name, value in self.args.items():
             yield f"  {name}:={value}"
         for node in self.nodes:
-            yield f"{node.name}"
-            yield f"  class    {node.class_path}" if node.class_path else f"  command  {shlex.join(node.command)}"
-            if node.process:
-                yield f"  process  {node.process}"
-            yield from _after_line(node.after)
-            if node.restart != BACKOFF:
-                yield f"  restart  {node.restart}"
-            if node.on_exit != "ignore":
-                yield f"  on_exit  {node.on_exit}"
-            if node.critical:
-                yield "  critical"
-            if node.keeps_names:
-                yield "  names    as its code has them"
-            for file in node.params_files:
-                yield f"  params   of {file}"
-            if node.log_level:
-                yield f"  logs     from {node.log_level}"
-            if node.lifecycle:
-                yield f"  becomes  {node.lifecycle}"
-            for name, setting in node.params.items():
-                yield f"  param    {name} = {setting.value!r}  # {setting.place}"
-            for rule in node.remaps:
-                yield f"  remap    {rule.match} -> {rule.replacement}  # {rule.place}"
-            for name, group in node.concurrency.items():
-                yield f"  group    {name}: {group}  # {group.place}"
-            for name, value in node.env.items():
-                yield f"  env      {name}={value}"
+            yield from _node_lines(node)
         yield from self.remarks
         for step in self.steps:
             yield f"step {step.name}"
             yield from _after_line(step.after)
             sent = "" if step.do in ("wait", "delay", "log", "shutdown") else step.request
             yield f"  {step.do:8} {step.target} {sent}".rstrip()
+
+
+def _node_lines(node: PlannedNode) -> Iterator[str]:
+    yield node.name
+    yield f"  class    {node.class_path}" if node.class_path else f"  command  {shlex.join(node.command)}"
+    if node.process:
+        yield f"  process  {node.process}"
+    yield from _after_line(node.after)
+    yield from _run_lines(node)
+    for name, setting in node.params.items():
+        yield f"  param    {name} = {setting.value!r}  # {setting.place}"
+    for rule in node.remaps:
+        yield f"  remap    {rule.match} -> {rule.replacement}  # {rule.place}"
+    for name, group in node.concurrency.items():
+        yield f"  group    {name}: {group}  # {group.place}"
+    for name, value in node.env.items():
+        yield f"  env      {name}={value}"
+
+
+def _run_lines(node: PlannedNode) -> Iterator[str]:
+    if node.restart != BACKOFF:
+        yield f"  restart  {node.restart}"
+    if node.on_exit != "ignore":
+        yield f"  on_exit  {node.on_exit}"
+    if node.critical:
+        yield "  critical"
+    if node.keeps_names:
+        yield "  names    as its code has them"
+    for file in node.params_files:
+        yield f"  params   of {file}"
+    if node.log_level:
+        yield f"  logs     from {node.log_level}"
+    if node.lifecycle:
+        yield f"  becomes  {node.lifecycle}"
 
 
 def _after_line(after: Mapping[str, str]) -> Iterator[str]:
@@ -297,7 +308,7 @@ _PLAIN = (
 
 
 def node_from_json(data: dict[str, Any]) -> PlannedNode:
-    """A node from its part of `Plan.to_json`."""
+    """Read a node from JSON."""
     return PlannedNode(
         **{k: data[k] for k in _PLAIN},
         place=Place(*data["place"]),

@@ -1,4 +1,4 @@
-"""A graph file and its arguments resolved into a Plan; every mistake found is reported, with its place."""
+"""Resolution of a graph file and its arguments to a Plan, with all mistakes and their places."""
 
 from __future__ import annotations
 
@@ -54,11 +54,11 @@ def load(
         path: The file.
         given: Arguments from the command line, `name:=value`.
         env: The environment; the process's own if None.
-        run: What `$(command ...)` is carried out by; it stays as it is written without.
-        describe: What launch files in Python are run by; they are refused without.
+        run: Runs the programs of `$(command ...)`; without it, such substitutions stay as they are.
+        describe: Runs launch files in Python; they are refused without.
 
     Raises:
-        GraphFileError: Every mistake that could be found.
+        GraphFileError: The file has mistakes; all that could be found.
     """
     problems = Problems()
     top = read(
@@ -74,7 +74,7 @@ def load(
 
 
 def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
-    """Resolve what `source.read` found. Arguments and errors as for `load`."""
+    """Resolve a graph file that has been read. Arguments and errors as for `load`."""
     return _resolve(tree(src), path, given, env, Problems())
 
 
@@ -131,7 +131,7 @@ def _resolve(
         steps=tuple(ordered_steps),
         args=expansion.arguments.values,
         domain=model.domain,
-        deadlock=model.deadlock,  # type: ignore[arg-type]  # its validator has looked
+        deadlock=model.deadlock,  # type: ignore[arg-type]  # one of the policies, by its validator
         call_timeout={None: CALL_TIMEOUT, "never": None}.get(model.call_timeout, model.call_timeout),
         strategy=model.strategy,
         allow_control=model.net.allow_control,
@@ -141,23 +141,23 @@ def _resolve(
 
 
 class _Programs:
-    """The programs of a graph; its workspace is read once, if any is of a package.
+    """The programs of a graph; the workspace is read at most once.
 
     Args:
-        graph_files: The graph files, whose folders relative paths start from, by the names that messages have for them.
+        graph_files: The graph files, to which paths are relative, by the names that messages have for them.
     """
 
     def __init__(self, src: Source, graph_files: Mapping[str, Path], outside: Outside, problems: Problems) -> None:
         self._src, self._files, self._outside, self._problems = src, graph_files, outside, problems
         self.left_out: dict[str | int, Problem] = {}
-        """Nodes of launch files, by name, whose programs nobody here has."""
+        """Nodes of launch files whose programs are not installed, by name."""
 
     @cached_property
     def _workspace(self) -> Workspace:
         return find_workspace(self._outside.root)
 
     def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
-        """The words that run a node's program: none for a class, None for one that is left out."""
+        """Return the command line of a node's program: empty for a class, None for one that is left out."""
         command = self._executable(spec, at) if spec.exec_ else self._foreign(spec, at)
         before = None if command is None else self._prefix(spec, at)
         if command is None or before is None:
@@ -165,7 +165,7 @@ class _Programs:
         return (*before, *command, *map(str, spec.args)) if spec.exec_ else command
 
     def _foreign(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
-        """The words of `command:`; None for a program that nobody here has, in a launch file."""
+        """Return the words of `command:`; None for a program of a launch file that is not installed."""
         words = tuple(map(str, spec.command))
         place = self._src.place((*at, "command"))
         if words and place.file in self._problems.launch_files and which(words[0], path=self._path) is None:
@@ -179,7 +179,7 @@ class _Programs:
         return self._outside.env.get("PATH")
 
     def _executable(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
-        """The words that run an executable of a package; None for one that is left out, since nobody here has it."""
+        """Return the command line of an executable; None for one that is left out, as it is not installed."""
         place = self._src.place((*at, "exec"))
         if not spec.pkg:
             return self._file(spec, place)
@@ -194,7 +194,7 @@ class _Programs:
             return ("ros2", "run", spec.pkg, spec.exec_)
 
     def _file(self, spec: NodeSpec, place: Place) -> tuple[str, ...]:
-        """The words that run an executable which is a file: a Python script, or anything else that can be run."""
+        """Return the command line of an executable given as a file: a Python script, or any executable file."""
         file = self._files[place.file].parent / spec.exec_
         if not file.is_file():
             self._problems.add(place, f"exec: there is no file {file}")
@@ -203,7 +203,7 @@ class _Programs:
         return ("graphflow", "run", str(file)) if file.suffix == ".py" else (str(file),)
 
     def _prefix(self, spec: NodeSpec, at: source.Path) -> list[str] | None:
-        """The words before a program's own; None for one that is left out, since nobody here has what they name."""
+        """Return the words of `prefix:`; None if the program is left out, as that of the prefix is not installed."""
         place = self._src.place((*at, "prefix"))
         try:
             words = shlex.split(spec.prefix)
@@ -226,20 +226,20 @@ class _Programs:
 
 
 class _ParamsFiles:
-    """The parameter files of a graph; each is read once.
+    """The parameter files of a graph; each is read at most once.
 
     Args:
-        graph_files: The graph files, whose folders relative paths start from, by the names that messages have for them.
+        graph_files: The graph files, to which paths are relative, by the names that messages have for them.
     """
 
     def __init__(self, src: Source, graph_files: Mapping[str, Path], problems: Problems) -> None:
         self._src, self._graph_files, self._problems = src, graph_files, problems
         self._files: dict[Path, list[Section]] = {}
         self._strict: set[Path] = set()
-        """Those whose sections must all be for nodes of the graph; ROS does not look at that."""
+        """Files named by graph files: all their sections must be for nodes of the graph, unlike in ROS."""
 
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
-        """What a node's files have for it, later files first."""
+        """Return the parameters for a node in its files; later files win."""
         found: dict[str, Setting] = {}
         for name, place in self._named(spec, at):
             path = self._path(name, place)
@@ -253,13 +253,13 @@ class _ParamsFiles:
                     place, f"{name} has nothing for {node}{params_file.meant(sections, node)}"
                 )
             settings = params_file.params_for(sections, node)
-            if place.file in self._problems.launch_files:  # ROS lets pass what the node does not have
+            if place.file in self._problems.launch_files:  # ROS ignores parameters that the node does not have
                 settings = {n: replace(s, is_optional=True, is_unchecked=True) for n, s in settings.items()}
             found |= settings
         return found
 
     def checked(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...]:
-        """The files of a program that reads them itself; what they have for which node is its own matter."""
+        """Return the parameter files of a program that reads them itself, once they are found valid."""
         found = [(self._path(name, place), place) for name, place in self._named(spec, at)]
         for path, place in found:
             if path not in self._files:
@@ -274,7 +274,7 @@ class _ParamsFiles:
         return self._graph_files[place.file].parent / name
 
     def _read(self, path: Path, place: Place) -> list[Section]:
-        if "$(" in str(path):  # which has been reported
+        if "$(" in str(path):  # a substitution that failed, which has been reported
             return []
         if not path.is_file():
             self._problems.add_unless_ros(place, no_file(path))
@@ -294,7 +294,7 @@ class _ParamsFiles:
 def _nodes(
     src: Source, model: GraphFile, files: _ParamsFiles, programs: _Programs, problems: Problems
 ) -> dict[str, PlannedNode]:
-    """The nodes by full name."""
+    """Return the nodes by full name."""
     nodes: dict[str, PlannedNode] = {}
     for name, spec in model.nodes.items():
         base: source.Path = ("nodes", name)
@@ -331,18 +331,18 @@ def _nodes(
 
 
 def _what_it_is(spec: NodeSpec) -> str:
-    """The key that says what is run."""
+    """Return the key of a node that names what runs."""
     given = {"command": spec.command, "pkg": spec.pkg, "exec": spec.exec_}
     return next((key for key, value in given.items() if value), "class")
 
 
 def executable_of(spec: NodeSpec) -> str:
-    """The package and the executable, or the file, that a node is; empty for others."""
+    """Return the package and executable of a node, or its file; empty for a class or a foreign program."""
     return f"{spec.pkg} {spec.exec_}".strip()
 
 
 def _params(src: Source, spec: NodeSpec, base: source.Path, problems: Problems) -> dict[str, Setting]:
-    """Parameters of a node's groups, which it need not have, and its own."""
+    """Return the parameters of a node; it need not declare those that come from its groups."""
     shared = params_file.flatten(src, spec.shared_params, (*base, f"params{FROM_GROUPS}"), problems)
     own = params_file.flatten(src, spec.params, (*base, "params"), problems)
     found = {name: replace(setting, is_optional=True) for name, setting in shared.items()} | own
@@ -362,7 +362,7 @@ def _restart(src: Source, spec: NodeSpec, base: source.Path, problems: Problems)
     if given is None:
         return BACKOFF
     numbers = (float(given.delay), float(given.max_delay), given.max_restarts, float(given.within))
-    return Backoff(given.policy, *numbers)  # type: ignore[arg-type]  # its validator has looked
+    return Backoff(given.policy, *numbers)  # type: ignore[arg-type]  # one of the policies, by its validator
 
 
 def _concurrency(
@@ -386,7 +386,7 @@ def _concurrency(
 
 
 def _check_env(nodes: Iterable[PlannedNode], problems: Problems) -> None:
-    """A process has one environment: nodes that share it must not contradict each other."""
+    """Report contradictory environments of nodes in one process."""
     seen: dict[tuple[str, str], tuple[str, str]] = {}
     for node in nodes:
         for name, value in node.env.items() if node.process else ():
@@ -397,7 +397,7 @@ def _check_env(nodes: Iterable[PlannedNode], problems: Problems) -> None:
 
 
 def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems: Problems) -> tuple[Rule, ...]:
-    """A node's own rules, and after them those of its groups, which need not fit it."""
+    """Return a node's own remap rules, then those of its groups, which need not match."""
     namespace, name = split(node)
     rules: list[Rule] = []
     for key, remap in (("remap", spec.remap), (f"remap{FROM_GROUPS}", spec.shared_remap)):
@@ -413,13 +413,13 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
             except InvalidName as error:
                 problems.add(place, str(error))
                 continue
-            is_ros = place.file in problems.launch_files  # which lets pass what the node does not have
+            is_ros = place.file in problems.launch_files  # ROS ignores rules that match nothing
             rules.append(Rule(match, replacement, place, is_optional=is_ros or key != "remap", is_unchecked=is_ros))
     return tuple(rules)
 
 
 _STEPS = {"call": "request", "set": "params", "goal": "request", "wait": "", "delay": "", "log": "", "shutdown": ""}
-"""What a step does, and the key for what it sends."""
+"""Kinds of steps, with the key of the data that they send."""
 
 
 def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedStep]:
@@ -429,29 +429,29 @@ def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedSte
         written = {"call": spec.call, "set": spec.set_, "goal": spec.goal, "wait": spec.wait, "log": spec.log}
         written["shutdown"] = spec.shutdown
         written["delay"] = "" if spec.delay is None else f"{spec.delay:g} s"
-        deeds = [deed for deed, target in written.items() if target]
-        if len(deeds) != 1:
-            what = " and ".join(deeds) or "none of them"
+        kinds = [kind for kind, target in written.items() if target]
+        if len(kinds) != 1:
+            what = " and ".join(kinds) or "none of them"
             problems.add(src.key_place(at), f"a step has one of {', '.join(_STEPS)}; {name!r} has {what}")
             continue
-        [deed] = deeds
+        [kind] = kinds
         for key, value in (("request", spec.request), ("params", spec.params)):
-            if value and key != _STEPS[deed]:
-                problems.add(src.key_place((*at, key)), f"{key}: does not go with {deed}:{_goes_with(deed)}")
-        key = _STEPS[deed] or deed
+            if value and key != _STEPS[kind]:
+                problems.add(src.key_place((*at, key)), f"{key}: does not go with {kind}:{_goes_with(kind)}")
+        key = _STEPS[kind] or kind
         sent = {n: s.value for n, s in params_file.flatten(src, spec.params, (*at, key), problems).items()}
-        if deed == "set" and not sent:
+        if kind == "set" and not sent:
             text = f"there is nothing to set; write params: {{NAME: VALUE}} beside set: {spec.set_}"
             problems.add(src.key_place(at), text)
         fields = (src.key_place((*at, key, field)) for field in spec.request)
         steps.append(
             PlannedStep(
                 name=name,
-                do=deed,  # type: ignore[arg-type]  # one of the keys above
-                target=written[deed],
+                do=kind,  # type: ignore[arg-type]  # one of the keys above
+                target=written[kind],
                 place=src.key_place(at),
-                target_place=src.place((*at, deed)),
-                request=sent if deed == "set" else spec.request,
+                target_place=src.place((*at, kind)),
+                request=sent if kind == "set" else spec.request,
                 request_place=src.place((*at, key)),
                 field_places=dict(zip(spec.request, fields, strict=True)),
                 type=spec.type,
@@ -462,8 +462,8 @@ def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedSte
     return steps
 
 
-def _goes_with(deed: str) -> str:
-    return f"; write {_STEPS[deed]}:" if _STEPS[deed] else ", which sends nothing"
+def _goes_with(kind: str) -> str:
+    return f"; write {_STEPS[kind]}:" if _STEPS[kind] else ", which sends nothing"
 
 
 def _names(names: str | list[str]) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The JSON Schema of graph files, made from the models, for editors."""
+"""The JSON Schema of graph files, generated from the models for use in editors."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from graphflow.graph.model import FROM_GROUPS, GraphFile, NodeSpec, keys_of
 from graphflow.machines.restarts import POLICIES
 
 _SUBSTITUTION = {"type": "string", "pattern": r"\$\("}
-"""Wherever a value may stand, a text with a substitution may."""
+"""A text with a substitution, which may replace any value."""
 
 
 class _Written(GenerateJsonSchema):
-    """The schema of what is written: before substitutions are made, and with the short forms of blocks."""
+    """The generator of the schema of files as written: with substitutions, and with the short forms of blocks."""
 
     def int_schema(self, schema: Any) -> dict[str, Any]:
         return {"anyOf": [super().int_schema(schema), _SUBSTITUTION]}
@@ -32,11 +32,11 @@ _SHORT: dict[str, Any] = {
     "RestartSpec": {"anyOf": [{"enum": list(POLICIES)}, _SUBSTITUTION]},
     "GroupSpec": {"type": ["string", "array"]},
 }
-"""What may be written in place of a mapping."""
+"""The short forms of blocks, by model."""
 
 
 def graph_schema() -> dict[str, Any]:
-    """The schema, draft 2020-12."""
+    """Return the schema, in draft 2020-12."""
     schema: dict[str, Any] = GraphFile.model_json_schema(schema_generator=_Written)
     definitions = schema["$defs"]
     node = definitions["NodeSpec"]
@@ -62,5 +62,5 @@ def graph_schema() -> dict[str, Any]:
 
 
 def schema_text() -> str:
-    """The schema as it is saved beside graph files."""
+    """Return the schema as text, as it is saved beside graph files."""
     return json.dumps(graph_schema(), indent=2) + "\n"

@@ -1,4 +1,4 @@
-"""Endpoints, Zenoh's addresses of machines, as users write them."""
+"""The addresses of Zenoh endpoints."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ def endpoint(text: str) -> str:
 
 
 def port_fault(port: str) -> str:
-    """That a number is too large or too small for a port; empty for others, and for what is no number."""
+    """Return the fault of a port number that is out of range; empty for a valid one, or one that is no number."""
     return f"a port is 1 to 65535, not {port}" if port.isdecimal() and not 0 < int(port) < 65536 else ""

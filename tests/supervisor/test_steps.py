@@ -20,7 +20,7 @@ from graphflow.errors import (
     RemoteError,
     ServiceUnavailable,
 )
-from graphflow.graph.plan import Deed, PlannedStep
+from graphflow.graph.plan import StepKind, PlannedStep
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
@@ -102,7 +102,7 @@ class Robot(Node):
         return Fibonacci.Result(sequence=list(range(goal.request.order)))
 
 
-def deed(do: Deed, target: str, timeout: float = 10.0, **request: Any) -> PlannedStep:
+def deed(do: StepKind, target: str, timeout: float = 10.0, **request: Any) -> PlannedStep:
     place = Place("graph.yaml", 1, 1)
     return PlannedStep("ask", do, target, place, place, place, request, timeout=timeout)
 
@@ -253,7 +253,7 @@ async def test_a_goal_to_its_end(graph: Graph, types: dict[str, str]) -> None:
         ("goal", "/cont", "; did you mean '/count'"),
     ],
 )
-async def test_a_target_of_another_kind(graph: Graph, do: Deed, target: str, end: str) -> None:
+async def test_a_target_of_another_kind(graph: Graph, do: StepKind, target: str, end: str) -> None:
     """What it is instead is told, with the key for it."""
     await graph.start(Robot())
     async with runner(graph, {}) as steps:

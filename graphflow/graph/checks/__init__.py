@@ -1,1 +1,1 @@
-"""Mistakes in graph files: keys and types (`validation`), order, loose ends, and what classes lack (`check`)."""
+"""Checks of graph files: keys and types (`validation`), order, loose ends, and names of classes (`check`)."""

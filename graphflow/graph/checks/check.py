@@ -1,4 +1,4 @@
-"""A Plan checked against the Interfaces of its classes: every name, type and value that cannot be right."""
+"""Check of a Plan against the interfaces of its classes: names, types and values."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.checks import rewritten
-from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
+from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, Setting, StepKind
 from graphflow.interface import (
     COMMON_PARAMETERS,
     COMMON_SERVICES,
@@ -24,14 +24,13 @@ from graphflow.markup import source, yaml_slips
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
-"""A word that YAML has as a text without quotes around it."""
 ImportFault = Problem
 Interfaces = Mapping[str, Interface | ImportFault]
-"""What each class declares, or why it could not be imported, by class path."""
+"""The interface of each class, or the reason why it could not be imported, by class path."""
 
 
 def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
-    """Every problem of a plan, in the order of its file."""
+    """Return all problems of a plan, in the order of its file."""
     problems: list[Problem] = []
     for node in plan.nodes:
         problems += _check_program(node) if node.command else _check_node(node, interfaces)
@@ -63,7 +62,7 @@ def _check_program(node: PlannedNode) -> Iterator[Problem]:
 
 
 def _in_shell(node: PlannedNode) -> str:
-    """What to write for a program whose words only a shell understands."""
+    """Return the correction of a command line that needs a shell."""
     if node.class_place.file.endswith(".py"):
         return "shell=True in ExecuteProcess"
     if node.class_place.file.endswith((".xml", ".launch")):
@@ -72,7 +71,7 @@ def _in_shell(node: PlannedNode) -> str:
 
 
 def remarks_on_programs(plan: Plan) -> Iterator[Problem]:
-    """Words of programs that only a shell understands, which the programs are given as they are."""
+    """Yield remarks on shell syntax in the arguments of programs, which are not run by a shell."""
     for node in plan.nodes:
         word = rewritten.shell_word(node.command)
         if word and word != node.command[0] and not node.executable:
@@ -94,7 +93,7 @@ def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
 
 
 def _check_lifecycle(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """Each `lifecycle:` must fit at least one of the nodes that it is written for."""
+    """Check that each `lifecycle:` applies to at least one lifecycle node."""
     fits: dict[Place, str] = {}
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
@@ -150,7 +149,7 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
 
 
 def _meant(declared: Parameter, setting: Setting) -> str:
-    """What to write for a text that a parameter does not take: a list in brackets, or the value without quotes."""
+    """Return the correction of a text as a parameter value: a list in brackets, or the value without quotes."""
     value, place = setting.value, setting.place
     if not isinstance(value, str):
         return ""
@@ -158,7 +157,7 @@ def _meant(declared: Parameter, setting: Setting) -> str:
         return way
     linecache.checkcache(place.file)
     if not linecache.getline(place.file, place.line)[place.column - 1 :].startswith((f"'{value}'", f'"{value}"')):
-        return ""  # it comes from a substitution, or from elsewhere
+        return ""  # the quotes are not in the file: the text comes from a substitution
     try:
         declared.fit(source.parse_value(value))
     except GraphflowError:
@@ -167,9 +166,9 @@ def _meant(declared: Parameter, setting: Setting) -> str:
 
 
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """Parameters written for many nodes at once that no node of the graph has."""
+    """Check that each parameter set for many nodes at once is one of at least one node."""
     known = set(COMMON_PARAMETERS)
-    if any(node.executable for node in plan.nodes):  # only they know what they have
+    if any(node.executable for node in plan.nodes):  # their parameters are not known
         return
     for interface in interfaces.values():
         if isinstance(interface, Problem) or interface.dynamic_names is True:
@@ -184,12 +183,12 @@ def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
 
 
 def _check_shared_rules(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """Remaps written for many nodes at once that fit no node of the graph."""
+    """Check that each remap set for many nodes at once matches a name of at least one node."""
     fits: dict[Place, bool] = {}
     shared: dict[Place, tuple[str, list[str]]] = {}
     for node in plan.nodes:
         interface = None if node.command else interfaces[node.class_path]
-        if isinstance(interface, Problem) or node.executable:  # only a program knows what names it has
+        if isinstance(interface, Problem) or node.executable:  # the names of a program are not known
             return
         for rule in node.remaps if interface is not None else ():
             if rule.is_optional and not rule.is_unchecked and interface is not None:
@@ -203,7 +202,7 @@ def _check_shared_rules(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]
 
 
 def _fits(match: str, names: Resolver, full: Iterable[str], interface: Interface) -> bool:
-    """Whether a remap has a name to act on, or may have one."""
+    """Return whether a remap matches a name, or may match one made at run time."""
     if any(map(names.pattern(match).fullmatch, full)):
         return True
     dynamic = interface.dynamic_names
@@ -228,7 +227,7 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
 
 
 def _unread(interface: Interface, full_name: str) -> str:
-    """What the source does not show, and the line that says it."""
+    """Return a hint for a name that the source may make at run time: the declaration that allows it."""
     line = f'dynamic_names = ("*/{full_name.rpartition("/")[2]}",)'
     if not interface.unread:
         return f"; if it is made at run time, add to the class: {line}"
@@ -237,13 +236,13 @@ def _unread(interface: Interface, full_name: str) -> str:
 
 
 def resolver(node: PlannedNode) -> Resolver:
-    """The names of a planned node."""
+    """Return the resolver of a node's names."""
     namespace, name = split(node.name)
     return Resolver(name, namespace, [rule.remap() for rule in node.remaps])
 
 
 def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """One name, two types: such endpoints never hear each other, which is known here before anything runs."""
+    """Check that each name has one type; endpoints of different types never communicate."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
@@ -253,7 +252,7 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
         for endpoint in interface.endpoints:
             kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
             name = names.resolve(endpoint.name, kind)
-            if not endpoint.type:  # the source does not show it
+            if not endpoint.type:  # unknown from the source
                 continue
             type_, owner = first.setdefault((kind, name), (endpoint.type, node.name))
             if type_ != endpoint.type:
@@ -265,7 +264,7 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
 
 
 def offered(plan: Plan, interfaces: Interfaces, kind: EndpointKind) -> dict[str, str]:
-    """Types by full name of every endpoint of a kind that the plan's classes declare."""
+    """Return the declared endpoints of a kind: their types by full name."""
     found = {}
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
@@ -279,7 +278,7 @@ def offered(plan: Plan, interfaces: Interfaces, kind: EndpointKind) -> dict[str,
 
 
 def _offered_anyway(plan: Plan, interfaces: Interfaces) -> dict[str, str]:
-    """Types by full name of the services that nodes have without declaring them."""
+    """Return the services that every node has without declaring them: their types by full name."""
     found: dict[str, str] = {}
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
@@ -291,7 +290,7 @@ def _offered_anyway(plan: Plan, interfaces: Interfaces) -> dict[str, str]:
 
 
 def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | None:
-    """The type of the service or action that a step needs, as far as the file or the classes say."""
+    """Return the type of the service or action of a step, if the file or the classes give it."""
     kind = _SERVERS.get(step.do)
     if kind is None:
         return None
@@ -301,7 +300,7 @@ def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | No
     return (anyway | offered(plan, interfaces, kind)).get(step.target)
 
 
-_SERVERS: dict[Deed, EndpointKind] = {"call": "service", "goal": "action"}
+_SERVERS: dict[StepKind, EndpointKind] = {"call": "service", "goal": "action"}
 
 
 def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
@@ -328,7 +327,7 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
         outside = f" (for one outside the graph add type: package/{folder}/Name)"
         yield Problem(step.target_place, f"{text}{near}{outside}")
         return
-    if not type_:  # it is offered, but the source does not show its type
+    if not type_:  # it is offered, with a type unknown from the source
         return
     try:
         full = registry.full_name(type_)
@@ -345,7 +344,7 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
 
 
 def _other_kind(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str:
-    """What a step's target is in place of a service or an action, with the key for it; empty for nothing known."""
+    """Return what a step's target is instead of a service or an action, with the right key; empty if unknown."""
     others: dict[EndpointKind, str] = {
         "action": f"an action: goal: {step.target}",
         "service": f"a service: call: {step.target}",
@@ -357,7 +356,7 @@ def _other_kind(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str:
 
 
 def _may_have_more(plan: Plan, interfaces: Interfaces, name: str) -> bool:
-    """Whether a graph may offer more than its classes declare: by programs, and by what they make at run time."""
+    """Return whether a graph may offer a name that no class declares: by programs, or at run time."""
     imported = [i for i in interfaces.values() if isinstance(i, Interface)]
     is_known = len(imported) == len(interfaces) and not any(node.command for node in plan.nodes)
     return not is_known or any(may_make(i.dynamic_names, name) for i in imported)

@@ -1,4 +1,4 @@
-"""Keys of other tools in a graph file: of ROS's launch files, docker-compose and ROS 1, with those that are meant."""
+"""Keys of other tools, of ROS's launch files, docker-compose and ROS 1, with the equivalents in graph files."""
 
 from __future__ import annotations
 
@@ -60,14 +60,14 @@ _OF_OTHERS = {
     "message": ("log", ""),
     **dict.fromkeys(("command", "run", "exec"), ("call", _PROGRAM)),
 }
-"""Those of groups, arguments and steps."""
+"""Keys of groups, arguments and steps."""
 
 
 def meant(key: str, known: Collection[str]) -> str:
-    """What to write in place of a key of another tool's; empty for others.
+    """Return the correction of a key of another tool; empty for other keys.
 
     Args:
-        known: The keys that may stand there.
+        known: The valid keys.
     """
     for table in (_OF_NODES, _OF_COMPOSE, _OF_OTHERS):
         ours, why = table.get(key, ("", ""))

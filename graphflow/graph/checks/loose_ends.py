@@ -1,6 +1,6 @@
-"""Loose ends of a plan: names with no counterpart in the graph, and classes that an included file may not mean.
+"""Loose ends of a plan: names without a counterpart in the graph, and classes that an included file may not mean.
 
-Each may be meant so, and none is a mistake.
+Any of them may be intended, so they are warnings.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from graphflow.errors import Place, Problem
 from graphflow.graph.checks.check import Interfaces, remarks_on_programs, resolver
-from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep
+from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, StepKind
 from graphflow.interface import EndpointKind, Interface, may_make
 from graphflow.names import Kind, nearest
 from graphflow.workspace.project import project_root, shown
@@ -25,14 +25,14 @@ _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
     "action": ("action client", "sends goals to"),
 }
 _NEEDS_ONE = ("subscription", "client", "action client")
-"""Endpoints that do nothing without a counterpart; the others may serve something outside of the graph."""
-_STEPS: Mapping[Deed, EndpointKind] = {"call": "client", "goal": "action client"}
+"""Endpoints that do nothing without a counterpart; others may serve clients outside of the graph."""
+_STEPS: Mapping[StepKind, EndpointKind] = {"call": "client", "goal": "action client"}
 _EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
-"""Topics that tools and every node use."""
+"""Topics of tools and of every node."""
 
 
 class _End(NamedTuple):
-    """One use of a name by a node."""
+    """An endpoint of a node."""
 
     kind: EndpointKind
     name: str
@@ -42,10 +42,10 @@ class _End(NamedTuple):
 
 
 def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
-    """Names that nothing in the graph answers to, of steps, of remaps, and of endpoints that have a near namesake; and
-    classes of included files whose own project has another of that name, and words that are a shell's.
+    """Return warnings about names without a counterpart, ambiguous classes, and shell syntax in arguments.
 
-    No names are told of a graph with programs, or with classes that cannot be imported: their names are unknown.
+    Names are those of steps and remaps, and of endpoints whose counterpart may be misspelt. A graph with programs, or
+    with classes that cannot be imported, gets no warnings about names, as some of its names are unknown.
     """
     classes = [*_of_classes(plan, interfaces), *remarks_on_programs(plan)]
     known = [found for found in interfaces.values() if isinstance(found, Interface)]
@@ -58,7 +58,7 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
 
 
 def _of_classes(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """Classes that come from this graph's project, though the project of the file that names them has its own."""
+    """Yield classes found in this graph's project while the project of their file has others of the same name."""
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
         if not isinstance(interface, Interface) or not node.class_place.file:
@@ -106,20 +106,20 @@ def _of_wait(step: PlannedStep, plan: Plan, ends: list[_End]) -> Iterator[tuple[
 
 
 def _of_nodes(ends: list[_End]) -> Iterator[tuple[str, Problem]]:
-    """Remapped names without a counterpart, and other names where one is spelt almost so; a pair is told once."""
-    told: set[str] = set()
+    """Yield remapped names without a counterpart, and names that differ little from one; each pair once."""
+    reported: set[str] = set()
     for end in sorted(ends, key=lambda end: (end.remapped_at is None, end.kind not in _NEEDS_ONE)):
         others = _others(end, ends)
         if end.name in others or end.name in _EVERYWHERE:
             continue
         near = _nearest(end.name, others - {same.name for same in ends if same.kind == end.kind})
-        if near not in told if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
-            told.add(end.name)
+        if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
+            reported.add(end.name)
             yield end.name, Problem(end.remapped_at or end.place, _text(end, near))
 
 
 def _others(end: _End, ends: list[_End]) -> set[str]:
-    """The names under which there is a counterpart of that type."""
+    """Return the names of the possible counterparts of an endpoint."""
     other, _ = _OTHER_END[end.kind]
     return {known.name for known in ends if known.kind == other and (not end.type or known.type in ("", end.type))}
 
@@ -133,7 +133,7 @@ def _hint(near: str) -> str:
 
 
 def _nearest(name: str, known: set[str]) -> str:
-    """The name that another is a misspelling of; empty if there is none, or if only numbers tell them apart."""
+    """Return the name that another may be a misspelling of; empty if there is none, or if only digits differ."""
     found = "" if name in known else nearest(name, known, cutoff=0.8) or ""
     return "" if _without_digits(found) == _without_digits(name) else found
 

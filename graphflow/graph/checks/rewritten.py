@@ -1,4 +1,4 @@
-"""Values of a graph file in the shape that other tools have for them, written anew: a list of pairs, a line of a shell.
+"""Corrections of values in the form of other tools: a list of pairs, a line of a shell.
 
 params: [{rate: 2.0}]                    ->   params: {rate: 2.0}          (launch files in Python)
 env: [DISPLAY=:0]                        ->   env: {DISPLAY: ":0"}         (docker-compose)
@@ -11,33 +11,32 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import yaml
 
 MAX_SHOWN = 120
-"""Characters of a line that is shown; longer ones would hide the sentence around them."""
+"""Length in characters of a line that is shown; a longer one would hide the message around it."""
 _MAPPINGS = ("params", "remap", "env", "args", "request")
 _PAIR = re.compile(r"([^\s=:]+)(?::=|=|: *| *-> *)(.*)", re.DOTALL)
-"""A name and its value in one word."""
+"""A name and a value in one word."""
 _NAMES = ("name", "from", "key")
 _VALUES = ("value", "to", "default")
 _SHELL_WORDS = frozenset(("&&", "||", "|", ">", ">>", "<", "2>", "2>&1", ";", "&"))
-"""Words that only a shell understands."""
+"""Words of shell syntax."""
 _OF_THEIR_OWN = frozenset(("expr", "test", "[", "find", "xargs", "jq", "awk", "sed", "grep"))
-"""Programs that take such words themselves."""
+"""Programs that take such words as arguments."""
 _BUILT_IN = frozenset(("cd", "source", ".", "export", "alias", "ulimit", "unset"))
-"""Commands of a shell that are no programs."""
+"""Builtin commands of shells."""
 _IN_A_LINE = re.compile(r"&&|\|\||[|<>;]|\s&\s*$")
 
 
 def line_for(key: str, value: object) -> str:
-    """The line to write for a value; empty where that is not known, or too long to show.
+    """Return the corrected line for a value; empty if none is known, or if it is too long to show.
 
     Args:
-        key: The key that it stands under.
+        key: The key of the value.
     """
-    made: Any = None
+    made: dict[str, object] | None = None
     if key in _MAPPINGS:
         made = _mapping(value)
     elif key == "nodes" and isinstance(value, list):
@@ -57,12 +56,12 @@ def line_for(key: str, value: object) -> str:
 
 
 def flow(value: object) -> str:
-    """A mapping or list as YAML on one line."""
+    """Return a mapping or list as YAML on one line."""
     return str(yaml.safe_dump(value, default_flow_style=True, width=10**6, sort_keys=False, allow_unicode=True)).strip()
 
 
 def command_of(line: str) -> str:
-    """A command line as a list in YAML, for a shell where only that understands it."""
+    """Return a command line as a YAML list, which calls a shell if the line needs one."""
     try:
         words = shlex.split(line)
     except ValueError:  # a quote that is not closed
@@ -72,7 +71,7 @@ def command_of(line: str) -> str:
 
 
 def shell_word(words: Sequence[object]) -> str:
-    """The first word of a command that only a shell understands; empty if there is none, or if the program may."""
+    """Return the first word of a command that is shell syntax; empty if there is none, or if the program takes it."""
     program = str(words[0]).rpartition("/")[2] if words else ""
     if program in _OF_THEIR_OWN:
         return ""
@@ -80,14 +79,14 @@ def shell_word(words: Sequence[object]) -> str:
 
 
 def in_shell(words: Sequence[object]) -> str:
-    """The command of a shell that understands all words of a command."""
+    """Return the command line that runs a command in a shell."""
     texts = [str(word) if word in _SHELL_WORDS else shlex.quote(str(word)) for word in words]
     return flow(["sh", "-c", " ".join(texts)])
 
 
-def _mapping(value: object) -> dict[str, Any] | None:
-    """The mapping that a list of pairs is; None for anything else."""
-    found: dict[str, Any] = {}
+def _mapping(value: object) -> dict[str, object] | None:
+    """Convert a list of pairs to a mapping; None for any other value."""
+    found: dict[str, object] = {}
     for one in value if isinstance(value, list) else [value]:
         pairs = list(_pairs(one))
         if not pairs:
@@ -96,7 +95,7 @@ def _mapping(value: object) -> dict[str, Any] | None:
     return found
 
 
-def _pairs(one: object) -> Iterator[tuple[str, Any]]:
+def _pairs(one: object) -> Iterator[tuple[str, object]]:
     match one:
         case str() if (pair := _PAIR.fullmatch(one)) is not None:
             yield pair[1], _plain(pair[2])
@@ -111,8 +110,8 @@ def _pairs(one: object) -> Iterator[tuple[str, Any]]:
                 yield from one.items()
 
 
-def _plain(text: str) -> Any:
-    """The value of a text, where that is a scalar."""
+def _plain(text: str) -> object:
+    """Return the YAML scalar of a text."""
     from graphflow.markup.source import scalar
 
     try:
@@ -121,9 +120,9 @@ def _plain(text: str) -> Any:
         return text
 
 
-def _by_name(nodes: list[Any]) -> dict[str, Any] | None:
-    """Nodes by their names, which stand in each of them."""
-    found: dict[str, Any] = {}
+def _by_name(nodes: list[object]) -> dict[str, object] | None:
+    """Return a list of nodes as a mapping by their names; None if one has no name."""
+    found: dict[str, object] = {}
     for node in nodes:
         match node:
             case {"name": str() as name, **others}:

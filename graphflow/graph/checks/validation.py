@@ -1,11 +1,11 @@
-"""What the model finds wrong in a graph file, in words: unknown and missing keys, wrong types, what was meant."""
+"""Validation of graph files by their model: unknown and missing keys, and wrong types, with corrections."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, TypeVar, get_args, get_origin
+from typing import TYPE_CHECKING, TypeGuard, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -17,22 +17,25 @@ from graphflow.markup.source import Source
 from graphflow.names import did_you_mean, nearest
 from graphflow.typographic import is_quoted
 
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
 M = TypeVar("M", bound=BaseModel)
 
 
 class Problems(list[Problem]):
-    """The mistakes found so far; a place that is known to be wrong is reported once."""
+    """The problems found so far; a place whose value is unknown is reported once."""
 
     def __init__(self) -> None:
         super().__init__()
         self._unknown: set[Place] = set()
         self._of_nodes: dict[str, list[Problem]] = {}
         self.launch_files: set[str] = set()
-        """Files of ROS's, whose users expect that what ROS lets pass is let pass."""
+        """Launch files, in which ROS's laxer rules apply."""
         self.remarks: list[Problem] = []
-        """What was let pass."""
+        """Oddities that are no errors."""
         self.left_out: list[Problem] = []
-        """Programs that launch files start and nobody here has."""
+        """Programs of launch files that are not installed."""
 
     def add(self, place: Place, message: str) -> None:
         """Add a problem."""
@@ -41,7 +44,7 @@ class Problems(list[Problem]):
             self.append(problem)
 
     def add_unless_ros(self, place: Place, message: str) -> bool:
-        """Add what ROS lets pass: a remark in a launch file of ROS's, else a problem. Whether it is let pass."""
+        """Add a remark in a launch file, as ROS accepts it, else a problem; returns whether it was a remark."""
         passes = place.file in self.launch_files
         if not passes:
             self.add(place, message)
@@ -50,40 +53,40 @@ class Problems(list[Problem]):
         return passes
 
     def remark(self, place: Place, message: str) -> None:
-        """Add what is let pass."""
+        """Add a remark."""
         if Problem(place, message) not in self.remarks:
             self.remarks.append(Problem(place, message))
 
     def leave_out(self, place: Place, message: str) -> None:
-        """Add what nobody here has: a remark if anything else is started, else a problem."""
+        """Add a program that is not installed: a remark if anything else is started, else a problem."""
         if Problem(place, message) not in self.left_out:
             self.left_out.append(Problem(place, message))
 
     def add_unknown(self, place: Place, message: str) -> None:
-        """Add a problem that leaves the value unknown: further reports about it would only confuse."""
+        """Add a problem that leaves a value unknown, so that no further problems of it are reported."""
         self.add(place, message)
         self._unknown.add(place)
 
     @contextmanager
     def of_node(self, name: str) -> Iterator[None]:
-        """What is added within belongs to a node."""
+        """Assign the problems added within to a node."""
         known = len(self)
         yield
         self._of_nodes[name] = self[known:]
 
     def excuse(self, names: Iterable[str]) -> None:
-        """Forget what belongs to nodes that are left out."""
+        """Drop the problems of nodes that are left out."""
         forgotten = [fault for name in names for fault in self._of_nodes.get(name, ())]
         self[:] = [problem for problem in self if problem not in forgotten]
 
     def raise_any(self) -> None:
-        """Raise GraphFileError if there are any."""
+        """Raise GraphFileError if there are any problems."""
         if self:
             raise GraphFileError(self)
 
 
 def validated(model: type[M], src: Source, problems: Problems) -> M | None:
-    """The model of a file or block; None, with problems added, where its keys or types are wrong."""
+    """Validate a file or block; None, with problems added, if its keys or types are wrong."""
     try:
         return model.model_validate(src.data)
     except ValidationError as error:
@@ -95,7 +98,7 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
     faults = [(path, fault) for path, fault in faults if path[:2] not in strays]
     paths = [path for path, _ in faults]
     for path, fault in faults:
-        # Alternatives of a union report once each; the one that got furthest was meant.
+        # Each alternative of a union reports its faults; the one that matched furthest was meant.
         if not any(other[: len(path)] == path and other != path for other in paths):
             wanted.setdefault(path, []).append(_wanted(fault))
     for path, fault in faults:
@@ -112,8 +115,8 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
     return None
 
 
-def _written_path(src: Source, fault: Any) -> source.Path:
-    """Where in the file a fault is, without the parts that name an alternative of a union."""
+def _written_path(src: Source, fault: ErrorDetails) -> source.Path:
+    """Return the path of a fault in the file: its location without the names of union alternatives."""
     path: source.Path = ()
     for part in fault["loc"]:
         if (*path, part) in src.places or (*path, part) in src.keys:
@@ -121,8 +124,8 @@ def _written_path(src: Source, fault: Any) -> source.Path:
     return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
 
 
-def _is_stray(path: source.Path, fault: Any) -> bool:
-    """Whether what stands among the nodes is a key of a node: one of its name, and without a class."""
+def _is_stray(path: source.Path, fault: ErrorDetails) -> bool:
+    """Return whether an entry of `nodes` is a misplaced key of a node: it has the name of one, and no class."""
     if len(path) < 2 or path[0] != "nodes" or str(path[1]).lstrip("/") not in keys_of(NodeSpec):
         return False
     return len(path) == 2 or (len(path) == 3 and path[2] == "class" and fault["type"] == "missing")
@@ -133,8 +136,10 @@ def _belongs_to_a_node(key: str) -> str:
     return f"{key}: belongs to a node; indent it below the node's name, beside class:{several}"
 
 
-def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
-    """Whether a missing key is in fact there, with a typo that is reported anyway."""
+def _misspelt(
+    model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, ErrorDetails]]
+) -> bool:
+    """Return whether a missing key is present with a typo, which is reported as an unknown key."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
     of_ros = key == "class" and not {"package", "executable"}.isdisjoint(unknown)
     of_ros = of_ros or any(foreign_keys.meant(word, [key]) for word in unknown)
@@ -142,28 +147,28 @@ def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequ
 
 
 def _known_keys(model: type[BaseModel], path: source.Path) -> list[str]:
-    """The keys of the model that a path leads to, without its last part."""
-    found: Any = model
+    """Return the keys of the model that contains the last key of a path."""
+    found: object = model
     for part in path[:-1]:
         if _is_model(found):
             fields = {field.alias or name: field.annotation for name, field in found.model_fields.items()}
             found = fields.get(str(part))
-        else:  # a mapping or a list: what it holds
+        else:  # the type of the entries of a mapping or list
             found = get_args(found)[-1] if get_args(found) else None
         if get_origin(found) not in (dict, list):
             found = next(filter(_is_model, get_args(found)), found)
     return keys_of(found) if _is_model(found) else []
 
 
-def _is_model(kind: Any) -> bool:
+def _is_model(kind: object) -> TypeGuard[type[BaseModel]]:
     return isinstance(kind, type) and issubclass(kind, BaseModel)
 
 
 def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
-    """The error text for an unknown key, with the key that was probably meant.
+    """Return the problem of an unknown key, with the key that was probably meant.
 
     Args:
-        value: What is written under it.
+        value: The value under the key.
     """
     head = key.partition(":")[0]
     if "nodes" in known and isinstance(value, dict) and "ros__parameters" in value:
@@ -196,7 +201,7 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
 
 
 def colon_fault(key: str) -> str:
-    """The fault of the colon that should end a node's name; empty for none."""
+    """Return the fault of a missing or misplaced colon after a node's name; empty if there is none."""
     if ":" in key:
         return f"the name {key!r} has a colon in it; write a space after the colon that ends a key"
     name, brace, _ = key.partition("{")
@@ -211,7 +216,7 @@ _REQUESTS = ("args", "arguments", "data", "fields", "values")
 _LOOP = re.compile(r"for +(\w+) +in +(.+)")
 
 
-def _wanted(fault: Any) -> str:
+def _wanted(fault: ErrorDetails) -> str:
     limits = fault.get("ctx", {})
     words = {
         "dict_type": "a mapping",
@@ -228,7 +233,7 @@ def _wanted(fault: Any) -> str:
     return words.get(fault["type"], str(fault["msg"]))
 
 
-def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], value: Any) -> str:
+def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], value: object) -> str:
     if "a number" in wanted:
         wanted = [w for w in wanted if w != "a whole number"]
     parts = path[2:] if path[0] in ("nodes", "steps") and len(path) > 2 else path[-1:] if path[0] == "nodes" else path
@@ -271,7 +276,7 @@ _EXAMPLES: dict[source.Path, str] = {
 
 
 def example(*path: str | int) -> str:
-    """An example of what may stand at a path, to end a report with; empty if there is none."""
+    """Return an example of the value at a path, as the end of a message; empty if there is none."""
     shape = tuple("" if i in (1, 3) else part for i, part in enumerate(path))
     return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
 
@@ -280,7 +285,7 @@ _TEXT = re.compile(r"'([^']*)'")
 
 
 def _of_quotes(message: str) -> str:
-    """The end of a message about a text in quotes, or with a space, that YAML does not take for any."""
+    """Return a hint for a message about a text with typographic quotes or no-break spaces."""
     if "\\xa0" in message:
         return " (\\xa0 is a no-break space, which is none in YAML)"
     for found in _TEXT.findall(message):

@@ -1,29 +1,29 @@
-"""The arguments of a graph: declared under `args`, given on the command line or by the file that includes another."""
+"""The arguments of a graph: declared under `args`, given on the command line or by an including file."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph.checks.validation import Problems
 from graphflow.graph.model import ARG_TYPES, Arg, keys_of
 from graphflow.markup import source
+from graphflow.markup.source import Data
 from graphflow.markup.substitutions import Written
 from graphflow.markup.tree import Item
 from graphflow.names import did_you_mean
 
 COMMAND_LINE = Place("command line")
 _SLIP = re.compile(r"([^\W\d]\w*) ?(?::=|[:=]) ?((?!\S*:=)\S+)")
-"""An argument with another sign or with spaces in it: `x=1`, `x:= 1`, `x: 1`."""
+"""An argument with a wrong sign or with spaces: `x=1`, `x:= 1`, `x: 1`."""
 
 
 class Arguments:
     """The values of a graph's arguments.
 
     Args:
-        given: Words of the command line, `name:=value`.
+        given: Arguments from the command line, `name:=value`.
     """
 
     def __init__(self, given: Sequence[str], problems: Problems) -> None:
@@ -35,25 +35,25 @@ class Arguments:
             if text.endswith((".yaml", ".yml")):
                 meant = f"; to start {text}, too, have a third file with include: [FILE, FILE]"
             problems.add(COMMAND_LINE, f"{text!r}: an argument is written name:=value{meant}")
-        self.values: dict[str, Any] = {}
-        """By name, of those that the command line may set."""
+        self.values: dict[str, Data] = {}
+        """Values of the arguments that the command line may set, by name."""
 
     def of_file(
         self,
         declared: Item | None,
-        outer: Mapping[str, Any],
+        outer: Mapping[str, Data],
         fixed: Mapping[str, Item],
-        substitute: Callable[[Item, Mapping[str, Any]], Item] = lambda item, _: item,
+        substitute: Callable[[Item, Mapping[str, Data]], Item] = lambda item, _: item,
         texts: Mapping[str, str] | None = None,
-    ) -> dict[str, Any]:
-        """The values of what a file declares.
+    ) -> dict[str, Data]:
+        """Return the values of a file's arguments.
 
         Args:
             declared: The file's section `args`.
-            outer: The values in force where the file is included.
-            fixed: Values that the including file gives.
-            substitute: Makes the substitutions in a default, with the values of the arguments before it.
-            texts: Of a launch file of ROS's, whose arguments are texts: the defaults as they are written.
+            outer: The values where the file is included.
+            fixed: Values given by the including file.
+            substitute: Makes the substitutions in a default, with the values of earlier arguments.
+            texts: For a launch file, whose arguments are texts: the defaults as they are written.
         """
         specs = declared.entries if declared is not None else {}
         for name, item in fixed.items():
@@ -74,13 +74,14 @@ class Arguments:
                     default = substitute(spec.entries["default"], found)
                     spec = spec.with_value({**spec.entries, "default": default})
                 found[name] = self._own(name, spec) if texts is None else self._text(name, spec, texts.get(name, "$("))
-            self.values[name] = found[name].value if isinstance(found[name], Written) else found[name]
-        if texts is not None:  # ROS has what is given for whatever asks for it
+            value = found[name]
+            self.values[name] = value.value if isinstance(value, Written) else value
+        if texts is not None:  # in ROS, `$(var ...)` also finds arguments that are not declared
             found = {**{name: Written(text) for name, text in self._given.items()}, **found}
         return found
 
     def refuse_strays(self) -> None:
-        """Report words of the command line that no file has an argument for."""
+        """Report arguments on the command line that no file declares."""
         for name in self._given:
             if name not in self.values:
                 help_ = did_you_mean(name, self.values)
@@ -92,7 +93,7 @@ class Arguments:
                     self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}")
 
     def _text(self, name: str, spec: Item, default: str) -> Written:
-        """The value of a launch file's argument; any text will do, if it is among the choices."""
+        """Return the value of a launch file's argument: any text, if it is among the choices."""
         if name not in self._given:
             value = self._own(name, spec)
             return Written(_written(value) if "$(" in default else default)
@@ -100,19 +101,19 @@ class Arguments:
         self._refuse_others(name, text.value, spec)
         return text
 
-    def _own(self, name: str, spec: Item) -> Any:
+    def _own(self, name: str, spec: Item) -> Data:
         settings = spec.entries
         if name in self._given:
             return self._checked(name, _read(self._given[name], settings), spec, COMMAND_LINE)
         if "default" in settings:
             return self._checked(name, settings["default"].plain(), spec, settings["default"].place)
-        # What is wrong with the declaration itself is reported when it is validated.
+        # Faults of the declaration itself are reported when it is validated.
         if spec.value is None or (isinstance(spec.value, dict) and settings.keys() <= set(keys_of(Arg))):
             self._problems.add(spec.at, f"argument {name!r} has no default: give it as {name}:=VALUE")
         return ""
 
-    def _checked(self, name: str, value: Any, spec: Item, place: Place) -> Any:
-        """The value, as its declared type."""
+    def _checked(self, name: str, value: Data, spec: Item, place: Place) -> Data:
+        """Check a value against its declared type, or that of its default, and its choices."""
         settings = spec.entries
         wanted = str(settings["type"].value) if "type" in settings else ""
         if wanted in ARG_TYPES:
@@ -128,8 +129,8 @@ class Arguments:
         self._refuse_others(name, value, spec)
         return value
 
-    def _refuse_others(self, name: str, value: Any, spec: Item) -> None:
-        """Report a value that is not among the choices."""
+    def _refuse_others(self, name: str, value: Data, spec: Item) -> None:
+        """Report a value that is not one of the choices."""
         choices = spec.entries["choices"].plain() if "choices" in spec.entries else None
         if isinstance(choices, list) and choices and value not in choices:
             shown = ", ".join(map(str, choices))
@@ -137,20 +138,20 @@ class Arguments:
 
 
 def given_values(words: Sequence[str]) -> dict[str, str]:
-    """What words of the command line, `name:=value`, give to which argument."""
+    """Return the values of arguments on the command line, `name:=value`, by name."""
     pairs = (word.partition(":=") for word in words)
     return {name: text for name, arrow, text in pairs if arrow and name}
 
 
 def behind_name(text: str) -> str:
-    """The fault of arguments that stand behind the name of an included file; empty for none."""
+    """Return the fault of arguments after the name of an included file; empty if there are none."""
     name, _, given = text.partition(" ")
     pairs = ", ".join(f"{word}: {value}" for word, value in given_values(given.split()).items())
     return f"arguments stand apart: include: {{file: {name}, args: {{{pairs}}}}}" if pairs else ""
 
 
 def _no_arguments(words: Sequence[str]) -> Iterator[str]:
-    """What is no `name:=value`, with the words around it that are one with it but for a space."""
+    """Yield the words that are no `name:=value`, each joined with those that only a space separates from it."""
     rest = list(words)
     while rest:
         size = next((n for n in (3, 2) if len(rest) >= n and _SLIP.fullmatch(" ".join(rest[:n]))), 1)
@@ -159,8 +160,8 @@ def _no_arguments(words: Sequence[str]) -> Iterator[str]:
         del rest[:size]
 
 
-def _read(text: str, settings: Mapping[str, Item]) -> Any:
-    """A word of the command line: YAML, but text where text is wanted."""
+def _read(text: str, settings: Mapping[str, Item]) -> Data:
+    """Parse an argument of the command line as YAML, unless its type or its default is a text."""
     default = settings["default"].value if "default" in settings else None
     wants_text = "type" in settings and settings["type"].value == "str"
     wants_text = wants_text or ("type" not in settings and isinstance(default, str))
@@ -171,17 +172,17 @@ def _read(text: str, settings: Mapping[str, Item]) -> Any:
     return text if wants_text and not isinstance(value, str) else value
 
 
-def _is_alike(value: Any, default: Item | None) -> bool:
-    """Whether a value is of the kind of the default: a truth value or a number, if that is one."""
+def _is_alike(value: Data, default: Item | None) -> bool:
+    """Return whether a value is of the same kind as the default, if that is a truth value or a number."""
     if default is None or not isinstance(default.value, (bool, int, float)):
         return True
     return _kind(value) == _kind(default.value)
 
 
-def _kind(value: Any) -> str:
+def _kind(value: Data) -> str:
     kinds = {bool: "true or false", int: "a number", float: "a number", list: "a list", dict: "a mapping"}
     return kinds.get(type(value), "text")
 
 
-def _written(value: Any) -> str:
+def _written(value: Data) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)

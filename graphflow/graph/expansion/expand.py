@@ -158,7 +158,8 @@ class Expansion:
         if path.resolve() in scope.files:
             self._problems.add(file.place, f"{model.file} includes itself")
             return scope
-        top = self._read(path, file.place, {**scope.values, **model.args})
+        values: dict[str, object] = {**scope.values, **model.args}
+        top = self._read(path, file.place, values)
         if top is None:
             return scope
         before = set(self.nodes)
@@ -175,7 +176,7 @@ class Expansion:
             self._override(self._values.substituted(change, scope), set(self.nodes) - before, scope)
         return replace(scope, templates={**templates, **scope.templates})
 
-    def _read(self, path: Path, place: Place, values: Mapping[str, Data]) -> Item | None:
+    def _read(self, path: Path, place: Place, values: Mapping[str, object]) -> Item | None:
         if "$(" in str(path):  # a substitution that failed, which has been reported
             return None
         if not path.is_file():

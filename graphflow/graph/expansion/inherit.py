@@ -1,4 +1,4 @@
-"""What groups give to the nodes within them."""
+"""Inheritance of nodes from the groups around them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from graphflow.graph.model import FROM_GROUPS
 from graphflow.markup.tree import Item, first_of
 
 BY_ENTRY = ("params", "remap", "env")
-"""Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
+"""Keys that templates, groups and overrides change entry by entry; they replace any other as a whole."""
 INHERITED = ("restart", "on_exit", "critical", "log_level", "lifecycle")
-"""Keys of a group that a node has unless it says otherwise."""
+"""Keys of a group that a node inherits unless it sets them."""
 
 
 def after_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
-    """A node or step that comes after what the groups around it come after, too."""
+    """Add the predecessors of the groups around a node or step to its own."""
     afters = [entries["after"] for entries in (item.entries, *groups) if "after" in entries]
     if not afters or afters == [item.entries.get("after")]:
         return item
@@ -23,7 +23,7 @@ def after_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
 
 
 def _names(after: Item) -> dict[str, Item]:
-    """What comes before, each with what it must have become; an empty word for the usual."""
+    """Return the predecessors with their conditions; an empty text is the default condition."""
     if isinstance(after.value, dict):
         return after.value
     words = after.value if isinstance(after.value, list) else [after]
@@ -31,15 +31,15 @@ def _names(after: Item) -> dict[str, Item]:
 
 
 def with_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
-    """A node with what the groups around it give it.
+    """Add to a node what it inherits from the groups around it.
 
     Args:
-        groups: Their settings, the innermost first.
+        groups: The settings of the groups, the innermost first.
     """
     entries = dict(after_groups(item, groups).entries)
     for key in INHERITED:
         found = first_of([entries, *groups]).get(key)
-        if found is not None and (key != "lifecycle" or "exec" not in entries):  # which only some programs have
+        if found is not None and (key != "lifecycle" or "exec" not in entries):  # only some programs have a life cycle
             entries[key] = found
     for key in BY_ENTRY:
         of_groups = first_of([group[key].entries for group in groups if key in group])

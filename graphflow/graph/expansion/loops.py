@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
 
 from graphflow.graph.checks.validation import Problems
+from graphflow.markup.source import Data
 from graphflow.markup.tree import Item
 
 _SPAN = re.compile(r"(-?\d{1,9})\.\.(-?\d{1,9})\Z")
 
 
-def values_of(over: Item, problems: Problems, *, is_written_out: bool) -> Sequence[Any]:
-    """The values of a loop; none, with a problem added, if `in:` has no values or one of them twice.
+def values_of(over: Item, problems: Problems, *, is_written_out: bool) -> Sequence[Data]:
+    """Return the values of a loop; none, with a problem added, if `in:` is no list or span, or has a value twice.
 
     Args:
-        over: What stands under `in:`, its substitutions made.
-        is_written_out: Whether it had none, so that it is always the same.
+        over: The value of `in:`, its substitutions made.
+        is_written_out: Whether it had no substitutions, so that an empty span is a mistake.
     """
     values = over.plain()
     span = _SPAN.match(values) if isinstance(values, str) else None
