@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # what type checkers go by; importing `typing` would take longer than all of this file
+TYPE_CHECKING = False  # type checkers treat the name as true; importing `typing` would take longer than this file
 if TYPE_CHECKING:
     from graphflow.errors import (
         Abort,

@@ -1,4 +1,4 @@
-"""Where a process belongs: its domain, which keeps graphs on one network apart, and where its machine's nodes meet."""
+"""The domain and the rendezvous of a process, from its environment."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ import os
 from graphflow.errors import GraphflowError
 
 ENDPOINT_VARIABLE = "GRAPHFLOW_RENDEZVOUS"
-"""Where the nodes of a machine meet."""
+"""The variable with the endpoint of the rendezvous."""
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
-"""Where a ROS 2 node with default settings looks for its router."""
+"""The router's endpoint in the default settings of ROS 2 nodes."""
 DOMAIN_VARIABLES = ("GRAPHFLOW_DOMAIN", "ROS_DOMAIN_ID")
 
 
 def domain_id(given: int | None = None) -> int:
-    """The domain to use: the given one, else GRAPHFLOW_DOMAIN, else ROS_DOMAIN_ID, else 0.
+    """Return the domain to use: the given one, else GRAPHFLOW_DOMAIN, else ROS_DOMAIN_ID, else 0.
 
     Raises:
-        GraphflowError: A variable holds something other than a whole number, 0 or more.
+        GraphflowError: A variable is not a whole number, 0 or more.
     """
     if given is not None:
         return given
@@ -31,15 +31,15 @@ def domain_id(given: int | None = None) -> int:
 
 
 def domain_variable() -> str:
-    """The variable that decides about the domain of processes that this one's shell starts."""
+    """Return the variable that determines the domain of processes started from this process's shell."""
     return next((name for name in DOMAIN_VARIABLES if os.environ.get(name, "").strip()), DOMAIN_VARIABLES[0])
 
 
 def rendezvous_endpoint() -> str:
-    """Where processes of this machine find each other."""
+    """Return the endpoint at which processes of this machine find each other."""
     return os.environ.get(ENDPOINT_VARIABLE, DEFAULT_ENDPOINT)
 
 
 def go_to(domain: int, endpoint: str) -> None:
-    """Have whatever this process opens or starts from now on meet in a domain, at an endpoint."""
+    """Set the domain and the rendezvous of sessions and processes that this process opens from now on."""
     os.environ[DOMAIN_VARIABLES[0]], os.environ[ENDPOINT_VARIABLE] = str(domain), endpoint

@@ -1,38 +1,38 @@
-"""Every error graphflow raises; the type says whose doing it was, the text says what to do next.
+"""The errors of graphflow; the type names the cause, and the text gives the next step.
 
 GraphflowError
-|-- DeclarationError          a node class is declared wrongly (raised when it is imported)
+|-- DeclarationError          a node class has a wrong declaration (raised when it is imported)
 |-- InvalidName                a topic, service or node name, or a remap rule, is not legal
 |-- InterfaceError            a .msg, .srv or .action definition is missing or wrong
-|   `-- UnknownInterface      nothing has that name; the text gives the nearest
-|-- EncodeError               a message holds a value that its type cannot carry
-|-- DecodeError               bytes from the network are not what their type says (the peer did that)
+|   `-- UnknownInterface      no interface has the name; the text gives the nearest
+|-- EncodeError               a message has a value that its type cannot carry
+|-- DecodeError               bytes from the network do not fit their type (the peer's mistake)
 |-- ParameterError            a parameter is unknown, of another type, out of range or read-only
-|-- GraphFileError            a graph file is wrong; holds every problem with its place
+|-- GraphFileError            a graph file has mistakes; carries all problems with their places
 |-- TransportError            the network refused: port taken, silent rendezvous, another user's
 |-- BagError                  a bag cannot be read or written
-|-- ClosedError               you closed it and then used it
-|-- WrongThread               only the event loop's thread may do it
-|-- TooManyErrors             a node's handlers have failed too often; it ends
+|-- ClosedError               a node, session or endpoint is used after it was closed
+|-- WrongThread               a thread other than the event loop's uses a node
+|-- TooManyErrors             a node's handlers have failed too often, and the node ends
 |-- SupervisorError           a graph could not be started, or is not running
-|-- NoModule                  a node class is looked for in a module that is not there
-|-- UsageFault                the words on the command line are wrong
+|-- NoModule                  the module of a node class does not exist
+|-- UsageFault                the command line is wrong
 |   `-- RunsWhenImported      a module that is imported for its classes runs nodes
-|-- Abort                     what an action's handler raises to end its goal as aborted
+|-- Abort                     raised by an action's handler to abort its goal
 |-- GoalError                 a goal ended without success
 |   |-- GoalRejected          the server did not accept it
-|   |-- GoalAborted           the server gave up on it; carries its result
+|   |-- GoalAborted           the server aborted it; carries its result
 |   |-- GoalCanceled          a client cancelled it; carries its partial result
-|   `-- GoalLost              the server went away: how it ended is unknown
-|-- TransitionRefused         what a lifecycle hook raises to stay where the node was
+|   `-- GoalLost              the server disappeared; the outcome is unknown
+|-- TransitionRefused         raised by a lifecycle hook to keep the node in its state
 |-- TransitionFailed          a lifecycle transition was refused, failed, or is not possible now
 |-- LoopBlockedError          a blocking call was made on the event loop
 `-- CallError                 a call ended without a response
     |-- ServiceUnavailable    no node offers that name
-    |-- ServerLost            the server went away during the call
+    |-- ServerLost            the server disappeared during the call
     |-- CallTimeout           the deadline passed
     |-- ServerBusy            the server's queue is full
-    |-- ServerInactive        the server's node has a life cycle, and is not active
+    |-- ServerInactive        the server is a lifecycle node that is not active
     |-- RemoteError           the handler raised; carries the remote type and message
     `-- DeadlockError         the call can never be answered
 """
@@ -46,11 +46,11 @@ from unicodedata import category
 
 
 class GraphflowError(Exception):
-    """Base of all of graphflow's errors."""
+    """The base class of graphflow's errors."""
 
 
 class DeclarationError(GraphflowError):
-    """A node class declares something that cannot work; raised while the class is being made."""
+    """A node class declares something that cannot work; raised when the class is created."""
 
 
 class InvalidName(GraphflowError, ValueError):
@@ -66,19 +66,19 @@ class UnknownInterface(InterfaceError, LookupError):
 
 
 class EncodeError(GraphflowError, ValueError):
-    """A field holds a value its type cannot carry. The text starts with the field's path."""
+    """A field has a value that its type cannot carry. The text starts with the field's path."""
 
 
 class DecodeError(GraphflowError, ValueError):
-    """A payload ends early or does not fit its type. The only error decoding raises."""
+    """A payload ends early or does not fit its type; the only error of decoding."""
 
 
 class ParameterError(GraphflowError, ValueError):
-    """A parameter was refused; the old value stands."""
+    """A parameter was refused and keeps its value."""
 
 
 class TransportError(GraphflowError):
-    """The network, or something that listens in its place, refused."""
+    """The network failed or refused: a port is taken, the rendezvous does not answer, or it is another user's."""
 
 
 class BagError(GraphflowError):
@@ -90,7 +90,7 @@ class ClosedError(GraphflowError):
 
 
 class WrongThread(GraphflowError, RuntimeError):
-    """Something that belongs to a node's event loop was used from another thread."""
+    """An object of a node's event loop was used from another thread."""
 
 
 class TooManyErrors(GraphflowError):
@@ -101,7 +101,7 @@ class SupervisorError(GraphflowError):
     """A graph could not be started, reached or stopped.
 
     Attributes:
-        exit_code: What the command line ends with: 1 failed, 2 usage, 3 nothing running, 4 timeout.
+        exit_code: The exit code of the command line: 1 failed, 2 usage, 3 nothing running, 4 timeout.
     """
 
     def __init__(self, message: str, exit_code: int = 1) -> None:
@@ -110,7 +110,7 @@ class SupervisorError(GraphflowError):
 
 
 class NoModule(GraphflowError):
-    """A node class is looked for in a module that is not there.
+    """The module of a node class does not exist.
 
     Attributes:
         module: The first part of its path that was not found.
@@ -122,15 +122,15 @@ class NoModule(GraphflowError):
 
 
 class UsageFault(GraphflowError):
-    """The words on the command line are wrong."""
+    """The command line is wrong."""
 
 
 class RunsWhenImported(UsageFault):
-    """A module that is imported for its classes runs nodes: it is a program of its own."""
+    """A module that is imported for its classes runs nodes: it is a program."""
 
 
 class Place(NamedTuple):
-    """A position in a text file; line and column count from 1, 0 means unknown."""
+    """A position in a text file; line and column count from 1, and 0 is unknown."""
 
     file: str
     line: int = 0
@@ -141,11 +141,11 @@ class Place(NamedTuple):
 
 
 NOWHERE = Place("")
-"""Stands for a place that is not known."""
+"""The unknown place."""
 
 
 class Problem(NamedTuple):
-    """One mistake in a graph file or in what it names."""
+    """A mistake in a graph file, or in a file or class that it names."""
 
     place: Place
     message: str
@@ -155,7 +155,7 @@ class Problem(NamedTuple):
 
 
 class GraphFileError(GraphflowError):
-    """A graph file has mistakes; all that were found, in the order of the file."""
+    """A graph file has mistakes; `problems` are all that were found, in the order of the file."""
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(sorted(problems))
@@ -163,33 +163,33 @@ class GraphFileError(GraphflowError):
 
 
 LONGEST_TEXT = 4_000
-"""Characters of another process's text that an error repeats at most."""
+"""Length limit in characters of another process's text in an error."""
 
 
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
 
 def printable(text: str) -> str:
-    """A text from another process, safe to put in an error: of bounded length, and harmless."""
+    """Return a text from another process as an error can contain it: of bounded length, and harmless."""
     return harmless(text[:LONGEST_TEXT])
 
 
 def harmless(text: str) -> str:
-    """A text with nothing in it that a terminal would obey; its lines and tabs stay."""
+    """Escape the control characters of a text, which a terminal would obey, except line breaks and tabs."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() or c in "\n\t" or category(c) == "Zs" else repr(c)[1:-1] for c in text)
 
 
 def uncoloured(text: str) -> str:
-    """A line of a log, `harmless` and without the colours that a program has given it."""
+    """Return a line of a log, `harmless` and without colours."""
     return harmless(_COLOUR.sub("", text) if "\x1b" in text else text)
 
 
 class Abort(GraphflowError):
     """Raised by the handler of an action: `raise Abort(result)`, `raise Abort("the way is blocked")`.
 
-    The goal ends as aborted, with `result` or else with what `goal.partial` holds.
+    The goal ends as aborted, with `result` or else with `goal.partial`.
     """
 
     def __init__(self, result: object = None, reason: str = "") -> None:
@@ -202,7 +202,7 @@ class GoalError(GraphflowError):
     """A goal ended without success.
 
     Attributes:
-        result: What the server sent with it; None when it sent nothing.
+        result: The result that the server sent; None if it sent none.
     """
 
     def __init__(self, message: str, result: object = None) -> None:
@@ -215,7 +215,7 @@ class GoalRejected(GoalError):
 
 
 class GoalAborted(GoalError):
-    """The server gave up on the goal."""
+    """The server aborted the goal."""
 
 
 class GoalCanceled(GoalError):
@@ -223,15 +223,15 @@ class GoalCanceled(GoalError):
 
 
 class GoalLost(GoalError):
-    """The server went away; what became of the goal is not known."""
+    """The server disappeared; the outcome of the goal is unknown."""
 
 
 class TransitionRefused(GraphflowError):
-    """Raised by a hook of a `LifecycleNode` that cannot do its part now: the node goes back to where it was."""
+    """Raised by a hook of a `LifecycleNode` that cannot make the transition: the node keeps its state."""
 
 
 class TransitionFailed(GraphflowError):
-    """A lifecycle transition was asked for and did not succeed."""
+    """A requested lifecycle transition was refused, failed, or is not possible now."""
 
 
 class LoopBlockedError(GraphflowError):
@@ -276,7 +276,7 @@ class RemoteError(CallError):
         self.message = message
 
     def to_payload(self) -> bytes:
-        """The error as a reply carries it: JSON with `type` and `message`."""
+        """Return the error as the payload of a reply: JSON with `type` and `message`."""
         import json
 
         return json.dumps({"type": self.type, "message": self.message}).encode()

@@ -1,4 +1,4 @@
-"""Where graphflow keeps what outlives a process: folders that the environment names."""
+"""Folders for state and logs, which outlive a process."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from graphflow.system import user_id
 
 
 def state_root() -> Path:
-    """The folder of what is kept for this user from one run to the next."""
+    """Return the folder of the user's state, which is kept from one run to the next."""
     if (given := named("XDG_STATE_HOME")) is not None:
         return given / "graphflow"
     at = home()
@@ -19,7 +19,7 @@ def state_root() -> Path:
 
 
 def home() -> Path | None:
-    """The user's home; None where neither HOME nor the system's list of users has one, as in containers."""
+    """Return the user's home folder; None if neither HOME nor the user database has one, as in some containers."""
     try:
         return Path.home()
     except RuntimeError:
@@ -27,15 +27,15 @@ def home() -> Path | None:
 
 
 def temporary_root(variable: str) -> Path:
-    """A private folder of this user's under the temporary directory, made if need be.
+    """Return the user's private folder in the temporary directory, which is created if needed.
 
     Args:
-        variable: What to set in its place.
+        variable: The environment variable to set instead, for the error.
 
     Raises:
-        SupervisorError: The folder cannot be made, or belongs to another user.
+        SupervisorError: The folder cannot be created, or belongs to another user.
     """
-    import tempfile  # with all kinds of compression, which few commands need
+    import tempfile  # it imports shutil and every kind of compression; few commands need it
 
     root = Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
     make_private(root, variable)
@@ -43,7 +43,7 @@ def temporary_root(variable: str) -> Path:
 
 
 def make_private(folder: Path, variable: str) -> None:
-    """Make a folder that only this user can read. Raises SupervisorError: As for `temporary_root`."""
+    """Create a folder that only this user can read. Raises SupervisorError as `temporary_root` does."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         found = folder.lstat()
@@ -54,18 +54,18 @@ def make_private(folder: Path, variable: str) -> None:
 
 
 def log_root() -> Path:
-    """The folder of all logs."""
+    """Return the folder of all logs."""
     given = os.environ.get("ROS_LOG_DIR")
     return Path(given).absolute() if given else state_root()
 
 
 def newest_logs(graph: str) -> Path:
-    """The link to the logs of a graph's newest run, which need not be there yet."""
+    """Return the link to the logs of a graph's newest run, which need not exist yet."""
     return log_root() / graph / "latest"
 
 
 def named(variable: str) -> Path | None:
-    """A folder that the environment names; a relative one would be another in each place, and counts as none.
+    """Return a folder from an environment variable; a relative path is ignored, as the specification requires.
 
     Source: XDG Base Directory Specification.
     """

@@ -1,6 +1,6 @@
-"""What a node class declares, as frozen data: known without making a node, and readable as JSON.
+"""The declarations of a node class as frozen data, known without creating a node, and convertible to JSON.
 
-Checks, plans and listings use this; nothing here refers to a class or a function object.
+Checks, plans and listings use them; they refer to no class or function object.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ TYPE_IDS: dict[ParamType, int] = {
     "list[float]": 8,
     "list[str]": 9,
 }
-"""rcl_interfaces/msg/ParameterType."""
+"""The constants of rcl_interfaces/msg/ParameterType."""
 TYPE_NAMES = {0: "not set", 1: "boolean", 2: "integer", 3: "double", 4: "string", 5: "byte array"} | {
     6: "boolean array",
     7: "integer array",
     8: "double array",
     9: "string array",
 }
-"""ROS 2's words for the types."""
+"""ROS 2's names of the types."""
 _INT64 = range(-(2**63), 2**63)
 
 
 @dataclass(frozen=True, slots=True)
 class EndpointInfo:
-    """A topic or service that the class uses under `name`."""
+    """A topic, service or action that a class uses under `name`."""
 
     kind: EndpointKind
     name: str
@@ -49,7 +49,7 @@ class EndpointInfo:
     attribute: str
     place: Place
     group: str = ""
-    """Of a client: the group that its responses wait for; empty for none."""
+    """The group of a client's responses; empty for none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,17 +68,17 @@ class Parameter:
     lt: float | None = None
     read_only: bool = False
     step: float = 0.0
-    """Distance between allowed values, counted from `ge`, or from 0; 0 allows all. The limits are always allowed."""
+    """Distance between allowed values, from `ge` or 0; 0 allows all values. The limits are always allowed."""
     choices: tuple[Any, ...] = ()
-    """The values that it, or each of a list, may have; empty if any."""
+    """The allowed values, of each element for a list; empty for any."""
     dynamic: bool = False
     """Whether the parameter takes values of any type and may be deleted (ROS 2's dynamic typing)."""
 
     def fit(self, value: Any) -> Any:
-        """`value` as the declared type, integers widened to floats.
+        """Return a value as the declared type; integers are widened to floats.
 
         Raises:
-            ParameterError: `value` is of another type or out of range; the text says what is allowed.
+            ParameterError: The value is of another type or out of range; the text names the allowed ones.
         """
         if self.dynamic:
             return None if value is None else self._any(value)
@@ -117,7 +117,7 @@ class Parameter:
         return value
 
     def choices_text(self) -> str:
-        """The choices in words, empty when there are none: `one of 'fast', 'slow'`."""
+        """Return the choices as text: `one of 'fast', 'slow'`; empty if there are none."""
         return f"one of {', '.join(map(repr, self.choices))}" if self.choices else ""
 
     def _check_range(self, number: float) -> None:
@@ -133,7 +133,7 @@ class Parameter:
         if self.step and number not in (self.ge, self.le) and math.isfinite(number):
             start = self.ge or 0
             nearest = start + round((number - start) / self.step) * self.step
-            # As in rclpy: whole numbers exactly, others within a millionth.
+            # As in rclpy: integers exactly, floats within a millionth.
             fits = (
                 nearest == number if self.type in ("int", "list[int]") else math.isclose(nearest, number, rel_tol=1e-6)
             )
@@ -144,7 +144,7 @@ class Parameter:
                 )
 
     def range_text(self) -> str:
-        """The range in words, empty when there is none: `0 to 255`, `more than 0`."""
+        """Return the range as text: `0 to 255`, `more than 0`; empty if there is none."""
         if self.ge is not None and self.le is not None:
             return f"{self.ge:g} to {self.le:g}"
         words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
@@ -162,7 +162,7 @@ COMMON_PARAMETERS: dict[str, Parameter] = {
         ),
     )
 }
-"""Parameters that every node has, as in ROS 2."""
+"""The parameters of every node, as in ROS 2."""
 COMMON_SERVICES: dict[str, str] = {
     "get_parameters": "rcl_interfaces/srv/GetParameters",
     "get_parameter_types": "rcl_interfaces/srv/GetParameterTypes",
@@ -174,7 +174,7 @@ COMMON_SERVICES: dict[str, str] = {
     "get_logger_levels": "rcl_interfaces/srv/GetLoggerLevels",
     "set_logger_levels": "rcl_interfaces/srv/SetLoggerLevels",
 }
-"""Services that every node has unless it is made without them, by their names below the node's, with their types."""
+"""The services of every node that is not created without them: types by name, relative to the node's."""
 LIFECYCLE_SERVICES: dict[str, str] = {
     "change_state": "lifecycle_msgs/srv/ChangeState",
     "get_state": "lifecycle_msgs/srv/GetState",
@@ -182,41 +182,41 @@ LIFECYCLE_SERVICES: dict[str, str] = {
     "get_available_transitions": "lifecycle_msgs/srv/GetAvailableTransitions",
     "get_transition_graph": "lifecycle_msgs/srv/GetAvailableTransitions",
 }
-"""Services that every lifecycle node has besides."""
+"""The additional services of every lifecycle node."""
 
 
 WhenFull = Literal["wait", "drop_new", "drop_old", "cancel_running"]
-"""What becomes of work that finds no free slot.
+"""The policy for work that finds no free slot in its group.
 
-`wait`: it queues. `drop_new`: it is dropped. `drop_old`: it queues, and whatever queued before it is dropped.
-`cancel_running`: the same, and the oldest run under way is cancelled.
+`wait`: it queues. `drop_new`: it is dropped. `drop_old`: it queues, and work queued before it is dropped.
+`cancel_running`: as `drop_old`, and the oldest active run is cancelled.
 """
 
 DeadlockPolicy = Literal["raise", "report", "break", "off"]
-"""What is done about a deadlock.
+"""The policy for deadlocks.
 
-`raise`: a call that cannot succeed fails at once, and any other deadlock is reported. `report`: it is reported.
-`break`: as raise, and the youngest call of a deadlock is ended with DeadlockError. `off`: deadlocks are not looked for.
+`raise`: a call that cannot succeed fails at once, and any other deadlock is reported. `report`: all are reported.
+`break`: as `raise`, and the youngest call of a deadlock ends with DeadlockError. `off`: deadlocks are not detected.
 """
 GoalPolicy = Literal["reject", "queue", "preempt", "parallel"]
-"""What becomes of a goal that arrives while another is under way.
+"""The policy for a goal that arrives while another is active.
 
-`reject`: it is not accepted. `queue`: it waits for its turn. `preempt`: the one under way is ended, as aborted, and the
-new one begins when that has ended. `parallel`: they run concurrently, as far as their group allows.
+`reject`: it is not accepted. `queue`: it waits for its turn. `preempt`: the active goal is aborted, and the new one
+begins when that has ended. `parallel`: they run concurrently, as far as their group allows.
 """
 OnClientLoss = Literal["continue", "cancel"]
-"""What becomes of a goal whose client has gone."""
+"""The policy for a goal whose client has disappeared."""
 
 OnError = Literal["budget", "log", "end"]
-"""What an error in a timer or subscription means for its node.
+"""The policy for an error in a timer or subscription.
 
 `budget`: it is logged and counted, and too many end the node. `log`: it is logged. `end`: it ends the node.
 """
 
 CALL_TIMEOUT = 10.0
-"""Seconds that a call waits for its response, unless told otherwise."""
+"""Default timeout of a call in seconds."""
 NO_GROUP = "none"
-"""In a graph file: the handlers that should be in no group."""
+"""The key in a graph file for handlers that are to be in no group."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,14 +224,14 @@ class GroupInfo:
     """A concurrency group as a class declares it."""
 
     limit: int | None = 1
-    """Runs at one time, None for any number."""
+    """Maximum of concurrent runs; None for no limit."""
     when_full: WhenFull = "wait"
     thread: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class GroupChange:
-    """What a graph file says about one group of a node: its members and what differs from the declaration."""
+    """A graph file's change of a node's group: its members, and settings that differ from the declaration."""
 
     handlers: tuple[str, ...] = ()
     limit: int | None = 1
@@ -249,25 +249,25 @@ HandlerKind = Literal["subscription", "timer", "service", "action", "task"]
 
 @dataclass(frozen=True, slots=True)
 class HandlerInfo:
-    """A method that is called: by a timer, a message, a request or a goal."""
+    """A method that is called for a timer, a message, a request or a goal, or runs as a task."""
 
     name: str
     kind: HandlerKind
     place: Place
     group: str = ""
-    """The name of its group; empty for a handler that queues behind itself only."""
+    """The name of its group; empty for a handler that waits only for its own runs."""
     is_async: bool = True
     thread: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """Everything one node class declares, its parents' declarations included."""
+    """All declarations of a node class, including those of its base classes."""
 
     class_path: str
     """`package.module:Class`."""
     node_name: str
-    """The name a node gets when no other is given."""
+    """The default name of its nodes."""
     place: Place
     doc: str = ""
     endpoints: tuple[EndpointInfo, ...] = ()
@@ -275,18 +275,18 @@ class Interface:
     handlers: tuple[HandlerInfo, ...] = ()
     groups: dict[str, GroupInfo] = field(default_factory=dict)
     dynamic_names: bool | tuple[str, ...] = False
-    """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
+    """Names of endpoints created at run time: True for any, else patterns such as `*/cmd_vel`."""
     unread: tuple[Place, ...] = ()
-    """Where something is made whose name the source does not show."""
+    """Places where endpoints are created whose names the source does not show."""
     is_managed: bool = False
     """Whether it is a `LifecycleNode`."""
 
     def param(self, name: str) -> Parameter | None:
-        """A parameter that nodes of the class have, by its name."""
+        """Find a parameter of the class, or of every node, by name."""
         return next((p for p in self.params if p.name == name), COMMON_PARAMETERS.get(name))
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data that `from_json` reads back."""
+        """Return the interface as JSON, which `from_json` reads."""
         data = asdict(self)
         for param in data["params"]:
             if isinstance(param["default"], bytes):
@@ -317,10 +317,10 @@ def _parameter(data: dict[str, Any]) -> Parameter:
 
 
 def type_of(value: Any) -> ParamType:
-    """The parameter type of a Python value.
+    """Return the parameter type of a Python value.
 
     Raises:
-        ParameterError: The value has none.
+        ParameterError: No parameter can have the value.
     """
     if isinstance(value, bool):
         return "bool"
@@ -340,12 +340,12 @@ def type_of(value: Any) -> ParamType:
 
 
 def type_id(value: Any) -> int:
-    """The number of rcl_interfaces/msg/ParameterType for a value; 0 for None, which is not set."""
+    """Return the number of a value's type in rcl_interfaces/msg/ParameterType; 0 (not set) for None."""
     return 0 if value is None else TYPE_IDS[type_of(value)]
 
 
 def may_make(dynamic_names: bool | Sequence[str], full_name: str) -> bool:
-    """Whether a class that declares `dynamic_names` may make a topic or service called `full_name` at run time."""
+    """Return whether a class with some `dynamic_names` may create an endpoint `full_name` at run time."""
     if isinstance(dynamic_names, bool):
         return dynamic_names
     return any(fnmatchcase(full_name, pattern) for pattern in dynamic_names)

@@ -1,6 +1,6 @@
-"""ROS 2 names: what is legal, how relative and private names become full ones, and how remap rules change them.
+"""ROS 2 names: their rules, the expansion of relative and private names, and remapping.
 
-The derivation of every name is kept, so that a user can be told why a topic is called what it is called.
+The derivation of every name is kept, so that its origin can be explained to users.
 
 Source: ROS 2 design articles "Topic and Service name mapping" and "Static remapping"; rcl `expand_topic_name`, `remap`.
 """
@@ -21,16 +21,17 @@ _TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _SUBSTITUTION = re.compile(r"\{([^}]*)\}")
 MAX_LENGTH = 255
-"""Characters in a full name, as in rmw."""
+"""Length limit in characters of a full name, as in rmw."""
 CHOICES_BOUND = 5_000
-"""Choices that a word is compared with: other processes announce as many names as they like, and each takes 10 us."""
+"""Number of choices that a word is compared with: others may announce any number of names, and each takes 10 us."""
 
 
 def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | None:
-    """The choice most like `word`, or None when none is like it; `cutoff` is 1 for the very same.
+    """Return the choice most similar to a word; None if none is similar.
 
     Args:
-        choices: Of more than `CHOICES_BOUND`, the first are compared.
+        choices: Only the first `CHOICES_BOUND` are compared.
+        cutoff: The least similarity, up to 1 for equality.
     """
     import difflib  # only after a mistake
 
@@ -39,10 +40,10 @@ def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | 
 
 
 def whole_rule(match: str, replacement: str, known: Iterable[str]) -> str:
-    """A sentence that helps with a remap rule of the first part of names, as `turtle1:=turtle2`; else nothing.
+    """Return a hint for a remap rule of only the first part of names, as `turtle1:=turtle2`; empty for other rules.
 
     Args:
-        known: The names that a node has.
+        known: The names of the node.
     """
     head = match.strip("/") + "/"
     found = next((name for name in known if head != "/" and name.removeprefix("/").startswith(head)), None)
@@ -53,10 +54,10 @@ def whole_rule(match: str, replacement: str, known: Iterable[str]) -> str:
 
 
 def did_you_mean(word: str, choices: Iterable[str], hidden: Iterable[str] = ()) -> str:
-    """A sentence that helps with a misspelt `word`: the nearest choice, else all of a short list, else nothing.
+    """Return a hint for a misspelt word: the nearest choice, else all of a short list, else empty.
 
     Args:
-        hidden: Choices that are named only if they are near.
+        hidden: Further choices, which are named only as the nearest one.
     """
     known = sorted(choices)
     best = nearest(word, [*known, *sorted(hidden)])
@@ -68,10 +69,10 @@ def did_you_mean(word: str, choices: Iterable[str], hidden: Iterable[str] = ()) 
 
 
 def check_node_name(name: str) -> str:
-    """`name` itself when a node may be called that.
+    """Check the name of a node, and return it.
 
     Raises:
-        InvalidName: Anything but letters, digits and underscores, or a leading digit.
+        InvalidName: The name has other characters than letters, digits and underscores, or begins with a digit.
     """
     if not _NODE.match(name):
         raise InvalidName(
@@ -82,7 +83,7 @@ def check_node_name(name: str) -> str:
 
 
 def check_full_name(name: str, what: str = "name") -> str:
-    """`name` itself when it is a full topic, service or node name such as `/a/b`.
+    """Check a full topic, service or node name such as `/a/b`, and return it.
 
     Raises:
         InvalidName: It does not begin with `/`, ends with `/`, or a part is empty or has a wrong character.
@@ -109,16 +110,16 @@ def _fault(name: str) -> str | None:
 
 
 def _legal(token: str) -> str:
-    """The end of a sentence on a part of a name that is not legal: one that is, and most like it."""
+    """Return a hint for an illegal part of a name: the most similar legal one."""
     near = re.sub(r"\W+", "_", token, flags=re.ASCII).strip("_")
     return f"; did you mean {near!r}?" if near != token and _NODE.match(near) else ""
 
 
 def check_namespace(namespace: str) -> str:
-    """The namespace in its full form (`/`, `/a/b`); a missing leading slash is added.
+    """Check a namespace, and return it with a leading slash (`/`, `/a/b`).
 
     Raises:
-        InvalidName: It has parts that are not legal names.
+        InvalidName: A part is not a legal name.
     """
     if namespace in ("", "/"):
         return "/"
@@ -127,25 +128,25 @@ def check_namespace(namespace: str) -> str:
 
 
 def join(namespace: str, name: str) -> str:
-    """`name` inside `namespace`; an absolute name stays as it is."""
+    """Return a name within a namespace; an absolute name is returned unchanged."""
     if name.startswith("/"):
         return name
     return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
 
 
 def split(full_name: str) -> tuple[str, str]:
-    """A full name as (namespace, last part): `/a/b` is (`/a`, `b`), `/b` is (`/`, `b`)."""
+    """Split a full name into namespace and last part: `/a/b` into (`/a`, `b`), `/b` into (`/`, `b`)."""
     namespace, _, last = full_name.rpartition("/")
     return namespace or "/", last
 
 
 def is_hidden(name: str) -> bool:
-    """Whether a part of the name begins with an underscore; listings leave such names out."""
+    """Return whether a part of a name begins with an underscore; listings omit such names."""
     return any(part.startswith("_") for part in name.split("/"))
 
 
 def expand(name: str, namespace: str, node: str) -> str:
-    """The full name of `name` as used by node `node` in `namespace`, before any remap.
+    """Expand a name as used by a node in a namespace to its full name, before any remap.
 
     Absolute names stay, relative ones join the namespace, `~` is the node, `{node}` and `{ns}` are substituted.
 
@@ -174,18 +175,18 @@ def _substitute(word: str, name: str, namespace: str, node: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Remap:
-    r"""One rule `match:=replacement`, perhaps for one node only, perhaps for one kind of name only.
+    r"""A rule `match:=replacement`, perhaps for only one node or one kind of name.
 
-    In `match`, `*` stands for one part of a name and `**` for any number of them: `/turtle1/**:=/robot/\1`.
+    In `match`, `*` matches one part of a name and `**` any number of them: `/turtle1/**:=/robot/\1`.
     """
 
     match: str
     replacement: str
-    r"""May have `\1` and so on, for what the wildcards stand for."""
+    r"""The new name; `\1` and so on are the matches of the wildcards."""
     node: str | None = None
     kind: Kind | None = None
     source: str = ""
-    """Where the rule was written, for messages."""
+    """The origin of the rule, for messages."""
 
     def __str__(self) -> str:
         prefix = f"{self.node}:" if self.node else ""
@@ -193,7 +194,7 @@ class Remap:
 
     @classmethod
     def parse(cls, text: str, source: str = "") -> Remap:
-        """A rule from the command line: `from:=to`, `node:from:=to`, `__ns:=/ns`, `__node:=name`.
+        """Parse a rule of the command line: `from:=to`, `node:from:=to`, `__ns:=/ns`, `__node:=name`.
 
         Raises:
             InvalidName: There is no `:=`, a side is empty, `node` is not a node name, or `__word` is not a known one.
@@ -222,7 +223,7 @@ class Remap:
 
 
 _STAND_INS = {"*": "wildcardOne", "**": "wildcardMany"}
-"""Legal parts of a name, in the place of wildcards while a rule is made a full name."""
+"""Legal parts of a name that replace wildcards while a rule is expanded to a full name."""
 _WILDCARDS = {"wildcardOne": "/([^/]+)", "wildcardMany": "((?:/[^/]+)*)"}
 
 
@@ -230,10 +231,10 @@ _REFERENCE = re.compile(r"\\(\d)")
 
 
 def check_references(replacement: str, pattern: re.Pattern[str]) -> None:
-    r"""Check that a replacement refers, by `\1` and so on, to wildcards that there are.
+    r"""Check that the references of a replacement, `\1` and so on, are to wildcards of the rule.
 
     Raises:
-        InvalidName: It does not.
+        InvalidName: The rule has no such wildcard.
     """
     for number in _REFERENCE.findall(replacement):
         if not 0 < int(number) <= pattern.groups:
@@ -241,10 +242,10 @@ def check_references(replacement: str, pattern: re.Pattern[str]) -> None:
 
 
 def _filled(replacement: str, found: re.Match[str]) -> str:
-    """A replacement with what the wildcards stand for.
+    """Substitute the matches of wildcards in a replacement.
 
     Raises:
-        InvalidName: It asks for one that is not there.
+        InvalidName: The rule has no such wildcard.
     """
     check_references(replacement, found.re)
     text = _REFERENCE.sub(lambda reference: found[int(reference[1])].removeprefix("/"), replacement)
@@ -253,7 +254,7 @@ def _filled(replacement: str, found: re.Match[str]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """How a name came to be: what was written, its full form, and the rule that changed it, if one did."""
+    """The derivation of a name: as given, expanded, and resolved by a rule, if one matched."""
 
     given: str
     expanded: str
@@ -272,12 +273,12 @@ class Resolution:
 
 @dataclass(slots=True)
 class Resolver:
-    """The names of one node: its own, and every name it uses.
+    """The names of a node: its own, and every name that it uses.
 
     Args:
         name: The node's name before `__node` rules.
         namespace: Its namespace before `__ns` rules.
-        rules: In order of precedence; the first that matches wins, and its result is not remapped again.
+        rules: Remap rules; the first that matches wins, and its result is not remapped again.
     """
 
     name: str
@@ -308,11 +309,11 @@ class Resolver:
         return join(self.namespace, self.name)
 
     def full(self, name: str) -> str:
-        """The full name before any remap. Raises InvalidName when it is not legal."""
+        """Return a full name before any remap. Raises InvalidName if it is not legal."""
         return expand(name, self.namespace, self.name)
 
     def pattern(self, match: str) -> re.Pattern[str]:
-        """What the full names are like that a rule matches. Raises InvalidName when its match is not legal."""
+        """Return the pattern of the full names that a rule matches. Raises InvalidName if its match is not legal."""
         if "*" not in match:
             return re.compile(re.escape(self.full(match)))
         try:
@@ -324,7 +325,7 @@ class Resolver:
         return re.compile("".join(_WILDCARDS.get(token, f"/{token}") for token in full[1:].split("/")))
 
     def resolve(self, name: str, kind: Kind = "topic") -> str:
-        """The full, remapped name.
+        """Return the full, remapped name.
 
         Raises:
             InvalidName: `name`, or a rule that applies to it, is not legal.
@@ -340,5 +341,5 @@ class Resolver:
         return expanded
 
     def unused(self) -> list[Remap]:
-        """Rules meant for this node that none of its names has matched so far."""
+        """Return the rules for this node that have matched none of its names so far."""
         return [rule for rule in self.rules if rule not in self.used]

@@ -1,4 +1,4 @@
-"""Quality of service: what a publisher offers and a subscription asks for, in ROS 2's words and numbers.
+"""Quality of service profiles, with ROS 2's names and numbers.
 
 Source: rmw_qos_profile_t and the presets of rmw/qos_profiles.h.
 """
@@ -10,17 +10,17 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 
 INFINITE_NS = 9_223_372_036_854_775_807
-"""No limit, as rmw writes it: 9223372036 s and 854775807 ns."""
+"""The duration without limit, as in rmw: 9223372036 s and 854775807 ns."""
 
 DEFAULT_DEPTH = 42
-"""The depth rmw_zenoh gives an endpoint that asked for 0."""
+"""The depth that rmw_zenoh uses for a requested depth of 0."""
 
 
 class Reliability(IntEnum):
     RELIABLE = 1
     BEST_EFFORT = 2
     BEST_AVAILABLE = 4
-    """Whatever fits the other side when the endpoint is opened; never announced."""
+    """Adapted to the other side when the endpoint opens; never on the wire."""
 
 
 class Durability(IntEnum):
@@ -51,10 +51,10 @@ _DURATIONS = ("deadline_ns", "lifespan_ns", "lease_ns")
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """One endpoint's profile. Durations are in nanoseconds, `INFINITE_NS` for none."""
+    """The profile of an endpoint. Durations are in nanoseconds; `INFINITE_NS` is no limit."""
 
     depth: int = 10
-    """Messages kept, for KEEP_LAST."""
+    """Number of messages kept with KEEP_LAST."""
     reliability: Reliability = Reliability.RELIABLE
     durability: Durability = Durability.VOLATILE
     history: History = History.KEEP_LAST
@@ -88,18 +88,18 @@ class Qos:
 
     @classmethod
     def of(cls, profile: Qos | int) -> Qos:
-        """A profile as it is, or ROS 2's short form: a number is the depth of the default profile.
+        """Return a profile unchanged, or the default profile with a depth, ROS 2's short form.
 
         Raises:
-            ValueError: A negative depth.
+            ValueError: The depth is negative.
         """
         return profile if isinstance(profile, Qos) else cls(depth=profile)
 
     def adapted(self, others: Iterable[Qos]) -> Qos:
-        """The profile with each BEST_AVAILABLE settled: the strongest that fits all of `others`, as they are now.
+        """Replace each BEST_AVAILABLE by the strongest policy that fits all of `others`.
 
         Args:
-            others: The profiles of the publishers that a subscription finds, or the other way round.
+            others: The present profiles of the other side: of publishers for a subscription, or the reverse.
         """
         found = list(others)
         reliable = all(q.reliability is Reliability.RELIABLE for q in found)
@@ -113,9 +113,9 @@ class Qos:
 
 
 def incompatible(offered: Qos, requested: Qos) -> list[str]:
-    """The policies by which DDS would keep a publisher from a subscription that asks for more than it offers.
+    """Return the policies in which a subscription requests more than a publisher offers, so that DDS would not match.
 
-    rmw_zenoh and graphflow deliver all the same; a graph meant for every middleware must have none of these.
+    rmw_zenoh and graphflow deliver anyway; a graph for every middleware must have no such policies.
 
     Source: OMG DDS 1.4, 2.2.3; rmw_dds_common qos_profile_check_compatible.
     """
@@ -130,7 +130,7 @@ def incompatible(offered: Qos, requested: Qos) -> list[str]:
 
 
 def on_offer(offered: Qos, policies: Iterable[str]) -> str:
-    """The values of policies that a publisher offers, in words: a subscription that asks for these is not refused."""
+    """Return the offered values of policies as text: a subscription that requests these matches."""
     words = {
         "reliability": offered.reliability.name,
         "durability": offered.durability.name,
@@ -167,4 +167,4 @@ PROFILES: dict[str, Qos] = {
     "best_available": BEST_AVAILABLE,
     "system_default": SYSTEM_DEFAULT,
 }
-"""ROS 2's profiles under the names that `ros2 topic pub --qos-profile` takes."""
+"""ROS 2's profiles by the names for `ros2 topic pub --qos-profile`."""

@@ -1,6 +1,6 @@
-"""Files of others, found or named: nobody knows what they are, so only regular ones are read, up to a size.
+"""Safe reading of files of unknown kind: only regular files, up to a size.
 
-A FIFO or a device that is called `package.xml` would keep whoever opens it waiting, and some files have no end.
+Opening a FIFO or a device that is called `package.xml` could block, and some files have no end.
 """
 
 from __future__ import annotations
@@ -11,21 +11,21 @@ import stat
 from pathlib import Path
 
 FOUND_BOUND = 10_000_000
-"""Bytes that a file may have: sources, definitions and manifests have far less."""
+"""Size limit in bytes: sources, definitions and manifests are far smaller."""
 
 
 def found_bytes(path: Path, bound: int = FOUND_BOUND) -> bytes:
-    """The content of a file; never waits.
+    """Read a file without ever blocking.
 
     Raises:
-        OSError: It cannot be read, is no regular file, or has more than `bound` bytes.
+        OSError: The file cannot be read, is not regular, or has more than `bound` bytes.
     """
-    _refuse_others(os.stat(path), path)  # first: opening a device can do something
+    _refuse_others(os.stat(path), path)  # before opening: opening a device may have effects
     with open(path, "rb", opener=_open_at_once) as file:
         about = os.fstat(file.fileno())
         _refuse_others(about, path)
         data = file.read(min(about.st_size, bound) + 1) or b""
-        while len(data) <= bound and (more := file.read(1 << 16)):  # it grows, or does not say how long it is
+        while len(data) <= bound and (more := file.read(1 << 16)):  # the file grows, or reports no size, as in /proc
             data += more
     if len(data) > bound:
         raise OSError(errno.EFBIG, f"it has more than {bound:,} bytes", str(path))
@@ -33,11 +33,11 @@ def found_bytes(path: Path, bound: int = FOUND_BOUND) -> bytes:
 
 
 def found_text(path: Path, errors: str = "strict", bound: int = FOUND_BOUND) -> str:
-    """The content of a file in UTF-8, with the ends of lines as Python has them. Arguments and errors as for `open`.
+    """Read a file as UTF-8, with all line breaks as line feeds. `errors` as for `open`.
 
     Raises:
         OSError: As for `found_bytes`.
-        UnicodeDecodeError: It is no text.
+        UnicodeDecodeError: The file is not UTF-8.
     """
     return found_bytes(path, bound).decode(errors=errors).replace("\r\n", "\n").replace("\r", "\n")
 

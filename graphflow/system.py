@@ -1,8 +1,8 @@
-"""This machine, its user, and which means of the operating system are used: Linux's, or those every system has.
+"""The operating system: the machine, the user, and the choice between Linux's mechanisms and portable ones.
 
-The portable ones start more slowly and cost more memory: workers are spawned instead of forked, the control socket is
-on loopback with a token instead of a Unix socket, the loop is woken as asyncio does it. Windows and macOS use them;
-`GRAPHFLOW_PORTABLE=1` selects them on Linux too, so that they can be tested there.
+The portable ones are slower to start and use more memory: workers are spawned instead of forked, the control socket is
+on loopback with a token instead of a Unix socket, and the event loop is woken as asyncio does it. Windows and macOS use
+them; `GRAPHFLOW_PORTABLE=1` selects them on Linux, too, for tests.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from typing import Any
 
 PORTABLE_VARIABLE = "GRAPHFLOW_PORTABLE"
 SITE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rclpy", "site")
-"""The folder of what is imported under ROS's names."""
+"""The folder of the packages that are imported under ROS's names."""
 ROS2 = os.path.join(os.path.dirname(SITE), "bin")
-"""The folder with a program `ros2`, which is graphflow."""
+"""The folder of graphflow's program `ros2`."""
 
 _COLLECTIONS = gc.get_threshold()
 
@@ -36,17 +36,17 @@ def collect_normally() -> None:
 
 
 def is_portable() -> bool:
-    """Whether only the means that every system has are used."""
+    """Return whether only portable mechanisms are used."""
     return sys.platform != "linux" or os.environ.get(PORTABLE_VARIABLE, "") not in ("", "0")
 
 
 def user_id() -> int:
-    """This process's user, 0 where the system has none."""
+    """Return the user id of this process; 0 if the system has none."""
     return os.getuid() if hasattr(os, "getuid") else 0
 
 
 def terminal_name() -> str:
-    """The terminal that this process is used from, as `who` prints it; the process where there is none."""
+    """Return the terminal of this process, as `who` prints it; the process itself if there is none."""
     try:
         return os.ttyname(0).removeprefix("/dev/")
     except (OSError, AttributeError):
@@ -54,13 +54,13 @@ def terminal_name() -> str:
 
 
 def detached() -> dict[str, Any]:
-    """Options of `subprocess.Popen` for a process that a terminal's Ctrl-C does not reach."""
+    """Return options of `subprocess.Popen` for a process that the terminal's Ctrl-C does not reach."""
     create_new_process_group = 0x200
     return {"creationflags": create_new_process_group} if sys.platform == "win32" else {"start_new_session": True}
 
 
 def offer_ros2() -> None:
-    """Let what this process starts find a program `ros2`: graphflow, unless a ROS 2 is sourced."""
+    """Put graphflow's `ros2` on the PATH of processes started from now on, unless a ROS 2 is sourced."""
     import shutil
 
     if shutil.which("ros2") is None:
@@ -69,18 +69,18 @@ def offer_ros2() -> None:
 
 
 def host_name() -> str:
-    """This machine's name as used in tokens."""
-    import platform  # importing it takes a tenth of a listing's time
+    """Return this machine's name, as used in liveliness tokens."""
+    import platform  # slow to import: a tenth of a listing's time
 
     return re.sub(r"[^\w.-]", "_", platform.node())
 
 
 def end_with_parent(pid: int, number: int) -> None:
-    """Have the system send this process a signal when its parent ends, however that happens; on Linux only.
+    """Have Linux send this process a signal when its parent ends for any reason; does nothing on other systems.
 
     Args:
         pid: The parent, which may have ended already.
-        number: The signal's.
+        number: The number of the signal.
     """
     if sys.platform != "linux":
         return
@@ -88,5 +88,5 @@ def end_with_parent(pid: int, number: int) -> None:
 
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, int(number))
-    if os.getppid() != pid:
+    if os.getppid() != pid:  # it ended before prctl, which then sends nothing
         os.kill(os.getpid(), number)

@@ -1,4 +1,4 @@
-"""Points in time and spans of time in whole nanoseconds, as ROS 2 carries them. No clock is read here."""
+"""Points in time and durations in whole nanoseconds, as in ROS 2. No clock is read here."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ NANOSECONDS = 1_000_000_000
 
 
 def to_ns(seconds: float) -> int:
-    """Seconds as whole nanoseconds, rounded to nearest. Raises TypeError for what is no number."""
+    """Convert seconds to whole nanoseconds, rounded to nearest. Raises TypeError for other values than numbers."""
     try:
-        return round((seconds + 0) * NANOSECONDS)  # a text times a number would be a long text
+        return round((seconds + 0) * NANOSECONDS)  # `+ 0` refuses texts, which `*` would repeat
     except TypeError:
         pass
     raise TypeError(f"a time is a number of seconds, such as 0.5, not {seconds!r}")
 
 
 def ago(seconds: float) -> str:
-    """A span in two units at most: `12s`, `3m04s`, `2h05m`."""
+    """Format a duration in at most two units: `12s`, `3m04s`, `2h05m`."""
     whole = max(0, int(seconds))
     if whole < 60:
         return f"{whole}s"
@@ -29,7 +29,7 @@ def ago(seconds: float) -> str:
 
 
 class HasFields(Protocol):
-    """A message of type builtin_interfaces/msg/Time or Duration, of whichever library."""
+    """A message of type builtin_interfaces/msg/Time or Duration, of any library."""
 
     @property
     def sec(self) -> int: ...
@@ -42,7 +42,7 @@ def _nanoseconds(message: HasFields) -> int:
 
 
 class TimeFields:
-    """Arithmetic of the message class builtin_interfaces/msg/Time: as that of a `Time`, with which it mixes."""
+    """Arithmetic of the message class builtin_interfaces/msg/Time, which mixes with `Time`."""
 
     __slots__ = ()
     sec: int
@@ -77,7 +77,7 @@ class TimeFields:
 
 
 class DurationFields:
-    """Arithmetic of the message class builtin_interfaces/msg/Duration: as that of a `Duration`, with which it mixes."""
+    """Arithmetic of the message class builtin_interfaces/msg/Duration, which mixes with `Duration`."""
 
     __slots__ = ()
     sec: int
@@ -119,7 +119,7 @@ def _duration(value: Duration | DurationFields) -> Duration:
 
 
 def _refuse_fraction(name: str, value: object) -> None:
-    """See that a number of nanoseconds is a whole one, of whatever kind. Raises TypeError if it is not."""
+    """Raise TypeError for a number of nanoseconds that is not of an integer type."""
     if not hasattr(value, "__index__"):
         way = "Duration.of(seconds)" if name == "Duration" else "self.clock.now(), or Time(round(seconds * 1e9))"
         raise TypeError(f"{name} takes whole nanoseconds, not {value!r}; write {way}")
@@ -127,7 +127,7 @@ def _refuse_fraction(name: str, value: object) -> None:
 
 @dataclass(frozen=True, order=True, slots=True)
 class Duration:
-    """A span of time; may be negative. Fits builtin_interfaces/msg/Duration."""
+    """A duration, which may be negative. Usable as a builtin_interfaces/msg/Duration."""
 
     nanoseconds: int
 
@@ -137,12 +137,12 @@ class Duration:
 
     @classmethod
     def of(cls, seconds: float) -> Duration:
-        """A span of this many seconds."""
+        """Return a duration of some seconds."""
         return cls(to_ns(seconds))
 
     @classmethod
     def from_msg(cls, message: HasFields) -> Duration:
-        """The span in a message of type builtin_interfaces/msg/Duration."""
+        """Return the duration of a message of type builtin_interfaces/msg/Duration."""
         return cls(_nanoseconds(message))
 
     @property
@@ -156,7 +156,7 @@ class Duration:
 
     @property
     def nanosec(self) -> int:
-        """The rest, 0 to 999,999,999, as the message field."""
+        """The remaining nanoseconds, 0 to 999,999,999, as the message field."""
         return self.nanoseconds % NANOSECONDS
 
     def __add__(self, other: Duration | DurationFields) -> Duration:
@@ -178,10 +178,10 @@ class Duration:
 
 @dataclass(frozen=True, order=True, slots=True)
 class Time:
-    """A point on a clock, in nanoseconds since its epoch. Fits builtin_interfaces/msg/Time.
+    """A point in time, in nanoseconds since the epoch of its clock. Usable as a builtin_interfaces/msg/Time.
 
-    `Time - Time` is a `Duration`; `Time + Duration` and `Time - Duration` are a `Time`. Messages may stand in place of
-    either, such as `header.stamp`.
+    `Time - Time` is a `Duration`; `Time + Duration` and `Time - Duration` are a `Time`. Messages, such as
+    `header.stamp`, can replace either.
     """
 
     nanoseconds: int
@@ -192,7 +192,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, message: HasFields) -> Time:
-        """The moment in a message of type builtin_interfaces/msg/Time, such as `header.stamp`."""
+        """Return the time of a message of type builtin_interfaces/msg/Time, such as `header.stamp`."""
         return cls(_nanoseconds(message))
 
     @property
@@ -206,7 +206,7 @@ class Time:
 
     @property
     def nanosec(self) -> int:
-        """The rest, 0 to 999,999,999, as the message field."""
+        """The remaining nanoseconds, 0 to 999,999,999, as the message field."""
         return self.nanoseconds % NANOSECONDS
 
     def __add__(self, other: Duration | DurationFields) -> Time:

@@ -1,4 +1,4 @@
-"""Quotes, dashes and spaces as slides and web pages have them: they look like those of a keyboard, and are others."""
+"""Typographic quotes, dashes and spaces, which come with text copied from slides and web pages."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ _PLAIN = str.maketrans({**_QUOTES, **dict.fromkeys(DASHES, "-"), "\N{NO-BREAK SP
 
 
 def plain(text: str) -> str:
-    """A text with the characters of a keyboard."""
+    """Replace typographic characters by those of a keyboard."""
     return text.translate(_PLAIN)
 
 
 def is_quoted(text: str) -> bool:
-    """Whether a text stands in quotes that are none: `“hi”`."""
+    """Return whether a text is in typographic quotes: `“hi”`."""
     return len(text) > 1 and text[0] in _QUOTES and text[-1] in _QUOTES
 
 
 def option(word: str) -> str:
-    """The option that a word is meant as which begins with such a dash; empty for any other word, and for numbers.
+    """Return the option meant by a word with a typographic dash; empty for any other word, and for numbers.
 
-    One that stands for two hyphens, as many programs write it, is told by the name behind it: `—once`, `–r`.
+    Many programs replace two hyphens by one dash; the length of the name decides: `—once` is `--once`, `–r` is `-r`.
     """
     name = word.lstrip("-" + DASHES)
     dashes = word[: len(word) - len(name)]

@@ -11,18 +11,15 @@ and all of graphflow's own traffic, stay on the machine.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictStr, ValidationError
 
 from graphflow.errors import GraphFileError, Problem
-from graphflow.graph.model import keys_of
+from graphflow.graph.model import Fault, keys_of
 from graphflow.graph.zenoh_address import endpoint
 from graphflow.markup import source
 from graphflow.names import did_you_mean
-
-if TYPE_CHECKING:
-    from pydantic_core import ErrorDetails
 
 
 def _encrypted(text: str) -> str:
@@ -83,7 +80,7 @@ def read_profile(path: Path) -> NetProfile:
     return profile.model_copy(update={"tls": Certificates(**files)})
 
 
-def _problem(src: source.Source, fault: ErrorDetails) -> Problem:
+def _problem(src: source.Source, fault: Fault) -> Problem:
     path = tuple(part for part in fault["loc"])
     if fault["type"] == "extra_forbidden":
         known = keys_of(Certificates if path[0] == "tls" else NetProfile)

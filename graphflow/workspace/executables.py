@@ -1,4 +1,4 @@
-"""What ROS's pairs of package and executable are here: nodes that come with graphflow, or of the project."""
+"""Executables by package and name: bundled nodes, and those of projects, workspaces and distributions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import util
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
@@ -40,33 +40,33 @@ EXECUTABLES = {
     ("lifecycle", "lifecycle_listener"): "nodes.lifecycle_listener:LifecycleListener",
     ("lifecycle_py", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
 }
-"""Executables of ROS 2's packages whose nodes come with graphflow."""
+"""Executables of ROS 2's packages with nodes bundled with graphflow."""
 _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "mimic": "turtle_mimic"} | {
     "lifecycle_talker": "lc_talker",
     "lifecycle_listener": "lc_listener",
 }
-"""Names of nodes that are not those of their executables."""
+"""Names of nodes that differ from those of their executables."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 SLIP = 0.7
-"""How alike two names are, from 0 to 1, if one is taken for a slip of the other."""
+"""Similarity, from 0 to 1, from which a name counts as a misspelling of another."""
 _SEARCH_DEPTH = 4
-"""Folders below a project's root in which packages are looked for."""
+"""Depth in folders of the search for packages below a project's root."""
 
 
 class Executable(NamedTuple):
-    """A node class, and the name that the node has unless another is given."""
+    """A node class with the default name of its node."""
 
     class_path: str
     node_name: str
 
 
 def find(package: str, executable: str, root: Path) -> Executable | None:
-    """The node that an executable is; None if there is none of that name here.
+    """Find the node class of an executable; None if there is none of that name.
 
     Args:
-        root: The folder of the project: a module `nodes/EXECUTABLE.py` with one class is an executable of the package
-            that is called as the project, and so is what a `setup.py` has among its `console_scripts`. The nodes of
-            installed distributions come after those.
+        root: The project's folder. A module `nodes/EXECUTABLE.py` with one class is an executable of the package with
+            the project's name, and so is an entry of `console_scripts` in its `setup.py`. Installed distributions are
+            searched last.
     """
     if (package, executable) in EXECUTABLES:
         return Executable(EXECUTABLES[package, executable], _NAMES.get(executable, executable))
@@ -85,15 +85,15 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
 
 
 def as_name(executable: str) -> str:
-    """An executable, be it a file, as a node's name."""
+    """Convert the name of an executable, or of a file, to a node's name."""
     return re.sub(r"[\W_]+", "_", Path(executable).name.removesuffix(".py")).strip("_") or "program"
 
 
 class NoExecutable(LookupError):
-    """There is no executable of that name.
+    """No executable has the name.
 
     Attributes:
-        is_slip: Whether it is a mistake in a name, or in the package; else it could be elsewhere.
+        is_slip: Whether a name is misspelt, or the package is faulty; else the executable may be installed elsewhere.
     """
 
     def __init__(self, text: str, *, is_slip: bool) -> None:
@@ -102,13 +102,13 @@ class NoExecutable(LookupError):
 
 
 def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, str]) -> tuple[str, ...]:
-    """The words that run an executable which is no class: of a workspace, or else of a ROS 2.
+    """Return the command line of an executable that is no class: of a workspace, a distribution, or ROS 2.
 
     Args:
         env: The environment.
 
     Raises:
-        NoExecutable: Nobody here has one of that name; the text says which there are.
+        NoExecutable: There is none of that name; the text lists those that exist.
     """
     own = workspace.packages.get(package)
     outside = package_of(package) if own is None else None
@@ -140,16 +140,16 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
 
 
 def is_ros_sourced(env: Mapping[str, str]) -> bool:
-    """Whether there is a ROS 2: a program `ros2` that is not graphflow's own."""
+    """Return whether a ROS 2 is sourced: a program `ros2` that is not graphflow's own."""
     found = shutil.which("ros2", path=env.get("PATH"))
     return found is not None and os.path.dirname(found) != ROS2
 
 
 def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Workspace) -> NoExecutable:
-    """Says that neither the workspace nor graphflow has an executable.
+    """Return the error for an executable that neither the workspace nor graphflow has.
 
     Args:
-        with_us: Those of its package that come with graphflow.
+        with_us: The bundled executables of its package.
     """
     if with_us:
         text = f"the package {package!r} has no executable {name!r} here{did_you_mean(name, with_us)}"
@@ -165,31 +165,31 @@ def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Wor
 
 
 def with_graphflow() -> list[tuple[str, str]]:
-    """The executables that come with graphflow, each with its package."""
+    """Return the bundled executables, each after its package."""
     programs = [(own.name, name.removesuffix(".py")) for own in bundled().packages.values() for name in own.executables]
     return [*EXECUTABLES, *programs]
 
 
 def of_ros() -> set[str]:
-    """The packages of ROS 2's that graphflow has in some form: messages, modules or executables."""
+    """Return the packages of ROS 2 that graphflow provides in some form: messages, modules or executables."""
     messages = {f.name for f in registry.BUNDLED.iterdir() if any((f / kind).is_dir() for kind in registry.KINDS)}
     return messages | {*os.listdir(SITE), *(package for package, _ in with_graphflow())}
 
 
 class Listed(NamedTuple):
-    """An executable as it is listed."""
+    """An executable in a listing."""
 
     package: str
     name: str
     class_path: str
-    """The module, from the folder of the project, and the class, or the function that is called."""
+    """The module, relative to the project, with the class or function."""
 
 
 def all_executables(root: Path) -> list[Listed]:
-    """All that `find` would find, nodes that come with graphflow and those of the project, and what a workspace has.
+    """List all executables: bundled ones, and those of the project, its workspace and installed distributions.
 
     Args:
-        root: The folder of the project.
+        root: The project's folder.
     """
     rows = [Listed(package, name, path) for (package, name), path in EXECUTABLES.items()]
     for package in project_packages(root):
@@ -212,14 +212,14 @@ def _rows_of(one: Installed) -> list[Listed]:
 
 
 def project_packages(root: Path) -> list[str]:
-    """The packages of a project: those with a `package.xml`, and the project itself where it has nodes."""
+    """Return the packages of a project: those with a `package.xml`, and the project itself if it has nodes."""
     own = _project_name(root) or root.name
     found = [name for name, _ in _described_packages(root)]
     return sorted({*found, *([own] if (root / "nodes").is_dir() or project_nodes(root) else [])})
 
 
 def package_folder(package: str, root: Path) -> Path | None:
-    """The folder of a package: one with a `package.xml` in the project or its workspace, or the project itself."""
+    """Find the folder of a package: by `package.xml` in the project or its workspace, or the project itself."""
     found = next((folder for name, folder in _described_packages(root) if name == package), None)
     if found is not None:
         return found
@@ -230,7 +230,7 @@ def package_folder(package: str, root: Path) -> Path | None:
 
 
 def _described_packages(root: Path) -> Iterator[tuple[str, Path]]:
-    """The names and folders of packages with a `package.xml`, some folders down; folders may go meanwhile."""
+    """Yield the names and folders of packages with a `package.xml`; folders may disappear meanwhile."""
     for folder, folders, files in os.walk(root):
         depth = len(Path(folder).relative_to(root).parts)
         folders[:] = sorted(f for f in folders if not f.startswith(".")) if depth < _SEARCH_DEPTH - 1 else []
@@ -245,10 +245,10 @@ def _described_packages(root: Path) -> Iterator[tuple[str, Path]]:
 
 
 def package_share(package: str, root: Path, env: Mapping[str, str]) -> Path | None:
-    """The folder of a package's files: of the project's, of a ROS 2 that is sourced, or of an installed Python package.
+    """Find the `share` folder of a package: of the project, of a sourced ROS 2, or of an installed Python package.
 
     Args:
-        root: The folder of the project.
+        root: The project's folder.
         env: The environment.
     """
     own, sourced = package_folder(package, root), _sourced(package, env)
@@ -258,13 +258,13 @@ def package_share(package: str, root: Path, env: Mapping[str, str]) -> Path | No
 
 
 def package_prefix(package: str, root: Path, env: Mapping[str, str]) -> Path | None:
-    """The folder below which a package is installed. Arguments as for `package_share`."""
+    """Find the prefix under which a package is installed. Arguments as for `package_share`."""
     own, sourced = package_folder(package, root), _sourced(package, env)
     return own or sourced or (Path(sys.prefix) if _python_package(package) else _bundled_folder(package))
 
 
 def package_program(program: str, package: str, root: Path, env: Mapping[str, str]) -> Path | None:
-    """A package's program: installed with it, among its scripts, or beside this Python. Arguments as for `find`."""
+    """Find a program of a package: installed, in its `scripts`, or beside this Python. Arguments as for `find`."""
     own, sourced = package_folder(package, root), _sourced(package, env)
     folders = [own / "scripts", own / package, own] if own else []
     folders += [sourced / "lib" / package] if sourced else []
@@ -274,17 +274,17 @@ def package_program(program: str, package: str, root: Path, env: Mapping[str, st
 
 
 def _sourced(package: str, env: Mapping[str, str]) -> Path | None:
-    """The prefix of a package in a ROS 2 that is sourced."""
+    """Find the prefix of a package in a sourced ROS 2."""
     prefixes = [Path(p) for p in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     index = Path("share/ament_index/resource_index/packages")
     return next((prefix for prefix in prefixes if (prefix / index / package).is_file()), None)
 
 
 def _python_package(name: str) -> Path | None:
-    """The folder of an installed Python package."""
+    """Find the folder of an installed Python package."""
     try:
         spec = util.find_spec(name) if name.isidentifier() else None
-    except ValueError:  # a module that was not imported the usual way, such as __main__
+    except ValueError:  # a module without a spec, such as __main__
         spec = None
     folders = list(spec.submodule_search_locations or []) if spec else []
     return Path(folders[0]) if folders else None
@@ -296,7 +296,7 @@ def _bundled_folder(package: str) -> Path | None:
 
 
 def _scripts(package: str, root: Path) -> dict[str, str]:
-    """The modules of a package's executables, from the `console_scripts` of its `setup.py`."""
+    """Return the modules of a package's executables by name, from `console_scripts` in its `setup.py`."""
     folder = package_folder(package, root)
     if folder is None or folder != root or not (root / "setup.py").is_file():
         return {}  # only modules below the root can be imported
@@ -310,7 +310,7 @@ def _scripts(package: str, root: Path) -> dict[str, str]:
 
 
 def project_nodes(root: Path) -> dict[str, str]:
-    """The class paths of a project's nodes that its `pyproject.toml` names as entry points, by executable."""
+    """Return the class paths of the node entry points in a project's `pyproject.toml`, by executable."""
     points = _project(root).get("entry-points", {})
     nodes = points.get(GROUP, {}) if isinstance(points, dict) else {}
     return {str(name): str(path) for name, path in nodes.items()} if isinstance(nodes, dict) else {}
@@ -320,7 +320,7 @@ def _project_name(root: Path) -> str:
     return str(_project(root).get("name", ""))
 
 
-def _project(root: Path) -> dict[str, Any]:
+def _project(root: Path) -> dict[str, object]:
     try:
         found = tomllib.loads(found_text(root / "pyproject.toml")).get("project")
     except (OSError, ValueError):

@@ -1,7 +1,7 @@
 """Nodes and graph files of installed distributions: entry points, and `graphs/` and `interfaces/` of their packages.
 
 A distribution names its node classes in the group `graphflow.nodes`: `blinker = "my_robot.blinker:Blinker"`.
-Programs for rclpy are its console scripts, as those of ROS 2 packages are. Nothing is imported to know them.
+Programs for rclpy are its console scripts, as those of ROS 2 packages are. Nothing is imported to find them.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 GROUP = "graphflow.nodes"
 """The group of entry points that are node classes."""
 SITE_FOLDERS = ("site-packages", "dist-packages")
-"""The names of folders into which distributions are installed."""
+"""Names of the folders of installed distributions."""
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,13 @@ class Installed:
     """The nodes of a distribution."""
 
     name: str
-    """As a package of ROS 2's is called: letters, digits and `_`."""
+    """The name as a ROS 2 package has it: letters, digits and `_`."""
     nodes: Mapping[str, str]
     """The class paths of its node classes, by executable."""
     programs: Mapping[str, tuple[Path, EntryPoint]]
-    """The functions of its programs for rclpy, by executable, each with its file."""
+    """Files and functions of its programs for rclpy, by executable."""
     folders: tuple[Path, ...]
-    """The folders of its packages."""
+    """The folders of its Python packages."""
 
     @property
     def executables(self) -> list[str]:
@@ -52,29 +52,29 @@ class Installed:
 
 @cache
 def installed() -> dict[str, Installed]:
-    """The distributions that have nodes, or programs for rclpy, by their names."""
-    from importlib.metadata import distributions  # a tenth of what a short command imports
+    """Return the distributions with nodes or programs for rclpy, by name."""
+    from importlib.metadata import distributions  # slow to import: a tenth of a short command's start
 
     found: dict[str, Installed] = {}
     for one in map(_read, distributions()):
         if one is not None:
-            found.setdefault(one.name, one)  # of two, Python imports the first on its path
+            found.setdefault(one.name, one)  # Python imports the first of the same name on its path
     return found
 
 
 def package_of(name: str) -> Installed | None:
-    """A distribution, by its own name or that of a package of it."""
+    """Find a distribution by its own name or that of one of its packages."""
     known = installed()
     return known.get(name) or next((one for one in known.values() if any(f.name == name for f in one.folders)), None)
 
 
 def packages_with(executable: str) -> list[Installed]:
-    """The distributions that have an executable."""
+    """Return the distributions that have an executable."""
     return [one for one in installed().values() if executable in one.nodes or executable in one.programs]
 
 
 def graphs() -> dict[str, list[Path]]:
-    """All graph files that are installed, by `robot` and by `my_robot/robot`; several may have a name."""
+    """Return all installed graph files by `robot` and by `my_robot/robot`; a name may be that of several."""
     found: dict[str, list[Path]] = {}
     for one in installed().values():
         for name, file in one.graphs.items():
@@ -90,7 +90,7 @@ def interfaces() -> dict[str, Path]:
 
 
 def _tops(folder: Path) -> list[Path]:
-    """The folders with a package's `graphs/`: its own, and its project's where that is installed to be edited."""
+    """Return the folders with a package's `graphs/`: its own, and its project's if that is installed as editable."""
     return [folder, *([folder.parent] if (folder.parent / "pyproject.toml").is_file() else [])]
 
 
@@ -109,17 +109,17 @@ def _read(distribution: Distribution) -> Installed | None:
 
 
 def _program(distribution: Distribution, module: str, function: str) -> tuple[Path, EntryPoint] | None:
-    """The file and the function of a console script that is written for rclpy; None for any other."""
+    """Return the file and function of a console script written for rclpy; None for any other."""
     file = _located(distribution, module).with_suffix(".py")
     try:
         is_ours = b"rclpy" in file.read_bytes() and uses_ros(file)
-    except OSError:  # a package's `__init__.py`, or not where it was installed
+    except OSError:  # the module is a package's `__init__.py`, or its file has been moved
         return None
     return (file, EntryPoint(module, function)) if is_ours else None
 
 
 def _located(distribution: Distribution, module: str) -> Path:
-    """The path of a module without an ending: where it was installed, or its project if that is to be edited."""
+    """Return the path of a module without its suffix: as installed, or in its project if that is editable."""
     path = Path(*module.split("."))
     there = Path(str(distribution.locate_file("")))
     tops = (top for top in (there, *map(Path, sys.path)) if (top / path.parts[0] / "__init__.py").is_file())

@@ -1,4 +1,4 @@
-"""Faults of a `package.xml` that ROS's build tools refuse, where graphflow needs no more than its name."""
+"""Faults of a `package.xml` that ROS's build tools refuse; graphflow itself reads only the name."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from graphflow.reading import found_text
 
 
 def fault_of(file: Path) -> str | None:
-    """Where and why it is no XML; None if it is."""
+    """Return the place and the reason if a file is no XML; None if it is."""
     try:
         text = found_text(file, "replace")
     except OSError as error:
         return f"{file}: {error.strerror}"
-    if "<!ENTITY" in text:  # which may stand for any length of text
+    if "<!ENTITY" in text:  # entities may expand to any length
         return None
     try:
         expat.ParserCreate().Parse(text, True)
@@ -26,11 +26,11 @@ def fault_of(file: Path) -> str | None:
 
 
 def name_fault(folder: Path, name: str) -> str | None:
-    """Where a `setup.py` has another name for its package than `package.xml`; None if it has not."""
+    """Return the place where `setup.py` has another name than `package.xml`; None if the names agree."""
     file = folder / "setup.py"
     try:
         tree = ast.parse(found_text(file, "replace"))
-    except (OSError, SyntaxError, ValueError):  # there is none, or its fault is told elsewhere
+    except (OSError, SyntaxError, ValueError):  # there is none, or its fault is reported elsewhere
         return None
     known: dict[str, str] = {}
     for node in ast.walk(tree):

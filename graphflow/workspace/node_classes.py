@@ -1,4 +1,4 @@
-"""The classes of a file that are nodes, read from its source and from the modules of its project that it imports."""
+"""Node classes of a file, found in its source and in the modules of its project that it imports."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from graphflow.workspace.project import module_of
 
 
 def node_classes_in(file: Path) -> dict[str, int]:
-    """Classes of a file that are nodes by what they derive from, be it by others of the project; with their lines."""
+    """Return the classes of a file that derive from `Node`, perhaps by others of the project, with their lines."""
     return _Reader(module_of(file)[0]).classes(file)
 
 
 def sole_class_in(file: Path) -> str | None:
-    """The node class that a file is about: the one from which no other of it derives; None where there are several."""
+    """Return the only node class of a file from which no other of it derives; None if there is not exactly one."""
     reader = _Reader(module_of(file)[0])
     found = reader.classes(file)
     source = reader.read(file)
@@ -29,29 +29,27 @@ def sole_class_in(file: Path) -> str | None:
 
 @dataclass
 class _Source:
-    """A module's classes, and the names that it imports."""
+    """The classes and imports of a module."""
 
     classes: dict[str, ast.ClassDef] = field(default_factory=dict)
     imports: dict[str, tuple[Path, str]] = field(default_factory=dict)
-    """The file of the project without its suffix, or a folder, that a name is of, and the name there; or the empty
-    text where it is that module itself.
-    """
+    """Imported names: the path of the module without its suffix, and the name in it, empty for the module itself."""
 
 
 class _Reader:
-    """Follows the bases of classes through the modules below a folder."""
+    """A reader of modules below a folder, which follows base classes from one to another."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
         self._read: dict[Path, _Source] = {}
 
     def classes(self, file: Path) -> dict[str, int]:
-        """The node classes of a file, and the line of each."""
+        """Return the node classes of a file, with their lines."""
         found = self.read(file).classes
         return {name: d.lineno for name, d in found.items() if self._is_node(file, name, frozenset())}
 
     def read(self, file: Path) -> _Source:
-        """What a file defines and imports; nothing where it cannot be read."""
+        """Return the classes and imports of a file; empty if it cannot be read."""
         known = self._read.get(file)
         if known is None:
             known = self._read[file] = _Source()
@@ -72,7 +70,7 @@ class _Reader:
         return {a.asname or a.name: (module, a.name) for a in item.names}
 
     def _is_node(self, file: Path, name: str, seen: frozenset[tuple[Path, str]]) -> bool | None:
-        """Whether a class of a file is a node; None if its source does not tell."""
+        """Return whether a class of a file is a node; None if the source does not show it."""
         if (file, name) in seen:
             return None
         source = self.read(file)
@@ -83,7 +81,7 @@ class _Reader:
         return True if True in bases else None if None in bases else False
 
     def _of_base(self, file: Path, name: str, seen: frozenset[tuple[Path, str]]) -> bool | None:
-        """Whether a name, or a name with dots, is that of a node class in a file."""
+        """Return whether a name in a file, perhaps dotted, refers to a node class; None if that is unknown."""
         found: bool | None = None
         source = self.read(file)
         owner, _, last = name.rpartition(".")
@@ -103,11 +101,11 @@ class _Reader:
         file = next((f for f in (module.with_name(f"{module.name}.py"), module / "__init__.py") if f.is_file()), None)
         if file is None or not name:
             return None
-        return False if uses_ros(file) else self._is_node(file, name, seen)  # those are none of graphflow's
+        return False if uses_ros(file) else self._is_node(file, name, seen)  # nodes of rclpy are none of graphflow's
 
 
 def _written(base: ast.expr) -> str:
-    """The name of a base class, without what stands in its brackets."""
+    """Return the name of a base class, without type arguments."""
     return ast.unparse(base.value if isinstance(base, ast.Subscript) else base)
 
 

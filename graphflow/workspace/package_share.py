@@ -1,7 +1,7 @@
-"""The `share` folder that a package of a workspace would have once it is installed.
+"""The `share` folder that a package of a workspace would have if it were installed.
 
-It is the package's own folder wherever what is installed keeps its place. Where `data_files` of a `setup.py`, or
-`install(...)` of a `CMakeLists.txt`, puts files elsewhere, it is a folder of links, made when it is asked for.
+It is the package's own folder if installation keeps the places of files. If `data_files` of a `setup.py`, or
+`install(...)` of a `CMakeLists.txt`, moves files, it is a folder of links, made on demand.
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ _END_OF_FILES = re.compile(r"\s(?:DESTINATION|PATTERN|FILES_MATCHING|USE_SOURCE_
 
 
 def share_folder(package: Package) -> Path:
-    """The folder that `get_package_share_directory` gives for a package."""
+    """Return the folder that `get_package_share_directory` returns for a package."""
     moved = {there: file for there, file in _installed(package) if file != package.folder / there}
     if not moved:
         return package.folder
-    folders = sorted({str(there.parent) for there in moved})  # with others, names that are folders here are links there
+    folders = sorted({str(there.parent) for there in moved})  # links and folders change places with them
     digest = hashlib.sha256("\n".join([str(package.folder), *folders]).encode()).hexdigest()[:16]
     folder = state_root() / "share" / digest / package.name
     try:
         _link(folder, package.folder, moved)
-    except OSError:  # no place for it, or no links on this system
+    except OSError:  # the disk is full, or this system has no links
         return package.folder
     return folder
 
 
 def _installed(package: Package) -> Iterator[tuple[PurePosixPath, Path]]:
-    """Where each file lies in the `share` folder, and where it lies now."""
+    """Yield the path of each installed file in the `share` folder, and its present path."""
     pairs = [*_of_setup_py(package), *_of_cmake(package)]
     for (destination, file), _ in zip(pairs, range(FILES_BOUND), strict=False):
         parts = PurePosixPath(destination).parts
@@ -50,7 +50,7 @@ def _installed(package: Package) -> Iterator[tuple[PurePosixPath, Path]]:
 
 
 def _link(folder: Path, source: Path, moved: Mapping[PurePosixPath, Path]) -> None:
-    """Make a folder that has what `source` has, by links, and other files at their places."""
+    """Fill a folder with links to the entries of `source`, and to moved files at their new places."""
     inner: dict[str, dict[PurePosixPath, Path]] = {}
     for there, file in moved.items():
         if len(there.parts) > 1:
@@ -71,7 +71,7 @@ def _link(folder: Path, source: Path, moved: Mapping[PurePosixPath, Path]) -> No
 
 
 def _of_setup_py(package: Package) -> Iterator[tuple[str, Path]]:
-    """Pairs of `data_files`, as far as they are plain to see."""
+    """Yield the destinations and files of `data_files`, as far as they are literal."""
     try:
         tree = ast.parse(found_text(package.folder / "setup.py", "replace"))
     except (OSError, SyntaxError, ValueError):
@@ -86,7 +86,7 @@ def _of_setup_py(package: Package) -> Iterator[tuple[str, Path]]:
 
 
 def _files(node: ast.expr, known: Mapping[str, str], folder: Path) -> list[str]:
-    """The files, from the package's folder, that a list or a pattern stands for."""
+    """Return the files of a list or pattern, relative to the package's folder."""
     match node:
         case ast.List(elts=parts) | ast.Tuple(elts=parts):
             return [text for part in parts if (text := constant_text(part, known)) is not None]

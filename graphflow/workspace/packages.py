@@ -1,6 +1,6 @@
-"""ROS 2 workspaces, read without building them: the packages below a folder, and what each has to be run.
+"""ROS 2 workspaces, read without building them: the packages below a folder, with their executables.
 
-What a package installs is read from its `setup.py`, `setup.cfg` or `CMakeLists.txt`, without running any of them.
+The executables of a package are read from its `setup.py`, `setup.cfg` or `CMakeLists.txt`, without running these.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from graphflow.system import SITE
 from graphflow.workspace.setup_file import EntryPoint, SetupFile, entry_point, function_fault, starts_nodes
 
 DEPTH = 5
-"""Folders below a workspace in which packages are looked for."""
+"""Depth in folders of the search for packages below a workspace."""
 FOLDERS_BOUND = 5000
-"""Folders that are looked into: the shell may stand in any folder, be it `/`."""
+"""Number of folders that are searched: the working directory may be any folder, even `/`."""
 PACKAGES_BOUND = 1000
 _VALUE_BOUND = 10_000
-"""Characters that a variable of CMake may stand for."""
+"""Length in characters of the value of a CMake variable."""
 _LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
-"""Folders that colcon makes, and others in which no package lies."""
+"""Folders that colcon makes, and others without packages."""
 _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
-"""Files that say that nothing below is a package."""
+"""Files that exclude their folder and everything below it."""
 _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
 _COMPILED = re.compile(r"add_executable\s*\(\s*([\w${}-]+)", re.IGNORECASE)
@@ -41,14 +41,14 @@ _SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^()]+?)\s*\)", re.IGNORECASE)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
 _SETUPS = ("setup.py", "CMakeLists.txt", "pyproject.toml")
-"""Files of a package that may say what it has to be run."""
+"""Files of a package that may declare executables."""
 KINDS = ("msg", "srv", "action")
 _NEAR_KINDS = {*KINDS, "msgs", "message", "messages", "srvs", "service", "services", "actions"}
-"""Names of folders, in any case, that are meant for definitions."""
+"""Names of folders, in lower case, that are probably meant for interface definitions."""
 _ROS = ("rclpy", "launch", "launch_ros")
-"""Packages of ROS's that a program of ROS's imports one of."""
+"""Packages of which a program for ROS imports at least one."""
 BUNDLED = Path(__file__).parents[1] / "rclpy" / "packages"
-"""The packages with programs of ROS 2's that come with graphflow; they lie there as in any workspace."""
+"""The bundled packages with programs of ROS 2, in the layout of a workspace."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Package:
 
     @property
     def import_roots(self) -> list[Path]:
-        """The folders that Python imports from: of a package of its name or that CMake installs, of executables."""
+        """The folders to import from: those of its Python packages, of CMake's, and of its executables."""
         folders = {self.folder / self.name, self.python_folder / self.name}
         for name, folder in _MODULES.findall(cmake_text(self)):
             folders.add(self.folder / (folder or name).strip('"'))
@@ -71,33 +71,33 @@ class Package:
 
     @cached_property
     def setup(self) -> SetupFile:
-        """Its `setup.py`, which need not be there."""
+        """Its `setup.py`, which need not exist."""
         return SetupFile(self.folder / "setup.py", _text(self.folder / "setup.py"))
 
     @cached_property
     def python_folder(self) -> Path:
-        """Where its modules begin: its folder, unless `setup.py` says `package_dir={"": "src"}`."""
+        """The root folder of its modules: its own, unless `setup.py` has `package_dir={"": "src"}`."""
         return self.folder / self.setup.package_dir
 
     @property
     def has_interfaces(self) -> bool:
-        """Whether messages, services or actions are defined in it."""
+        """Whether it defines messages, services or actions."""
         return any(self.has_kind(kind) for kind in KINDS)
 
     def has_kind(self, kind: str) -> bool:
-        """Whether messages, or services, or actions are defined in it."""
+        """Return whether it defines interfaces of a kind: `msg`, `srv` or `action`."""
         return next((self.folder / kind).rglob(f"*.{kind}"), None) is not None
 
     @property
     def misplaced_interfaces(self) -> dict[Path, Path]:
-        """Definitions in folders such as `msgs/`, which nothing reads, and where each has to be."""
+        """Interface definitions in folders such as `msgs/`, which are not read, with their right paths."""
         files = [(kind, file) for kind in KINDS for file in sorted(self.folder.glob(f"*/*.{kind}"))]
         wrong = [(kind, file) for kind, file in files if file.parent.name != kind]
         return {f: self.folder / kind / f.name for kind, f in wrong if f.parent.name.lower() in _NEAR_KINDS}
 
     @cached_property
     def entry_points(self) -> Mapping[str, EntryPoint]:
-        """Its executables that are functions, by name."""
+        """Executables that are functions, by name."""
         return {**self.setup.entry_points, **self._setup_cfg[0]}
 
     @cached_property
@@ -106,24 +106,24 @@ class Package:
 
     @cached_property
     def programs(self) -> Mapping[str, Path]:
-        """Its executables that are files, by name: those that CMake installs, and those in `scripts/`."""
+        """Executables that are files, by name: installed by CMake, or in `scripts/`."""
         files = (file for file in sorted((self.folder / "scripts").glob("*")) if file.is_file())
         known = {file.name: file for file in files if file.name != "__init__.py" and not file.name.startswith(".")}
         return known | dict(_of_cmake(self))
 
     @property
     def executables(self) -> list[str]:
-        """The names of all."""
+        """The names of all executables."""
         return sorted({*self.entry_points, *self.programs})
 
     @property
     def compiled(self) -> set[str]:
-        """The executables that only a compiler makes."""
+        """The executables that need a compiler."""
         return {*_COMPILED.findall(cmake_text(self))}
 
     @property
     def faults(self) -> list[str]:
-        """What is wrong with its executables."""
+        """Faults of its executables and interface definitions."""
         found = self._no_setup + self.build_faults
         found += [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
         found += [fault for name in self.entry_points if (fault := self.copy_fault(name)) is not None]
@@ -135,7 +135,7 @@ class Package:
 
     @property
     def build_faults(self) -> list[str]:
-        """Faults of its `setup.py`, and folders that a build would leave out though they run from here."""
+        """Faults of its `setup.py`, and folders that run from source but that a build would leave out."""
         line = self.setup.finds_packages
         lacking = [f for f in self._module_folders if not (f / "__init__.py").is_file()] if line is not None else []
         where = f"find_packages() in {self.setup.file}:{line}"
@@ -147,7 +147,7 @@ class Package:
 
     @property
     def _module_folders(self) -> list[Path]:
-        """The folders that a build has to know as packages of Python's: of its own name, and of its executables."""
+        """The folders that a build must find as Python packages: that of its name, and those of its executables."""
         own = self.python_folder / self.name
         folders = {own} if next(own.glob("*.py"), None) is not None else set()
         for entry in self.entry_points.values():
@@ -158,41 +158,41 @@ class Package:
 
     @property
     def why_no_executable(self) -> str:
-        """Why an executable may be missing: the faults of `setup.py`, to stand after a sentence; or nothing."""
+        """The faults of `setup.py` as the end of a message, which may explain a missing executable; or empty."""
         return "".join(f"; {fault}" for fault in [*self._no_setup, *self.setup.faults, *self._setup_cfg[1]])
 
     @property
     def _no_setup(self) -> list[str]:
-        """That it has modules, and none of the files that say what is run."""
+        """The fault of a package with modules but no file that declares executables; or empty."""
         has_modules = {file.name for file in (self.folder / self.name).glob("*.py")} - {"__init__.py"}
         if not has_modules or self.entry_points or any((self.folder / name).is_file() for name in _SETUPS):
             return []
         return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
 
     def fault_of(self, executable: str) -> str | None:
-        """What is wrong with one: its module is not there, or has not its function."""
+        """Return the fault of an executable: its module or function does not exist; None for none."""
         entry = self.entry_points.get(executable)
         if entry is None:
             return None
         file, line = self.file_of(entry), self.setup.lines.get(executable)
         place = f"{self.setup.file}:{line}" if line is not None else f"{self.folder / 'setup.cfg'}"
-        says = f"{place}: {executable} is {entry.module}:{entry.function}, and"
+        head = f"{place}: {executable} is {entry.module}:{entry.function}, and"
         if file.is_file():
             fault = None if is_graphflows(file) else function_fault(entry, file, _text(file))
-            return None if fault is None else f"{says} {fault}"
+            return None if fault is None else f"{head} {fault}"
         top = entry.module.partition(".")[0]
         if (folder := self.setup.renamed.get(top)) is not None:
-            return f"{says} package_dir has {top} in {folder}, which cannot be run from source; call it {top}"
+            return f"{head} package_dir has {top} in {folder}, which cannot be run from source; call it {top}"
         if not (self.python_folder / top).exists() and _is_elsewhere(top, self.folder):
             return None
         if entry.module.endswith(".py"):
-            return f"{says} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
+            return f"{head} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
         near = self._nearest_module(entry.module)
         meant = "write that module, or name another one there"
-        return f"{says} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")
+        return f"{head} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")
 
     def copy_fault(self, executable: str) -> str | None:
-        """What is wrong with one whose line is another's with the name alone changed, while a module has that name."""
+        """Return the fault of an entry that is a copy of another but for its name, which is that of another module."""
         entry, line = self.setup.entry_points.get(executable), self.setup.lines.get(executable)
         first = next((name for name, other in self.entry_points.items() if other == entry), executable)
         if entry is None or first == executable:
@@ -210,7 +210,7 @@ class Package:
         )
 
     def _imports(self, module: Path) -> bool:
-        """Whether another file of the package names a module: to import it, or to run its file."""
+        """Return whether another file of the package refers to a module: to import it, or to run its file."""
         word = re.compile(
             rf"\b{re.escape(module.stem)}(\.py\b|\b.*\bimport\b)|\bimport\b.*\b{re.escape(module.stem)}\b"
         )
@@ -218,7 +218,7 @@ class Package:
         return any(word.search(_text(file)) for file in files)
 
     def _nearest_module(self, name: str) -> str | None:
-        """The module of the package that is most like a name, or has it as the last part of its own."""
+        """Return the module whose last part is that of a name, or else the one most similar to it."""
         files = (self.python_folder / self.name).rglob("*.py")
         known = [".".join(file.relative_to(self.python_folder).with_suffix("").parts) for file in sorted(files)]
         known = [module for module in known if not module.endswith("__init__")]
@@ -226,12 +226,12 @@ class Package:
         return next((module for module in known if module.endswith(f".{last}")), None) or nearest(name, known)
 
     def file_of(self, entry: EntryPoint) -> Path:
-        """Where the module of an executable is, or has to be."""
+        """Return the file of an executable's module, which need not exist."""
         path = self.python_folder.joinpath(*entry.module.split("."))
         return path / "__init__.py" if (path / "__init__.py").is_file() else path.with_suffix(".py")
 
     def path_of(self, executable: str, root: Path) -> str:
-        """The module and the function of an executable, as `src.lamp.lamp.node:main`; without one for a file."""
+        """Return the module and function of an executable, as `src.lamp.lamp.node:main`; only the module for a file."""
         entry = self.entry_points.get(executable)
         file = self.programs[executable] if entry is None else self.file_of(entry)
         inside = file.relative_to(root) if file.is_relative_to(root) else file
@@ -239,7 +239,7 @@ class Package:
         return module if entry is None else f"{module}:{entry.function}"
 
     def known_as(self, executable: str) -> str | None:
-        """The name of an executable that is asked for with or without `.py`; None if there is none."""
+        """Return the name of an executable that is given with or without `.py`; None if there is none."""
         names = (executable, f"{executable}.py", executable.removesuffix(".py"))
         return next((name for name in names if name in self.entry_points or name in self.programs), None)
 
@@ -251,16 +251,16 @@ class Workspace:
     root: Path
     packages: Mapping[str, Package] = field(default_factory=dict)
     doubles: tuple[Package, ...] = ()
-    """Packages whose names others have that were met before them."""
+    """Packages with the name of another that was found before."""
 
     @property
     def import_roots(self) -> list[Path]:
-        """The folders of packages from which Python imports."""
+        """The import roots of all packages."""
         return [root for package in self.packages.values() for root in package.import_roots]
 
     @property
     def replaced(self) -> dict[str, Path]:
-        """Packages that Python would import from here, had graphflow not its own: source trees of rclpy, tf2_ros."""
+        """Source trees in the workspace, such as rclpy and tf2_ros, that graphflow's own packages replace."""
         own = os.listdir(SITE)
         return {
             name: root / name for root in self.import_roots for name in own if (root / name / "__init__.py").is_file()
@@ -268,31 +268,32 @@ class Workspace:
 
     @property
     def interfaces(self) -> dict[str, Path]:
-        """The folders of packages that define messages, services or actions, be it in folders of other names."""
+        """The folders of packages with interface definitions, even in folders of wrong names, by package."""
         return {p.name: p.folder for p in self.packages.values() if p.has_interfaces or p.misplaced_interfaces}
 
 
 def find_workspace(start: Path) -> Workspace:
-    """The workspace that a folder or file belongs to, or else what is below the folder.
+    """Return the workspace around a folder or file, or else the packages below the folder.
 
     Returns:
-        One without packages where there is none.
+        A workspace without packages if there is none.
     """
     start = start.resolve()
     return workspace_around(start) or (read_workspace(start, start) if start.is_dir() else Workspace(start))
 
 
 def workspace_around(start: Path) -> Workspace | None:
-    """The workspace that a folder or file lies in: the nearest above with packages in its `src`, or beside its own."""
+    """Find the workspace around a folder or file: the nearest with packages in `src`, or around the own package."""
     start = start.resolve()
     folders = [start, *start.parents] if start.is_dir() else list(start.parents)
     for folder in folders:
         if (folder / "src").is_dir() and next(_walk(folder / "src"), None) is not None:
             return read_workspace(folder, folder / "src")
     highest = next((f for f in reversed(folders) if (f / "package.xml").is_file()), None)
-    if highest is not None:  # beside it there may be others, and below the folder that one stands in
+    if highest is not None:  # other packages may be beside it, or below the working directory
         here = Path.cwd()
-        if here in highest.parent.parents and here not in (Path(here.anchor), home()):  # which hold anything
+        # The root and the home folder may contain anything, and are no workspaces.
+        if here in highest.parent.parents and here not in (Path(here.anchor), home()):
             around = read_workspace(here, here)
             if any(package.folder == highest for package in around.packages.values()):
                 return around
@@ -302,12 +303,12 @@ def workspace_around(start: Path) -> Workspace | None:
 
 @cache
 def bundled() -> Workspace:
-    """The packages that come with graphflow."""
+    """Return the bundled packages."""
     return read_workspace(BUNDLED, BUNDLED)
 
 
 def read_workspace(root: Path, source: Path) -> Workspace:
-    """The packages below `source`; of two with the same name, the one that is met first."""
+    """Read the packages below `source`; of several with one name, the first is kept."""
     packages: dict[str, Package] = {}
     doubles: list[Package] = []
     for package in islice(_walk(source), PACKAGES_BOUND):
@@ -317,7 +318,7 @@ def read_workspace(root: Path, source: Path) -> Workspace:
 
 
 class Folder(NamedTuple):
-    """A folder in which packages are looked for."""
+    """A folder in the search for packages."""
 
     path: Path
     files: set[str]
@@ -327,7 +328,7 @@ class Folder(NamedTuple):
 
     @property
     def mark(self) -> str | None:
-        """The file that leaves it, and all below, out of the workspace."""
+        """The file that excludes it, and everything below it, from the workspace."""
         return next((mark for mark in _MARKS if mark in self.files), None)
 
 
@@ -336,7 +337,7 @@ def _walk(source: Path) -> Iterator[Package]:
 
 
 def folders(source: Path) -> Iterator[Folder]:
-    """The folders of packages and those above, the nearest first; there may be any number that are no packages."""
+    """Yield the folders of packages and those above them, breadth first."""
     waiting = deque([(source, 0)])
     for _ in range(FOLDERS_BOUND):
         if not waiting:
@@ -346,15 +347,15 @@ def folders(source: Path) -> Iterator[Folder]:
         name = _NAME.search(_text(path / "package.xml")) if "package.xml" in files else None
         found = Folder(path, files, None if name is None else name[1])
         if found.mark is not None:
-            yield found._replace(package=None)
+            yield Folder(path, files, None)
             continue
         yield found
-        if name is None and depth < DEPTH:  # packages lie side by side
+        if name is None and depth < DEPTH:  # packages are not nested
             waiting.extend((path / f, depth + 1) for f in inside if not f.startswith(".") and f not in _LEFT_OUT)
 
 
 def _listing(folder: Path) -> tuple[list[str], set[str]]:
-    """The names of a folder's folders, sorted, and of its files."""
+    """Return the names of the folders in a folder, sorted, and those of its files."""
     try:
         _, folders, files = next(os.walk(folder), ("", [], []))
     except OSError:
@@ -370,25 +371,25 @@ def _text(file: Path) -> str:
 
 
 def cmake_text(package: Package) -> str:
-    """The `CMakeLists.txt` of a package without its comments, and with what its variables plainly stand for."""
+    """Read the `CMakeLists.txt` of a package, without comments and with literal variables substituted."""
     text = re.sub(r"#.*", "", _text(package.folder / "CMakeLists.txt"))
     known = {"PROJECT_NAME": package.name, "CMAKE_CURRENT_SOURCE_DIR": ".", "PROJECT_SOURCE_DIR": "."}
 
-    def put_in(text: str) -> str:
+    def expanded(text: str) -> str:
         return _VARIABLE.sub(lambda found: known.get(found[1], found[0]), text)
 
     for name, value in _SET.findall(text):
-        known.setdefault(name, put_in(value.replace('"', " ")).strip()[:_VALUE_BOUND])
-    return put_in(text)
+        known.setdefault(name, expanded(value.replace('"', " ")).strip()[:_VALUE_BOUND])
+    return expanded(text)
 
 
 def _is_elsewhere(module: str, folder: Path) -> bool:
-    """Whether a module is of another package beside a package's folder, or installed."""
+    """Return whether a module belongs to a package beside a folder, or is installed."""
     return (folder.parent / module / "package.xml").is_file() or PathFinder.find_spec(module) is not None
 
 
 def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:
-    """The executables of a `setup.cfg`, and the faults of the lines that should name one."""
+    """Return the executables of a `setup.cfg`, and the faults of its lines."""
     import configparser
 
     parser, text = configparser.ConfigParser(), _text(file)
@@ -411,7 +412,7 @@ def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:
 
 
 def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
-    """The programs that `CMakeLists.txt` installs below `lib/`."""
+    """Yield the programs that `CMakeLists.txt` installs below `lib/`."""
     for installed in _INSTALL.findall(cmake_text(package)):
         words = installed.replace('"', " ").split()
         upper = [word.upper() for word in words]
@@ -429,12 +430,12 @@ def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
 
 
 def is_graphflows(file: Path) -> bool:
-    """Whether a Python file is written for graphflow, and not for rclpy."""
+    """Return whether a Python file is written for graphflow, and not for rclpy."""
     return "graphflow" in _text(file) and not uses_ros(file)
 
 
 def uses_ros(file: Path) -> bool:
-    """Whether a Python file imports rclpy or launch, itself or in a function of it."""
+    """Return whether a Python file imports rclpy or launch, at the top or in a function."""
     try:
         tree = ast.parse(_text(file))
     except (SyntaxError, ValueError):

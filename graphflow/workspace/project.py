@@ -1,4 +1,4 @@
-"""Where things are: a project's root, its graph files and interfaces, and those that come with graphflow."""
+"""Places of a project: its root, graph files and interfaces, and the bundled ones."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from graphflow.workspace.packages import find_workspace
 
 PACKAGE = Path(__file__).resolve().parents[1]
 INSTALLED_DEMOS = PACKAGE / "demos"
-"""Where the wheel puts `graphs/` and `nodes/`."""
+"""The folder of `graphs/` and `nodes/` in the wheel."""
 
 
 def project_root(path: Path) -> Path:
-    """The folder that a graph file's classes are imported from.
+    """Return the folder from which a graph file's classes are imported.
 
-    The nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the one with the file's `graphs/`
-    and a `nodes/` beside it, else the file's own folder. The graphs inside an installed graphflow have the nodes next
-    to them as their project.
+    It is the nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the one with the file's
+    `graphs/` and a `nodes/` beside it, else the file's own folder. The project of the graphs in an installed graphflow
+    is the folder with the nodes beside them.
     """
     start = path.resolve()
     found = _marked_above(start)
@@ -31,11 +31,11 @@ def project_root(path: Path) -> Path:
 
 
 def _marked_above(start: Path) -> Path | None:
-    """The nearest folder that says by its files that it is a project's root."""
+    """Return the nearest folder with the files of a project's root; None if there is none."""
     if start.is_relative_to(INSTALLED_DEMOS):
         return INSTALLED_DEMOS
     for folder in [start, *start.parents]:
-        if folder.name in SITE_FOLDERS:  # of a virtual environment, which may lie in another project
+        if folder.name in SITE_FOLDERS:  # a virtual environment may be inside another project
             break
         if (folder / "pyproject.toml").is_file() and ((folder / "graphs").is_dir() or (folder / "nodes").is_dir()):
             return folder
@@ -43,9 +43,9 @@ def _marked_above(start: Path) -> Path | None:
 
 
 def module_of(file: Path) -> tuple[Path, str]:
-    """The folder that a file's classes are imported from, and its name there.
+    """Return the folder from which a file's classes are imported, and its module name there.
 
-    It is the file's project; a file in none is seen from the working directory, if it is below that.
+    The folder is the file's project; without one, it is the project of the working directory, if the file is below it.
     """
     here, path = project_root(Path.cwd()), file.resolve()
     root = _marked_above(path) or (here if path.is_relative_to(here) else project_root(path))
@@ -53,7 +53,7 @@ def module_of(file: Path) -> tuple[Path, str]:
 
 
 def add_interfaces(root: Path) -> None:
-    """Make the messages, services and actions in a project's `interfaces/` available, and those of its workspace."""
+    """Register the interfaces in a project's `interfaces/`, in its workspace and in installed distributions."""
     folder = root / "interfaces"
     if folder.is_dir():
         registry.add_root(folder)
@@ -62,18 +62,18 @@ def add_interfaces(root: Path) -> None:
 
 
 def demos_root() -> Path:
-    """The folder with the bundled `graphs/` and `nodes/`: inside the installed package, or the project's own."""
+    """Return the folder with the bundled `graphs/` and `nodes/`: in the installed package, or in the repository."""
     return INSTALLED_DEMOS if INSTALLED_DEMOS.is_dir() else PACKAGE.parent
 
 
 def bundled_graphs() -> dict[str, Path]:
-    """The graphs that come with graphflow, by name: `turtlesim`, `deadlock/crossing_broken`."""
+    """Return the bundled graphs, by name: `turtlesim`, `deadlock/crossing_broken`."""
     folder = demos_root() / "graphs"
     return {f.relative_to(folder).with_suffix("").as_posix(): f for f in sorted(folder.rglob("*.yaml"))}
 
 
 def no_file(path: Path) -> str:
-    """What to say of a file that is not there: the one that is most like it."""
+    """Return the message for a file that does not exist, with the most similar name."""
     if path.exists():
         return f"{shown(path)} is not a regular file"
     beside = {file.stem: file.name for file in path.parent.glob("*.*")}
@@ -82,7 +82,7 @@ def no_file(path: Path) -> str:
 
 
 def shown(path: Path) -> str:
-    """A path as messages show it: relative to the working directory when it is below that."""
+    """Return a path as messages show it: relative to the working directory if it is below."""
     try:
         return str(path.resolve().relative_to(Path.cwd()))
     except ValueError:

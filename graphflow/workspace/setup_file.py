@@ -1,4 +1,4 @@
-"""`setup.py` of a package: its executables and what is wrong with it, read without running it."""
+"""The `setup.py` of a package, read without running it: executables and faults."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from typing import NamedTuple
 from graphflow.names import did_you_mean, nearest
 
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[[\w\s.,-]*\]\s*)?")
-"""An entry point; what it wants in brackets, extras of its distribution, is not looked at."""
+"""An entry point; extras in brackets are ignored."""
 _MAKES_NAMES = {"exec", "globals", "setattr", "vars"}
-"""Functions by which a module gets names that its source does not show."""
+"""Functions that may define names which the source does not show."""
 
 
 class EntryPoint(NamedTuple):
@@ -29,11 +29,11 @@ class EntryPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class SetupFile:
-    """A `setup.py`, read and not run.
+    """A `setup.py`.
 
     Args:
-        file: Where it is.
-        text: What it has; empty where there is none.
+        file: Its path.
+        text: Its content; empty if it does not exist.
     """
 
     file: Path
@@ -41,6 +41,7 @@ class SetupFile:
 
     @cached_property
     def tree(self) -> ast.Module | SyntaxError:
+        """The syntax tree, or the error in the file."""
         try:
             return ast.parse(self.text)
         except SyntaxError as error:
@@ -58,7 +59,7 @@ class SetupFile:
 
     @cached_property
     def _folders(self) -> dict[str, Path]:
-        """Its `package_dir`: folders by the names of the packages that are in them, "" for all others."""
+        """Its `package_dir`: folders by package name, with "" for all other packages."""
         found = {}
         for node in ast.walk(self._module):
             match node:
@@ -71,18 +72,18 @@ class SetupFile:
 
     @property
     def package_dir(self) -> str:
-        """The folder that it has its modules in: `src` for `{"": "src"}`, and for `{"lamp": "src/lamp"}`."""
+        """The root folder of its modules: `src` for `{"": "src"}`, and for `{"lamp": "src/lamp"}`."""
         above = [folder.parent for name, folder in self._folders.items() if name == folder.name]
         return str(next(iter(above), Path())) if "" not in self._folders else str(self._folders[""])
 
     @property
     def renamed(self) -> dict[str, Path]:
-        """Folders of packages that are called otherwise, by the packages' names."""
+        """Folders whose names differ from those of their packages, by package."""
         return {name: folder for name, folder in self._folders.items() if name not in ("", folder.name)}
 
     @cached_property
     def _scripts(self) -> dict[str, tuple[EntryPoint, int]]:
-        """The texts of the form `name = module:function` in `entry_points`; names of the file's own are put in."""
+        """The entry points, `name = module:function`, with their lines; constants of the file are substituted."""
         found = {}
         for node in _of_console_scripts(self._module):
             text = constant_text(node, self._constants)
@@ -93,17 +94,17 @@ class SetupFile:
 
     @property
     def entry_points(self) -> dict[str, EntryPoint]:
-        """Its executables that are functions, by name."""
+        """Executables, by name."""
         return {name: entry for name, (entry, _) in self._scripts.items()}
 
     @property
     def lines(self) -> dict[str, int]:
-        """The lines in which its executables are, by name."""
+        """Lines of the executables, by name."""
         return {name: line for name, (_, line) in self._scripts.items()}
 
     @property
     def computes_scripts(self) -> bool:
-        """Whether its executables are not all plain to see."""
+        """Whether some executables are computed, and not literal."""
         return any(
             not isinstance(value, (ast.List, ast.Tuple))
             or any(constant_text(one, self._constants) is None for one in value.elts)
@@ -112,7 +113,7 @@ class SetupFile:
 
     @cached_property
     def finds_packages(self) -> int | None:
-        """The line in which it calls `find_packages`, which leaves out folders without an `__init__.py`."""
+        """The line of its call of `find_packages`, which ignores folders without an `__init__.py`; None for no call."""
         for node in ast.walk(self._module):
             match node:
                 case ast.Call(func=ast.Name(id="find_packages") | ast.Attribute(attr="find_packages")):
@@ -121,7 +122,7 @@ class SetupFile:
 
     @cached_property
     def faults(self) -> list[str]:
-        """Reasons why its executables, or some, are not known; each with its line."""
+        """Reasons why some or all executables are unknown, each with its line."""
         if isinstance(self.tree, SyntaxError):
             line, why = self.tree.lineno or 1, self.tree.msg
             return [f"{self.file}:{line}: SyntaxError: {why}; until that is corrected it has no executables"]
@@ -129,7 +130,7 @@ class SetupFile:
         return [f"{self.file}:{line}: {text}" for line, text in [*found, *self._twice()]]
 
     def _twice(self) -> Iterator[tuple[int, str]]:
-        """Executables with the name of another, of which only the last is known."""
+        """Yield executables with the name of another, of which only the last counts."""
         first: dict[str, int] = {}
         for node in self._elements():
             script = entry_point(constant_text(node, self._constants) or "")
@@ -146,7 +147,7 @@ class SetupFile:
                 yield from value.elts
 
     def _fault_of(self, node: ast.expr) -> tuple[int, str] | None:
-        """The line and the fault of a text that is no executable."""
+        """Return the line and the fault of a text that is no entry point; None if it is one."""
         text = constant_text(node, self._constants)
         if text is None or entry_point(text) is not None:
             return None
@@ -159,10 +160,10 @@ class SetupFile:
 
 
 def _meant(text: str, folder: Path) -> Iterator[str]:
-    """Executables that a text may have been meant as.
+    """Yield corrections of a text that is no entry point.
 
     Args:
-        folder: Where the package's modules are.
+        folder: The root folder of the package's modules.
     """
     text = text.replace("()", "")
     yield text
@@ -177,7 +178,7 @@ def _meant(text: str, folder: Path) -> Iterator[str]:
 
 
 def _misspelt(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Slips in `entry_points` and `console_scripts`, by which executables are lost without an error."""
+    """Yield misspellings of `entry_points` and `console_scripts`, which lose executables without an error."""
     for node in ast.walk(tree):
         match node:
             case ast.keyword(arg=str(name), value=ast.Dict(keys=keys)):
@@ -195,21 +196,21 @@ def _is_slip(word: str, meant: str) -> bool:
 
 
 def entry_point(text: str) -> tuple[str, EntryPoint] | None:
-    """An executable's name and its function, from a text such as `go = lamp.go:main`; None if it is none."""
+    """Parse an entry point, such as `go = lamp.go:main`; None if it is none."""
     found = _SCRIPT.fullmatch(text)
     return None if found is None else (found[1], EntryPoint(found[2], found[3]))
 
 
 def function_fault(entry: EntryPoint, file: Path, source: str) -> str | None:
-    """Why a module cannot be started by an entry point, as far as its source shows; to stand after the entry point.
+    """Return why an entry point cannot start its module, as the end of a message; None if the source shows no fault.
 
     Args:
-        file: The module.
+        file: The file of the module.
         source: Its text.
     """
     try:
         tree, names = ast.parse(source), symtable.symtable(source, str(file), "exec").get_symbols()
-    except (SyntaxError, ValueError):  # which is told with its line when it is run
+    except (SyntaxError, ValueError):  # Python reports it, with its line, when the module runs
         return None
     name = entry.function.partition(".")[0]
     if any(_may_make(node, name) for node in ast.walk(tree)):
@@ -223,7 +224,7 @@ def function_fault(entry: EntryPoint, file: Path, source: str) -> str | None:
 
 
 def starts_nodes(source: str, name: str) -> bool:
-    """Whether a module has a function of that name at the top, which does something."""
+    """Return whether a module has a top-level function of a name that calls anything."""
     try:
         body = ast.parse(source).body
     except (SyntaxError, ValueError):
@@ -233,7 +234,7 @@ def starts_nodes(source: str, name: str) -> bool:
 
 
 def _may_make(node: ast.AST, name: str) -> bool:
-    """Whether a module may get a name by a part of its source that does not show it at the top."""
+    """Return whether a node of a module may define a name without showing it at the top level."""
     match node:
         case ast.alias(name="*"):
             return True
@@ -251,7 +252,7 @@ def _under_console_scripts(tree: ast.Module) -> list[ast.expr]:
 
 
 def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
-    """The entries under `console_scripts`: in a literal list, or else anywhere in a file that has such a group."""
+    """Yield the nodes of entry points: in a literal list, or else anywhere in a file with such a group."""
     literal = [value for value in _under_console_scripts(tree) if isinstance(value, (ast.List, ast.Tuple))]
     texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str))
     tops: list[ast.AST] = [*literal] if literal else [tree] if any("console_scripts" in text for text in texts) else []
@@ -259,7 +260,7 @@ def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
 
 
 def constants(tree: ast.Module) -> dict[str, str]:
-    """The names of a module that stand for texts."""
+    """Return the names that a module assigns constant texts."""
     known: dict[str, str] = {}
     for statement in tree.body:
         match statement:
@@ -271,7 +272,7 @@ def constants(tree: ast.Module) -> dict[str, str]:
 
 
 def constant_text(node: ast.AST, known: Mapping[str, str]) -> str | None:
-    """The text that an expression is; None where that is not plain to see."""
+    """Return the text of an expression; None if it is not constant."""
     match node:
         case ast.Constant(value=str(text)):
             return text

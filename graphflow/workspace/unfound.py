@@ -1,4 +1,4 @@
-"""Why a package is not found that a user can see: a folder that is no package, another name, another workspace."""
+"""Reasons why a package is not found: its folder is no package, has another name, or is in another workspace."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _NEEDED = 'to make it a package, write in it: <package format="3"><name>{name}</
 
 
 def why_no_package(name: str, workspace: Workspace) -> str | None:
-    """The state of a folder of that name that is no package, with the next step; None if there is no such folder.
+    """Return why a folder of a package's name is not found as a package, with the next step; None if there is none.
 
     Args:
-        workspace: The one in which it was looked for.
+        workspace: The workspace that was searched.
     """
     for found in _candidates(name, workspace):
-        said = _lack(found) if found.package is None else _renamed(found, name)
-        if said is not None:
-            return said
+        reason = _lack(found) if found.package is None else _renamed(found, name)
+        if reason is not None:
+            return reason
     beside = workspace.root / name
     if _source(workspace) != workspace.root and _is_package(beside):
         source = _shown(_source(workspace))
@@ -33,15 +33,15 @@ def why_no_package(name: str, workspace: Workspace) -> str | None:
 
 
 def owners(executable: str, workspace: Workspace) -> list[str]:
-    """The packages of a workspace that have an executable of that name."""
+    """Return the packages of a workspace that have an executable."""
     return [package.name for package in workspace.packages.values() if package.known_as(executable) is not None]
 
 
 def launching(file: str, packages: Iterable[Package]) -> str:
-    """How a launch file of one of the packages is started, to stand after a sentence; empty where none has it.
+    """Return the command that starts a launch file of one of the packages, as the end of a message; or empty.
 
     Args:
-        file: Its name, perhaps with folders before it.
+        file: The name of the launch file, perhaps after folders.
     """
     name = Path(file).name
     owner = next((p for p in packages if any(f.name == name for f in (p.folder / "launch").rglob("*"))), None)
@@ -49,14 +49,14 @@ def launching(file: str, packages: Iterable[Package]) -> str:
 
 
 def outer_workspace(workspace: Workspace) -> Workspace | None:
-    """The workspace that a workspace lies in."""
+    """Return the workspace around a workspace."""
     above = workspace.root.parent
     return None if above == workspace.root else workspace_around(above)
 
 
 def no_packages(workspace: Workspace) -> list[str]:
-    """Folders of a workspace that were meant as packages and are none, each with what it lacks."""
-    return [said for found in folders(_source(workspace)) if _is_meant(found) and (said := _lack(found))]
+    """Return the faults of folders that are meant as packages and are none."""
+    return [fault for found in folders(_source(workspace)) if _is_meant(found) and (fault := _lack(found))]
 
 
 def _is_package(folder: Path) -> bool:
@@ -64,20 +64,20 @@ def _is_package(folder: Path) -> bool:
 
 
 def _candidates(name: str, workspace: Workspace) -> Iterator[Folder]:
-    """The folders of that name: in the workspace, and those that the user is in."""
+    """Yield the folders of a name: in the workspace, and among those around the working directory."""
     yield from (found for found in folders(_source(workspace)) if found.path.name == name)
     here = Path.cwd()
     yield from (next(folders(path)) for path in (here, *here.parents) if path.name == name)
 
 
 def _renamed(found: Folder, name: str) -> str | None:
-    if found.package == name:  # of a workspace that was not read
+    if found.package == name:  # it is in another workspace
         return None
     return f"{_shown(found.path)} is the package {found.package!r}, by the name in its package.xml; use that name"
 
 
 def _lack(found: Folder) -> str | None:
-    """Why a folder is no package; None if nothing in it looks like one."""
+    """Return why a folder is no package; None if nothing in it resembles one."""
     shown, name = _shown(found.path), found.path.name
     if found.mark is not None:
         return f"{shown} is left out of the workspace, as it has a file {found.mark}; remove that to have it"
@@ -90,7 +90,7 @@ def _lack(found: Folder) -> str | None:
 
 
 def _unnamed(file: Path, shown: str, name: str) -> str:
-    """Why a package.xml names no package."""
+    """Return why a package.xml has no name."""
     from xml.parsers import expat  # only after a mistake
 
     try:
@@ -104,7 +104,7 @@ def _unnamed(file: Path, shown: str, name: str) -> str:
 
 
 def _is_meant(found: Folder) -> bool:
-    """Whether a folder without a package was made as one: other code of a workspace may have a `setup.py`, too."""
+    """Return whether a folder is meant as a package; a `setup.py` alone does not show it."""
     if found.package is not None or found.mark is not None:
         return False
     return "package.xml" in found.files or (found.path / "resource" / found.path.name).is_file()
@@ -116,6 +116,6 @@ def _source(workspace: Workspace) -> Path:
 
 
 def _shown(path: Path) -> str:
-    """A path from the folder that the user is in, where it is below."""
+    """Return a path relative to the working directory, if it is below."""
     here = Path.cwd()
     return str(path.relative_to(here)) if path != here and path.is_relative_to(here) else str(path)

@@ -5,20 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypeGuard, TypeVar, get_args, get_origin
+from typing import TypeGuard, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.checks import foreign_keys, rewritten
-from graphflow.graph.model import BLOCKS, GroupBlock, NodeSpec, keys_of
+from graphflow.graph.model import BLOCKS, Fault, GroupBlock, NodeSpec, keys_of
 from graphflow.markup import source
 from graphflow.markup.source import Source
 from graphflow.names import did_you_mean, nearest
 from graphflow.typographic import is_quoted
-
-if TYPE_CHECKING:
-    from pydantic_core import ErrorDetails
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -115,7 +112,7 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
     return None
 
 
-def _written_path(src: Source, fault: ErrorDetails) -> source.Path:
+def _written_path(src: Source, fault: Fault) -> source.Path:
     """Return the path of a fault in the file: its location without the names of union alternatives."""
     path: source.Path = ()
     for part in fault["loc"]:
@@ -124,7 +121,7 @@ def _written_path(src: Source, fault: ErrorDetails) -> source.Path:
     return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
 
 
-def _is_stray(path: source.Path, fault: ErrorDetails) -> bool:
+def _is_stray(path: source.Path, fault: Fault) -> bool:
     """Return whether an entry of `nodes` is a misplaced key of a node: it has the name of one, and no class."""
     if len(path) < 2 or path[0] != "nodes" or str(path[1]).lstrip("/") not in keys_of(NodeSpec):
         return False
@@ -137,7 +134,7 @@ def _belongs_to_a_node(key: str) -> str:
 
 
 def _misspelt(
-    model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, ErrorDetails]]
+    model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, Fault]]
 ) -> bool:
     """Return whether a missing key is present with a typo, which is reported as an unknown key."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
@@ -216,7 +213,7 @@ _REQUESTS = ("args", "arguments", "data", "fields", "values")
 _LOOP = re.compile(r"for +(\w+) +in +(.+)")
 
 
-def _wanted(fault: ErrorDetails) -> str:
+def _wanted(fault: Fault) -> str:
     limits = fault.get("ctx", {})
     words = {
         "dict_type": "a mapping",
