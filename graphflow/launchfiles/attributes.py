@@ -33,7 +33,7 @@ def output_fault(output: object) -> str | None:
     """Return the fault of an `output` attribute; None for a valid one, or one for stdout and stderr separately."""
     if not isinstance(output, str) or "$(" in output or output in _OUTPUTS:
         return None
-    return f"output: {output!r} is none of launch's{did_you_mean(output, _OUTPUTS)}"
+    return f"output: {output!r} is not one of launch's{did_you_mean(output, _OUTPUTS)}"
 
 
 def children(item: Item) -> list[Item]:

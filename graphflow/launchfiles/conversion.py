@@ -152,7 +152,7 @@ class _Translation:
     def _around(self, name: str, item: Item, after: list[Item]) -> Item:
         """Convert an action that sets something for all later actions to a group around them."""
         if self._conditions(item) and name not in ("let", "push_ros_namespace"):
-            self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
+            self._complain(item.at, f"{name}: a condition here has no equivalent in a graph file; put it on a group")
         nothing = Item("", item.place)
         if name == "let":
             variable = item.entries.get("name", nothing)
@@ -174,7 +174,7 @@ class _Translation:
             self._add_step(body, "log", item, {"log": message})
 
     def _shutdown(self, item: Item, body: dict[str, Item]) -> None:
-        reason = item.entries.get("reason", Item("a launch file asks for it", item.place))
+        reason = item.entries.get("reason", Item("requested by a launch file", item.place))
         self._add_step(body, "shutdown", item, {"shutdown": reason})
 
     def _container(self, item: Item, body: dict[str, Item]) -> None:
@@ -369,7 +369,7 @@ class _Translation:
             needs = {name: Item("done", before.place) if is_step else item.entries["after_what"]}
             entries["after"] = Item(needs, before.place, before.place)
         elif before is not None:
-            self._note(before.place, "what it is to come after is not among the nodes and programs before it")
+            self._note(before.place, "its predecessor is not among the nodes and programs before it")
         if "number" in item.entries:
             entries["number"] = item.entries["number"]
         return entries

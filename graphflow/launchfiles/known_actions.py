@@ -84,7 +84,7 @@ def _unknown_action(name: str) -> str:
         return f"<{name}> {former}"
     hint = _ELSEWHERE.get(name)
     near = f": {hint}" if hint else did_you_mean(name, _KNOWN)
-    return f"the action {name!r} has no words in a graph file{near}"
+    return f"the action {name!r} has no equivalent in a graph file{near}"
 
 
 def _unknown_attribute(name: str, key: str, value: object) -> str:

@@ -304,13 +304,13 @@ class _Builder:
 
     def _twice(self, path: Path, place: Place) -> GraphFileError:
         first = self._keys[path].line
-        return _error(place, f"the key {path[-1]!r} is here twice, first on line {first}; remove one")
+        return _error(place, f"the key {path[-1]!r} appears twice, first on line {first}; remove one")
 
 
 def _key_fault(event: yaml.ScalarEvent, place: Place, line: str) -> str:
     """Return why a key is not text, and the correction; empty for a valid key."""
     if not event.style and is_quoted(event.value):
-        return f"{event.value[0]} and {event.value[-1]} are no quotes in YAML; write {plain(event.value)}"
+        return f"{event.value[0]} and {event.value[-1]} are not quotes in YAML; write {plain(event.value)}"
     if not event.style and (slip := yaml_slips.of_key(event.value, line)):
         return slip
     if event.style or isinstance(_scalar_value(event, place), str):

@@ -398,7 +398,7 @@ def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:
         lines = parser.get("options.entry_points", "console_scripts", fallback="").splitlines()
     except configparser.ParsingError as error:
         line = getattr(error, "lineno", 0) or error.errors[0][0]
-        return {}, [f"{file}:{line}: it is no [section] and no KEY = VALUE, so that it has no executables"]
+        return {}, [f"{file}:{line}: it is neither [section] nor KEY = VALUE, so the file has no executables"]
     except configparser.Error as error:
         return {}, [f"{file}: {error}"]
     written = [line.strip() for line in text.splitlines()]

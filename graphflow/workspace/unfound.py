@@ -97,7 +97,7 @@ def _unnamed(file: Path, shown: str, name: str) -> str:
         expat.ParserCreate().Parse(found_text(file, "replace"), True)
     except expat.ExpatError as error:
         why = expat.ErrorString(error.code)
-        return f"{shown}:{error.lineno}: it is no valid XML: {why}; is a tag not closed by </...>?"
+        return f"{shown}:{error.lineno}: it is not valid XML: {why}; is a tag not closed by </...>?"
     except OSError as error:
         return f"{shown} cannot be read: {error.strerror}"
     return f"{shown} has no <name>; {_NEEDED.format(name=name)}"

@@ -246,7 +246,7 @@ def test_a_section_that_goes_on_further_down(tmp_path: Path) -> None:
     text = "/**: {ros__parameters: {a: 1}}\nn: {ros__parameters: {b: 2}}\n/**: {ros__parameters: {c: {d: 3}}}\n"
     assert values(sections(tmp_path, text), "/n") == {"a": 1, "b": 2, "c.d": 3}
     for again, line in (("/**: {ros__parameters: {a: 4}}", 4), ("n: 5", 4)):
-        with pytest.raises(GraphFileError, match=rf"p.yaml:{line}:\d+: .* is here twice, first on line"):
+        with pytest.raises(GraphFileError, match=rf"p.yaml:{line}:\d+: .* appears twice, first on line"):
             sections(tmp_path, f"{text}{again}\n")
 
 

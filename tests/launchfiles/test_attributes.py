@@ -61,5 +61,5 @@ def test_outputs(output: object) -> None:
 
 def test_an_output_that_is_none() -> None:
     """Is told with the one that is meant, or with all."""
-    assert output_fault("scren") == "output: 'scren' is none of launch's; did you mean 'screen'?"
-    assert output_fault("x") == "output: 'x' is none of launch's; there is both, full, log, own_log, screen"
+    assert output_fault("scren") == "output: 'scren' is not one of launch's; did you mean 'screen'?"
+    assert output_fault("x") == "output: 'x' is not one of launch's; there is both, full, log, own_log, screen"

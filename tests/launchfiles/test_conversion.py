@@ -253,7 +253,7 @@ def test_lifecycle_nodes() -> None:
 @pytest.mark.parametrize(
     ("action", "complaint"),
     [
-        ("nod: {pkg: a}", "f.yaml:1:11: the action 'nod' has no words in a graph file; did you mean 'node'?"),
+        ("nod: {pkg: a}", "f.yaml:1:11: the action 'nod' has no equivalent in a graph file; did you mean 'node'?"),
         ("node: {pkg: a, exe: b}", "f.yaml:1:26: node: unknown attribute 'exe'; did you mean 'exec'?"),
         ("node: {pkg: a, type: b}", "f.yaml:1:26: node: unknown attribute 'type'; it is called 'exec' here"),
         (
@@ -275,17 +275,20 @@ def test_lifecycle_nodes() -> None:
             "load_composable_node: {target: c, composable_node: [{pkg: a}]}",
             "f.yaml:1:63: composable_node: the attributes 'pkg' and 'plugin' are needed",
         ),
-        ("unset_env: {name: A}", "f.yaml:1:11: the action 'unset_env' has no words in a graph file: write env: in"),
+        (
+            "unset_env: {name: A}",
+            "f.yaml:1:11: the action 'unset_env' has no equivalent in a graph file: write env: in",
+        ),
         ("arg: {default: '1'}", "f.yaml:1:11: arg: the attribute 'name' is missing"),
         ("set_remap: {to: a}", "f.yaml:1:11: the attribute 'from' is missing"),
-        ("set_remap: {from: a, to: b, if: 'true'}", "f.yaml:1:11: set_remap: a condition here has no words"),
+        ("set_remap: {from: a, to: b, if: 'true'}", "f.yaml:1:11: set_remap: a condition here has no equivalent"),
         ("executable: {}", "f.yaml:1:11: executable: the attribute 'cmd' is missing"),
         ("executable: {cmd: ['ls -l']}", "f.yaml:1:29: cmd is one word with spaces: add shell=True, or give a list of"),
         ('executable: {cmd: "a \'b"}', "f.yaml:1:29: cmd: No closing quotation"),
         ("executable: {cmd: 'ros2 service call /a b/srv/C {d'}", "f.yaml:1:29: the request '{d'"),
         (
             "executable: {cmd: a, output: scren}",
-            "f.yaml:1:40: executable: output: 'scren' is none of launch's; did you",
+            "f.yaml:1:40: executable: output: 'scren' is not one of launch's; did you",
         ),
         (
             "node: {pkg: turtlesim, exec: mimic, remap: {from: a, to: b}}",
@@ -412,7 +415,7 @@ def test_a_group_without_a_scope() -> None:
     inner = "children: [{set_parameter: {name: a, value: 1}}]"
     _, complaints, _ = native(f"launch: [{{group: {{scoped: False, if: 'true', {inner}}}}}, {{{TURTLE}}}]\n")
     assert complaints == [
-        "f.yaml:1:58: set_parameter: a condition here has no words in a graph file; put it on a group"
+        "f.yaml:1:58: set_parameter: a condition here has no equivalent in a graph file; put it on a group"
     ]
 
 

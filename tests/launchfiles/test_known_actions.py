@@ -20,12 +20,12 @@ HERE = Place("f.launch.yaml", 1, 1)
         ("log", {"mesage": "a"}, True, ["log: unknown attribute 'mesage'; did you mean 'message'?"]),
         ("node", {"package": "p"}, True, ["node: unknown attribute 'package'; it is called 'pkg' here"]),
         ("log", "a", False, ["log: expected a mapping of its attributes, got 'a'"]),
-        ("nod", {}, False, ["the action 'nod' has no words in a graph file; did you mean 'node'?"]),
+        ("nod", {}, False, ["the action 'nod' has no equivalent in a graph file; did you mean 'node'?"]),
         (
             "unset_env",
             {},
             False,
-            ["the action 'unset_env' has no words in a graph file: write env: in a group or at a node"],
+            ["the action 'unset_env' has no equivalent in a graph file: write env: in a group or at a node"],
         ),
     ],
 )

@@ -60,8 +60,8 @@ def test_launch_files_of_packages(workspace: Workspace) -> None:
     [
         ("dark", "src/dark has setup.py but no package.xml; to make it a package, write in it: <package"),
         ("vendored", "src/vendored has setup.py but no package.xml"),
-        ("cut", "src/cut/package.xml:1: it is no valid XML: unclosed token; is a tag not closed by </...>?"),
-        ("open", "src/open/package.xml:1: it is no valid XML: mismatched tag; is a tag not closed by </...>?"),
+        ("cut", "src/cut/package.xml:1: it is not valid XML: unclosed token; is a tag not closed by </...>?"),
+        ("open", "src/open/package.xml:1: it is not valid XML: mismatched tag; is a tag not closed by </...>?"),
         ("nameless", "src/nameless/package.xml has no <name>; to make it a package, write in it: <package"),
         ("folder", "src/folder is the package 'other', by the name in its package.xml"),
         ("ignored", "src/ignored is left out of the workspace, as it has a file COLCON_IGNORE"),

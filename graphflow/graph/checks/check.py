@@ -55,7 +55,7 @@ def _check_program(node: PlannedNode) -> Iterator[Problem]:
     else:
         where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
         if " " in program and shutil.which(program.partition(" ")[0], path=node.env.get("PATH")) is not None:
-            where = f"each word stands by itself: command: {rewritten.command_of(program)}"
+            where = f"each word is an item of its own: command: {rewritten.command_of(program)}"
         elif rewritten.shell_word(node.command) == program:
             where = f"it is a shell's own: write {_in_shell(node)}"
         yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")

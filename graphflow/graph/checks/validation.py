@@ -284,8 +284,8 @@ _TEXT = re.compile(r"'([^']*)'")
 def _of_quotes(message: str) -> str:
     """Return a hint for a message about a text with typographic quotes or no-break spaces."""
     if "\\xa0" in message:
-        return " (\\xa0 is a no-break space, which is none in YAML)"
+        return " (\\xa0 is a no-break space, which YAML does not count as a space)"
     for found in _TEXT.findall(message):
         if is_quoted(text := found.strip("/: ")):
-            return f" ({text[0]} and {text[-1]} are no quotes in YAML, which has ' and \")"
+            return f" ({text[0]} and {text[-1]} are not quotes in YAML, which has ' and \")"
     return ""

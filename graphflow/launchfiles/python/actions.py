@@ -22,7 +22,7 @@ from graphflow.launchfiles.python.stand_ins import (
     Context,
     RecordedCall,
     called_as,
-    no_words,
+    no_equivalent,
     parts,
     plain,
     text,
@@ -62,7 +62,9 @@ def _actions(described: object) -> list[Action]:
         return []
     if not isinstance(described, RecordedCall):
         shown = f"the class {described.__name__}" if isinstance(described, type) else repr(described)
-        RECORDING.problems.append({"line": RECORDING.written_at, "message": f"{shown} is no action, such as Node(...)"})
+        RECORDING.problems.append(
+            {"line": RECORDING.written_at, "message": f"{shown} is not an action, such as Node(...)"}
+        )
         return []
     return _of_call(described)
 
@@ -77,7 +79,7 @@ def _of_call(call: RecordedCall) -> list[Action]:
         return [] if is_off(call) else _made_by(code, call)
     convert = _CONVERTERS.get(call.kind)
     if convert is None:
-        RECORDING.problem(call, no_words(call))
+        RECORDING.problem(call, no_equivalent(call))
         return []
     action = convert(call)
     if isinstance(action, list):
@@ -164,7 +166,7 @@ def _period(call: RecordedCall) -> Data:
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return value
     if given is not None or not call.args:  # a period by position is already reported
-        RECORDING.problem(call, f"{call.kind}: period is a number of seconds, such as 2.0, and not {given!r}")
+        RECORDING.problem(call, f"{call.kind}: period is a number of seconds, such as 2.0, not {given!r}")
     return 1.0
 
 
@@ -199,7 +201,7 @@ def _emit(call: RecordedCall) -> Action | list[Action]:
     if change is None:
         if is_shutdown(call):
             return _shutdown(call)
-        RECORDING.problem(call, no_words(call))
+        RECORDING.problem(call, no_equivalent(call))
         return []
     target, transition = change
     if transition in STATES:  # `number_targets` has noted the state at the node
@@ -211,7 +213,7 @@ def _emit(call: RecordedCall) -> Action | list[Action]:
 
 def _shutdown(call: RecordedCall) -> Action:
     event = call if call.kind == "Shutdown" else call.get("event", 0)
-    return Action("shutdown", {"reason": text(event.get("reason", 0, default="")) or "a launch file asks for it"})
+    return Action("shutdown", {"reason": text(event.get("reason", 0, default="")) or "requested by a launch file"})
 
 
 def _register(call: RecordedCall) -> list[Action]:
@@ -223,7 +225,7 @@ def _register(call: RecordedCall) -> list[Action]:
         RECORDING.remark(call, LEFT_OUT[handler.kind])
         return []
     if not isinstance(handler, RecordedCall) or handler.kind not in HANDLERS:
-        RECORDING.problem(call, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
+        RECORDING.problem(call, f"an event handler {getattr(handler, 'name', '')} has no equivalent in a graph file")
         return []
     form = HANDLERS[handler.kind]
     target = handler.get(form.target)
@@ -344,11 +346,11 @@ def _made_by(code: Callable[[], list[object]], call: RecordedCall) -> list[Actio
     """Call code of the launch file; returns the actions that it sets, carries out itself and returns."""
     if RECORDING.values is None and call.kind in ("ForEach", "ForLoop"):  # the values of the loop are not known yet
         RECORDING.problem(
-            call, f"{call.kind} has no words in a graph file; `graphflow launch` starts the file as it is"
+            call, f"{call.kind} has no equivalent in a graph file; `graphflow launch` starts the file as it is"
         )
         return []
     if RECORDING.values is None:
-        message = f"{call.kind}: it was called once, with $(var ...) in place of each value; look what it made"
+        message = f"{call.kind}: it was called once, with $(var ...) in place of each value; check its result"
         RECORDING.problem(call, message)
     outer, before = _carried_out[:], dict(RECORDING.set)
     _carried_out.clear()

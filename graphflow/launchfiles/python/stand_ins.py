@@ -286,7 +286,7 @@ def parts(call: RecordedCall) -> list[object]:
 def _no_sum(call: RecordedCall, *operands: object) -> str:
     """Return the error for `+` with a substitution, which ROS 2's classes do not have either."""
     shown = ", ".join(map(called_as, operands))
-    return f"{call.kind} is no text before the launch, and has no +; write a list: [{shown}]"
+    return f"{call.kind} is not a text before the launch, and has no +; write a list: [{shown}]"
 
 
 def text(value: object) -> str:
@@ -330,7 +330,7 @@ def _substitution(call: RecordedCall) -> str:
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
             return text(first)
-    RECORDING.problem(call, no_words(call))
+    RECORDING.problem(call, no_equivalent(call))
     return ""
 
 
@@ -379,15 +379,15 @@ def condition(call: RecordedCall) -> dict[str, str]:
         comparison = "equals" if call.kind.endswith("nEquals") else "not-equals"
         variable, value = call.args
         return {"if": f"$({comparison} $(var {_word(variable)}) {_word(value)})"}
-    RECORDING.problem(call, no_words(call))
+    RECORDING.problem(call, no_equivalent(call))
     return {}
 
 
-def no_words(call: RecordedCall) -> str:
+def no_equivalent(call: RecordedCall) -> str:
     """Return the problem of a class that a graph file cannot express, with the class that may be meant."""
     known = {name for names in NAMES.values() for name in names.split()}
     near = nearest(call.kind, known, cutoff=0.85) if call.kind not in known else None
-    return f"{call.kind} has no words in a graph file" + (f"; did you mean {near!r}?" if near else "")
+    return f"{call.kind} has no equivalent in a graph file" + (f"; did you mean {near!r}?" if near else "")
 
 
 def plain(value: object) -> Data:

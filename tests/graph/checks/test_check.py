@@ -328,8 +328,8 @@ def test_types_that_the_source_does_not_show() -> None:
 @pytest.mark.parametrize(
     ("program", "end"),
     [
-        ("sh -c 'sleep 1'", "each word stands by itself: command: [sh, -c, sleep 1]"),
-        ("sh 'a: b", "each word stands by itself: command: [sh, '''a:', b]"),
+        ("sh -c 'sleep 1'", "each word is an item of its own: command: [sh, -c, sleep 1]"),
+        ("sh 'a: b", "each word is an item of its own: command: [sh, '''a:', b]"),
         ("no_such_program -a", "it is not on the PATH"),
     ],
 )

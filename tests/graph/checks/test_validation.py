@@ -119,11 +119,11 @@ def test_nodes_that_are_not_below_nodes(name: str) -> None:
 @pytest.mark.parametrize(
     ("message", "end"),
     [
-        ("'“a:B”' is not a class", " (“ and ” are no quotes in YAML, which has ' and \")"),
-        ("'/\u2018lab\u2019' is not a namespace", " (\u2018 and \u2019 are no quotes in YAML, which has ' and \")"),
+        ("'“a:B”' is not a class", " (“ and ” are not quotes in YAML, which has ' and \")"),
+        ("'/\u2018lab\u2019' is not a namespace", " (\u2018 and \u2019 are not quotes in YAML, which has ' and \")"),
         (
             f"{'/ class'!r} is not a node name".replace(" class", "\\xa0class"),
-            " (\\xa0 is a no-break space, which is none in YAML)",
+            " (\\xa0 is a no-break space, which YAML does not count as a space)",
         ),
         ("'say “hi” to all' is not a class", ""),
     ],

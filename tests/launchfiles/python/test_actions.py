@@ -15,7 +15,7 @@ from graphflow.launchfiles.recorded import Finding
 
 @pytest.fixture(autouse=True)
 def problems() -> Iterator[list[Finding]]:
-    """What has no words, of this test alone."""
+    """The problems of this test alone."""
     RECORDING.problems = []
     yield RECORDING.problems
     RECORDING.problems = []
@@ -48,7 +48,7 @@ def test_what_comes_after_what() -> None:
     number = ls["executable"]["number"]
     assert "on_exit" not in ls["executable"]  # which would end all before it is said
     assert (log["log"]["after_number"], log["log"]["after_what"]) == (number, "exited")
-    assert (end["shutdown"]["after_number"], end["shutdown"]["reason"]) == (number, "a launch file asks for it")
+    assert (end["shutdown"]["after_number"], end["shutdown"]["reason"]) == (number, "requested by a launch file")
 
 
 def test_what_only_ends_all() -> None:
@@ -125,8 +125,8 @@ def test_a_handler_before_what_it_waits_for() -> None:
 @pytest.mark.parametrize(
     ("made", "told"),
     [
-        (lambda node: [node, change(node, 99)], "EmitEvent has no words in a graph file"),
-        (lambda node: [change(None, 1)], "EmitEvent has no words in a graph file"),
+        (lambda node: [node, change(node, 99)], "EmitEvent has no equivalent in a graph file"),
+        (lambda node: [change(None, 1)], "EmitEvent has no equivalent in a graph file"),
         (
             lambda node: [node, change(node, 1), on_state(node, "active")],
             "OnStateTransition: nothing in this file brings the node to 'active' by EmitEvent(event=ChangeState(...))",
@@ -170,19 +170,19 @@ def test_what_is_no_action(problems: list[Finding]) -> None:
     actions([said("TimerAction", period=1, actions=["x"])])
     actions([said("PushMatrix")])
     assert problems == [
-        {"line": 1, "message": "3 is no action, such as Node(...)"},
-        {"line": 1, "message": "the class dict is no action, such as Node(...)"},
-        {"line": 7, "message": "'x' is no action, such as Node(...)"},
-        {"line": 7, "message": "PushMatrix has no words in a graph file"},
+        {"line": 1, "message": "3 is not an action, such as Node(...)"},
+        {"line": 1, "message": "the class dict is not an action, such as Node(...)"},
+        {"line": 7, "message": "'x' is not an action, such as Node(...)"},
+        {"line": 7, "message": "PushMatrix has no equivalent in a graph file"},
     ]
 
 
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ({"period": "abc"}, "period is a number of seconds, such as 2.0, and not 'abc'"),
-        ({"period": True}, "period is a number of seconds, such as 2.0, and not True"),
-        ({}, "period is a number of seconds, such as 2.0, and not None"),
+        ({"period": "abc"}, "period is a number of seconds, such as 2.0, not 'abc'"),
+        ({"period": True}, "period is a number of seconds, such as 2.0, not True"),
+        ({}, "period is a number of seconds, such as 2.0, not None"),
         ({"period": 2.0, "actions": said("Node")}, "actions is a list: write [ ] around Node(...)"),
     ],
 )

@@ -94,4 +94,4 @@ def test_code_in_a_file_that_is_only_written_down() -> None:
     assert actions(said("ForLoop", variable("n"), function=print)) == []
     messages = [problem["message"] for problem in RECORDING.problems]
     assert messages[0].startswith("OpaqueFunction: it was called once")
-    assert messages[1].startswith("ForLoop has no words in a graph file")
+    assert messages[1].startswith("ForLoop has no equivalent in a graph file")

@@ -14,7 +14,7 @@ from graphflow.launchfiles.recorded import Finding
 
 @pytest.fixture(autouse=True)
 def problems() -> Iterator[list[Finding]]:
-    """What has no words, of this test alone."""
+    """The problems of this test alone."""
     RECORDING.problems = []
     yield RECORDING.problems
     RECORDING.problems = []
@@ -47,7 +47,7 @@ def test_where_components_are_loaded() -> None:
     [
         ({"parameters": {"rate": 2.0}}, "parameters: expected a list, such as [{'rate': 2.0}], got {'rate': 2.0}"),
         ({"arguments": "--fast"}, "arguments: expected a list, such as ['--fast'], got '--fast'"),
-        ({"output": "scren"}, "Node: output: 'scren' is none of launch's; did you mean 'screen'?"),
+        ({"output": "scren"}, "Node: output: 'scren' is not one of launch's; did you mean 'screen'?"),
         (
             {"parameters": [{"rate"}]},
             "parameters: {'rate'} is neither a dictionary nor a file; write {'name': value}, with a colon",

@@ -83,7 +83,7 @@ def test_what_has_no_words() -> None:
     assert left_out["message"].startswith("OnProcessIO is left out")
     problems = {problem["line"]: problem["message"] for problem in told["problems"]}
     assert problems[line_of("OpaqueFunction(function")].startswith("OpaqueFunction: it was called once, with $(var")
-    assert problems[line_of("SetParametersFromFile(filename")].startswith("SetParametersFromFile has no words")
+    assert problems[line_of("SetParametersFromFile(filename")].startswith("SetParametersFromFile has no equivalent")
     assert len(problems) == 2
 
 
@@ -237,7 +237,7 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
         (
             "import launch\n\ndef generate_launch_description():\n    return launch.LaunchDescripton([])\n",
             4,
-            "LaunchDescripton has no words in a graph file; did you mean 'LaunchDescription'?",
+            "LaunchDescripton has no equivalent in a graph file; did you mean 'LaunchDescription'?",
         ),
         ("qqqq\n", 1, "NameError: name 'qqqq' is not defined"),
         ("Node()\n", 1, "NameError: name 'Node' is not defined; write from launch_ros.actions import Node"),
