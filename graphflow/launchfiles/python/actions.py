@@ -17,16 +17,8 @@ from graphflow.launchfiles.python.events import (
     without_functions,
 )
 from graphflow.launchfiles.python.nodes import common, components, condition_of, container, node, parameter, process
-from graphflow.launchfiles.python.stand_ins import (
-    RECORDING,
-    Context,
-    RecordedCall,
-    called_as,
-    no_equivalent,
-    parts,
-    plain,
-    text,
-)
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import Context, RecordedCall, called_as, no_equivalent, parts, plain, text
 from graphflow.launchfiles.recorded import Action
 from graphflow.markup.source import Data, scalar
 
@@ -333,7 +325,7 @@ def _note_setting(call: RecordedCall) -> None:
     RECORDING.env[name] = value
 
 
-def _carry_out(call: RecordedCall) -> None:
+def _carry_out(call: object) -> None:
     """Convert an action where the launch file's code calls its `execute` or `visit`."""
     number_targets(call)
     _carried_out.extend(_actions(call))

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 
 import yaml
 
-from graphflow.launchfiles.python.stand_ins import RECORDING, Context, RecordedCall, text
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import Context, RecordedCall, text
 
 
 def code_of(call: RecordedCall) -> Callable[[], list[object]] | None:

@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable
 from pathlib import PurePath
 from typing import TypeVar
 
-from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, PackageNotFoundError, RecordedCall, stand_in_of, text
+from graphflow.launchfiles.python.recording import RECORDING, PackageNotFoundError
+from graphflow.launchfiles.python.stand_ins import OWN, RecordedCall, stand_in_of, text
 from graphflow.markup.substitutions import truth
 
 _T = TypeVar("_T")

@@ -7,7 +7,8 @@ import yaml
 from graphflow.launchfiles.attributes import output_fault
 from graphflow.launchfiles.python.events import is_shutdown, without_functions
 from graphflow.launchfiles.python.names import NAMES
-from graphflow.launchfiles.python.stand_ins import RECORDING, RecordedCall, called_as, condition, plain, text
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import RecordedCall, called_as, condition, plain, text
 from graphflow.markup.source import Data, scalar
 
 _OF_CONTAINERS = frozenset(

@@ -24,7 +24,8 @@ from typing import Any
 from graphflow.launchfiles.python.actions import actions, number_targets
 from graphflow.launchfiles.python.early_uses import early_uses
 from graphflow.launchfiles.python.names import BASES, NAMES
-from graphflow.launchfiles.python.stand_ins import RECORDING, RecordedCall, StandIns, as_text
+from graphflow.launchfiles.python.recording import RECORDING, as_text
+from graphflow.launchfiles.python.stand_ins import RecordedCall, StandIns
 from graphflow.launchfiles.python.unused import unused_actions
 from graphflow.names import nearest
 from graphflow.supervisor.launching.launch_service import Described

@@ -11,7 +11,8 @@ import threading
 from typing import Any
 
 import graphflow.launchfiles.python.functions  # noqa: F401 - which belong to the packages, too
-from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, RecordedCall
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import OWN, RecordedCall
 from graphflow.supervisor.launching.command_output import printed
 
 RECORDING.run = printed

@@ -9,7 +9,8 @@ import pytest
 
 from graphflow.launchfiles.python import actions as converter
 from graphflow.launchfiles.python.actions import number_targets
-from graphflow.launchfiles.python.stand_ins import RECORDING, RecordedCall
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import RecordedCall
 from graphflow.launchfiles.recorded import Finding
 
 

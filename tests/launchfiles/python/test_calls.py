@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from graphflow.launchfiles.python import actions as converter
-from graphflow.launchfiles.python.stand_ins import RECORDING, Context, RecordedCall
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import Context, RecordedCall
 
 
 @pytest.fixture(autouse=True)

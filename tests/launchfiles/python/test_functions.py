@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from graphflow.launchfiles.python import functions as functions
-from graphflow.launchfiles.python.stand_ins import OWN, RECORDING, Context, RecordedCall, StandIns
+from graphflow.launchfiles.python.recording import RECORDING
+from graphflow.launchfiles.python.stand_ins import OWN, Context, RecordedCall, StandIns
 from graphflow.markup.substitutions import SubstitutionError
 
 Substitution = type("Substitution", (RecordedCall,), {"kind": "Substitution"})
