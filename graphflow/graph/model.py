@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Annotated, Any, NotRequired, TypedDict, get_args
 
 from pydantic import (
@@ -292,31 +292,41 @@ class NodeSpec(_Settings):
             return data
         has = {key for key in data if data[key] is not None}
         if "command" in has:
-            wrong = next((key for key in OF_NODES if key in has), None)
+            _refuse(OF_NODES, has)
             data = {k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}
         elif has & {"pkg", "exec"}:
-            is_file = "/" in str(data.get("exec")) or str(data.get("exec")).endswith(".py")
-            for former, key in (("package", "pkg"), ("executable", "exec")):
-                if former in has and key not in has:
-                    raise ValueError(f"unknown key {former!r}; it is called {key!r} here")
-            if data.get("exec") in (None, "") or ("pkg" not in has and not is_file):
-                raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file")
-            if "class" in has:
-                raise ValueError("write class:, or pkg: and exec:, not both")
-            wrong = next((key for key in OF_CLASSES if key in has), None)
-            if data.get("keep_names") and "lifecycle" in has:
-                raise ValueError("lifecycle: needs the node's name, which keep_names leaves to the program")
+            _check_executable(data, has)
+            _refuse(OF_CLASSES, has)
         else:
-            if has & {"args", "keep_names"}:
-                [key, *_] = sorted(has & {"args", "keep_names"})
-                which = f"the class {data['class']}" if isinstance(data.get("class"), str) else "a node with a class"
-                raise ValueError(
-                    f"{key}: is for programs, and this is {which}, which takes params: and remap:; remove it"
-                )
+            _check_class(data, has)
             return data
-        if wrong:
-            raise ValueError(f"{wrong}: is for nodes, and this is a program; {_HELP.get(wrong, 'remove it')}")
         return {**data, "class": NO_CLASS}
+
+
+def _refuse(keys: Iterable[str], has: Collection[str]) -> None:
+    wrong = next((key for key in keys if key in has), None)
+    if wrong is not None:
+        raise ValueError(f"{wrong}: is for nodes, and this is a program; {_HELP.get(wrong, 'remove it')}")
+
+
+def _check_executable(data: Mapping[str, object], has: Collection[str]) -> None:
+    is_file = "/" in str(data.get("exec")) or str(data.get("exec")).endswith(".py")
+    for former, key in (("package", "pkg"), ("executable", "exec")):
+        if former in has and key not in has:
+            raise ValueError(f"unknown key {former!r}; it is called {key!r} here")
+    if data.get("exec") in (None, "") or ("pkg" not in has and not is_file):
+        raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file")
+    if "class" in has:
+        raise ValueError("write class:, or pkg: and exec:, not both")
+    if data.get("keep_names") and "lifecycle" in has:
+        raise ValueError("lifecycle: needs the node's name, which keep_names leaves to the program")
+
+
+def _check_class(data: Mapping[str, object], has: Collection[str]) -> None:
+    wrong = min((key for key in ("args", "keep_names") if key in has), default=None)
+    if wrong is not None:
+        which = f"the class {data['class']}" if isinstance(data.get("class"), str) else "a node with a class"
+        raise ValueError(f"{wrong}: is for programs, and this is {which}, which takes params: and remap:; remove it")
 
 
 class StepSpec(_Model):

@@ -108,6 +108,7 @@ def _resolve(
     files = _ParamsFiles(src, expansion.files, problems)
     programs = _Programs(src, expansion.files, outside, problems)
     nodes = _nodes(src, model, files, programs, problems)
+    # Problems of nodes that are left out do not count, and `after` ignores such nodes.
     expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
     problems.excuse(map(str, programs.left_out))
     problems.left_out += programs.left_out.values()

@@ -137,12 +137,11 @@ class _Translation:
                 continue
             after = actions[i + 1 :]
             if name in _SCOPING:
+                # The group contains all later actions, so nothing is left to convert here.
                 add(body, "group", self._around(name, item, after))
                 break
-            sets = any(SAME.get(key, key) in _SCOPING for child in children(item) for key in child.entries)
-            if (
-                name == "group" and sets and has_value(item, "scoped", "false", "0")
-            ):  # its settings hold for later actions, too
+            if name == "group" and has_value(item, "scoped", "false", "0") and _sets_anything(item):
+                # The settings of a group that is not scoped hold for later actions, too.
                 for key, more in self._block([*self._each_if(item), *after]).items():
                     extend(body, key, more)
                 break
@@ -221,7 +220,7 @@ class _Translation:
             self._complain(item.at, "timer: the attribute 'period' is missing")
             return
         inner = self._block(children(item))
-        if typed(period).value == 0:
+        if typed(period).value == 0:  # a step must have a delay; launch starts the actions at once
             if inner:
                 add(body, "group", item.with_value({**self._conditions(item), **inner}))
             return
@@ -311,6 +310,7 @@ class _Translation:
         entries = self._common(item)
         is_list = isinstance(command.value, list)
         texts = [str(part.value) for part in command.items] if is_list else [str(command.value)]
+        # So that the command is recognized as a step, and runs without a ROS 2.
         texts = [text.replace("$(find-exec ros2)", "ros2") for text in texts]
         try:
             words = texts if is_list else split(texts[0])
@@ -334,7 +334,7 @@ class _Translation:
         words = [*words_of(item.entries.get("launch-prefix")), *words]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
-        if words[:1] == ["ros2"]:
+        if words[:1] == ["ros2"]:  # graphflow has ros2's commands, and need not find it on the PATH
             words[0] = "graphflow"
         entries = {"command": Item([Item(word, command.place) for word in words], command.place, item.at), **entries}
         own = item.entries.get("name")
@@ -392,6 +392,10 @@ class _Translation:
     def _next(self, word: str) -> int:
         self._count[word] = self._count.get(word, 0) + 1
         return self._count[word]
+
+
+def _sets_anything(group: Item) -> bool:
+    return any(SAME.get(key, key) in _SCOPING for child in children(group) for key in child.entries)
 
 
 def _text(item: Item | None) -> str:

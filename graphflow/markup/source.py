@@ -220,7 +220,7 @@ class _Builder:
             mark = event.start_mark
             assert mark is not None  # the parser sets it for every event
             self._add(event, Place(self._file, mark.line + 1, mark.column + 1))
-        for mapping, key in self._refused:
+        for mapping, key in self._refused:  # only now: their values had to be put somewhere
             mapping.pop(key, None)
         if not self._root:
             self._root.append(None)
@@ -263,7 +263,7 @@ class _Builder:
             self._refused.append((mapping, key))
         elif key in mapping and not (self._is_params and isinstance(mapping[key], dict)):
             raise self._twice(path, place)
-        self._keys.setdefault(path, place)
+        self._keys.setdefault(path, place)  # of a mapping that is continued, the first key counts
         frame.key = key
 
     def _open(self, container: dict[str, Data] | list[Data], place: Place) -> None:

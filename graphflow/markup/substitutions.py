@@ -109,6 +109,7 @@ class Substitutions:
             [part] = parts
             return part.value if isinstance(part, Written) else part
         texts = [_text(part) for part in parts]
+        # The limit is checked at every step, so that no intermediate text becomes much longer.
         if sum(map(len, texts)) > MAX_TEXT:  # arguments made of arguments could grow without end
             raise SubstitutionError(f"the text has more than {MAX_TEXT:,} characters")
         return "".join(texts)

@@ -84,15 +84,13 @@ class Problems(list[Problem]):
 
 def validated(model: type[M], src: Source, problems: Problems) -> M | None:
     """Validate a file or block; None, with problems added, if its keys or types are wrong."""
+    faults: list[tuple[source.Path, Fault]]
     try:
         return model.model_validate(src.data)
     except ValidationError as error:
         faults = [(_written_path(src, fault), fault) for fault in error.errors()]
+    faults = _without_strays(faults, src, problems)
     wanted: dict[source.Path, list[str]] = {}
-    strays = {path[:2]: str(path[1]).lstrip("/") for path, fault in faults if _is_stray(path, fault)}
-    for path, key in strays.items():
-        problems.add(src.key_place(path), _belongs_to_a_node(key))
-    faults = [(path, fault) for path, fault in faults if path[:2] not in strays]
     paths = [path for path, _ in faults]
     for path, fault in faults:
         # Each alternative of a union reports its faults; the one that matched furthest was meant.
@@ -110,6 +108,16 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
         elif path in wanted:
             problems.add(src.place(path), _wrong_type(model, path, wanted.pop(path), fault["input"]))
     return None
+
+
+def _without_strays(
+    faults: list[tuple[source.Path, Fault]], src: Source, problems: Problems
+) -> list[tuple[source.Path, Fault]]:
+    """Report misplaced keys of nodes; returns the other faults."""
+    strays = {path[:2]: str(path[1]).lstrip("/") for path, fault in faults if _is_stray(path, fault)}
+    for path, key in strays.items():
+        problems.add(src.key_place(path), _belongs_to_a_node(key))
+    return [(path, fault) for path, fault in faults if path[:2] not in strays]
 
 
 def _written_path(src: Source, fault: Fault) -> source.Path:
@@ -167,26 +175,17 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
     Args:
         value: The value under the key.
     """
-    head = key.partition(":")[0]
-    if "nodes" in known and isinstance(value, dict) and "ros__parameters" in value:
-        return (
-            f"unknown key {key!r}; this is a file of parameters: a node of a graph file has params_file: FILE, and run "
-            "takes --params-file FILE"
-        )
-    if "nodes" in known and _is_node(key, value):
-        return f"unknown key {key!r}; nodes are written under nodes:, indented"
-    if instead := foreign_keys.meant(key, known):
-        return f"unknown key {key!r}; {instead}"
-    if "for" in known and (loop := _LOOP.match(key)):
-        return f"unknown key {key!r}; write for: {{var: {loop[1]}, in: {loop[2]}, nodes: ...}}"
-    if "namespace" in known and isinstance(value, dict) and not value.keys().isdisjoint(BLOCKS):
-        return f"unknown key {key!r}; a group is named by its namespace: group: {{namespace: {key}, nodes: ...}}"
-    if "call" in known and key.startswith("pub"):
-        return f"unknown key {key!r}; no step publishes: let a node do it, or graphflow topic pub"
-    if "call" in known and key in _REQUESTS:
-        return f"unknown key {key!r}; the values of a call or a goal are written under request:"
+    correction = (
+        _in_file(key, known, value)
+        or foreign_keys.meant(key, known)
+        or _in_block(key, known, value)
+        or _in_step(key, known)
+    )
+    if correction:
+        return f"unknown key {key!r}; {correction}"
     if "nodes" in known and key in keys_of(NodeSpec):
         return _belongs_to_a_node(key)
+    head = key.partition(":")[0]
     if head in known and head != key:
         return f"unknown key {key!r}; write a space after '{head}:'"
     if "params" in known and isinstance(value, (bool, int, float)) and nearest(key, known, cutoff=0.75) is None:
@@ -195,6 +194,36 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
         )
     listed = did_you_mean(key, known) or "; there is " + ", ".join(sorted(known))
     return f"unknown key {key!r}{listed}"
+
+
+def _in_file(key: str, known: Collection[str], value: object) -> str:
+    """Return the correction of an unknown key of a file or group; empty if none is known."""
+    if "nodes" not in known:
+        return ""
+    if isinstance(value, dict) and "ros__parameters" in value:
+        return (
+            "this is a file of parameters: a node of a graph file has params_file: FILE, and run takes "
+            "--params-file FILE"
+        )
+    return "nodes are written under nodes:, indented" if _is_node(key, value) else ""
+
+
+def _in_block(key: str, known: Collection[str], value: object) -> str:
+    """Return the correction of a key that was meant as a loop or a group; empty if none is known."""
+    if "for" in known and (loop := _LOOP.match(key)):
+        return f"write for: {{var: {loop[1]}, in: {loop[2]}, nodes: ...}}"
+    if "namespace" in known and isinstance(value, dict) and not value.keys().isdisjoint(BLOCKS):
+        return f"a group is named by its namespace: group: {{namespace: {key}, nodes: ...}}"
+    return ""
+
+
+def _in_step(key: str, known: Collection[str]) -> str:
+    """Return the correction of an unknown key of a step; empty if none is known."""
+    if "call" not in known:
+        return ""
+    if key.startswith("pub"):
+        return "no step publishes: let a node do it, or graphflow topic pub"
+    return "the values of a call or a goal are written under request:" if key in _REQUESTS else ""
 
 
 def colon_fault(key: str) -> str:

@@ -162,7 +162,7 @@ class Expansion:
         top = self._read(path, file.place, values)
         if top is None:
             return scope
-        before = set(self.nodes)
+        before = set(self.nodes)  # overrides may change only the nodes of this file
         inner = replace(
             scope,
             files=(*scope.files, path.resolve()),
@@ -255,7 +255,7 @@ class Expansion:
         if not bodies and block.at.file not in self._problems.launch_files:
             self._problems.add(block.at, f"the {what} has no nodes; indent nodes: below it")
             return
-        before = self._relative
+        before = self._relative  # unchanged afterwards if no name in the group depends on a namespace
         self._body(bodies, inner)
         if "namespace" in settings.entries and self._relative == before and inner.namespace != scope.namespace:
             text = "every name in this group begins with a slash, so the namespace has no effect; leave the slashes out"
@@ -314,6 +314,7 @@ class Expansion:
         if self._values.is_left_out(item, scope):
             self.left_out[name] = item.at
             return
+        # ROS starts two nodes of one name, as a launch file may have by mistake; here the second gets another name.
         if name in self.nodes and (item.at.file in self._problems.launch_files or "keep_names" in item.entries):
             taken, name = name, next(free for n in count(2) if (free := f"{name}_{n}") not in self.nodes)
             if not item.entries.keys() & {"keep_names", "command"}:  # else the name is that of the process alone

@@ -217,14 +217,14 @@ def _substitution(call: RecordedCall) -> str:
         case "IfElseSubstitution":
             values = (call.get("condition", 0), call.get("if_value", 1, ""), call.get("else_value", 2, ""))
             return f"$(if {' '.join(map(_word, values))})"
-        case "TextSubstitution" | "PathSubstitution" | "ParameterValue" | "ParameterFile":
-            return text(first)
-        case name if name.endswith("LaunchDescriptionSource"):
+        case kind if kind in _PLAIN or kind.endswith("LaunchDescriptionSource"):
             return text(first)
     RECORDING.problem(call, no_equivalent(call))
     return ""
 
 
+_PLAIN = ("TextSubstitution", "PathSubstitution", "ParameterValue", "ParameterFile")
+"""Classes whose text is that of their first argument."""
 _WITH_DEFAULT = {
     "LaunchConfiguration": ("var", "default"),
     "EnvironmentVariable": ("env", "default_value"),
