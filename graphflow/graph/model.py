@@ -85,7 +85,7 @@ def _call_timeout(value: object) -> object:
     return value
 
 
-_MEANT = {
+_EQUIVALENTS = {
     "restart: no": "never",
     "restart: false": "never",
     "restart: yes": "always",
@@ -104,7 +104,7 @@ _MEANT = {
 def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
     def checked(value: str) -> str:
         if value not in words:
-            meant = _MEANT.get(f"{key}: {value}") or nearest(value.lower().replace("-", "_"), words, cutoff=0.8)
+            meant = _EQUIVALENTS.get(f"{key}: {value}") or nearest(value.lower().replace("-", "_"), words, cutoff=0.8)
             way = f"; write {key}: {meant}" if meant in words else ""
             raise ValueError(f"{key}: expected one of {', '.join(words)}, got {value!r}{way}")
         return value
@@ -121,7 +121,7 @@ _OF_COMPOSE = {"service_started": "ready", "service_healthy": "ready", "service_
 """The conditions of docker-compose, with those of `after:`."""
 
 
-def _awaited(value: object) -> str:
+def _compose_condition(value: object) -> str:
     """Return a condition of `after:`, perhaps from one of docker-compose; empty for any other value."""
     word = value.get("condition") if isinstance(value, dict) else value
     return _OF_COMPOSE.get(word, word if word in AFTER else "") if isinstance(word, str) else ""
@@ -135,7 +135,11 @@ def _after(value: object) -> object:
         return dict.fromkeys(value, "")
     if not isinstance(value, dict) or not all(word in (*AFTER, "") for word in value.values()):
         way = f"expected a name, a list of names, or NAME: {'|'.join(AFTER)}, got {value!r}"
-        if isinstance(value, dict) and (meant := [_awaited(wanted) for wanted in value.values()]) and all(meant):
+        if (
+            isinstance(value, dict)
+            and (meant := [_compose_condition(wanted) for wanted in value.values()])
+            and all(meant)
+        ):
             pairs = ", ".join(f"{name}: {word}" for name, word in zip(value, meant, strict=True))
             way = f"write after: {{{pairs}}}"
         raise ValueError(f"after: {way}")

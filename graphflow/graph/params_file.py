@@ -170,7 +170,7 @@ def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
     return found
 
 
-def meant(sections: Sequence[Section], node: str) -> str:
+def hint_for(sections: Sequence[Section], node: str) -> str:
     """Return a hint for a file without parameters for a node: the section that may be misspelt."""
     places = {section.pattern: section.place for section in sections}
     near = nearest(node, places)

@@ -110,7 +110,7 @@ def _resolve(
     nodes = _nodes(src, model, files, programs, problems)
     # Problems of nodes that are left out do not count, and `after` ignores such nodes.
     expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
-    problems.excuse(map(str, programs.left_out))
+    problems.forget(map(str, programs.left_out))
     problems.left_out += programs.left_out.values()
     if nodes:
         problems.remarks += problems.left_out
@@ -251,7 +251,7 @@ class _ParamsFiles:
                 self._strict.add(path)
             if sections and not any(s.fits(node) for s in sections):
                 self._problems.add_unless_ros(
-                    place, f"{name} has nothing for {node}{params_file.meant(sections, node)}"
+                    place, f"{name} has nothing for {node}{params_file.hint_for(sections, node)}"
                 )
             settings = params_file.params_for(sections, node)
             if place.file in self._problems.launch_files:  # ROS ignores parameters that the node does not have

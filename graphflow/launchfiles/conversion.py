@@ -26,7 +26,7 @@ from graphflow.launchfiles.commands import Complain, one_word_fault, plain_words
 from graphflow.launchfiles.components import KNOWN, components
 from graphflow.launchfiles.known_actions import CONDITIONS, FORMER, RECORDED, SAME, is_known
 from graphflow.launchfiles.recorded import Action
-from graphflow.launchfiles.settings import as_text, conditional, conditions, pair, params, ros_words, setting
+from graphflow.launchfiles.settings import as_text, conditional, conditions, pair, params, ros_arguments, setting
 from graphflow.markup.source import Data, Scalar
 from graphflow.markup.tree import Item, located
 from graphflow.workspace import executables
@@ -268,7 +268,7 @@ class _Translation:
         if found is None:
             entries = {**self._program(item, package, name), **entries}
         else:
-            ros_words(item, entries, self._note)
+            ros_arguments(item, entries, self._note)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
         if "brought_to" in item.entries:
             entries["lifecycle"] = item.entries["brought_to"]

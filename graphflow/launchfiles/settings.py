@@ -171,7 +171,7 @@ def parameter(item: Item, kind: str, complain: Complain) -> Item:
         return item
 
 
-def ros_words(item: Item, entries: dict[str, Item], note: Complain) -> None:
+def ros_arguments(item: Item, entries: dict[str, Item], note: Complain) -> None:
     """Convert ROS arguments in `args` and `ros_args`: remaps, parameters, and the log level."""
     for key in ("args", "ros_args"):
         given = item.entries.get(key)

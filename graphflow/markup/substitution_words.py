@@ -103,7 +103,7 @@ def quoted(text: str) -> str:
     return text if _LITERAL.match(text) else "'" + re.sub(r"[\\']|\$(?=\()", r"\\\g<0>", text) + "'"
 
 
-def misspelt(text: str, names: Collection[str]) -> Iterator[tuple[str, str]]:
+def foreign_variables(text: str, names: Collection[str]) -> Iterator[tuple[str, str]]:
     """Yield names written as variables of other languages, as `${rate}`, each after the text found."""
     for found in _VARIABLE.finditer(text):
         name = next(filter(None, found.groups()))

@@ -151,7 +151,7 @@ class SetupFile:
         text = constant_text(node, self._constants)
         if text is None or entry_point(text) is not None:
             return None
-        near = next((way for way in _meant(text, self.file.parent) if entry_point(way) is not None), None)
+        near = next((way for way in _corrections(text, self.file.parent) if entry_point(way) is not None), None)
         if near is not None:
             return node.lineno, f"{text!r} names no function; did you mean {near!r}?"
         if text.count(":") > 1 or text.count("=") > 1:
@@ -159,7 +159,7 @@ class SetupFile:
         return node.lineno, f"{text!r} names no function; write 'NAME = PACKAGE.MODULE:FUNCTION'"
 
 
-def _meant(text: str, folder: Path) -> Iterator[str]:
+def _corrections(text: str, folder: Path) -> Iterator[str]:
     """Yield corrections of a text that is no entry point.
 
     Args:

@@ -56,7 +56,7 @@ def outer_workspace(workspace: Workspace) -> Workspace | None:
 
 def no_packages(workspace: Workspace) -> list[str]:
     """Return the faults of folders that are meant as packages and are none."""
-    return [fault for found in folders(_source(workspace)) if _is_meant(found) and (fault := _lack(found))]
+    return [fault for found in folders(_source(workspace)) if _is_intended(found) and (fault := _lack(found))]
 
 
 def _is_package(folder: Path) -> bool:
@@ -103,7 +103,7 @@ def _unnamed(file: Path, shown: str, name: str) -> str:
     return f"{shown} has no <name>; {_NEEDED.format(name=name)}"
 
 
-def _is_meant(found: Folder) -> bool:
+def _is_intended(found: Folder) -> bool:
     """Return whether a folder is meant as a package; a `setup.py` alone does not show it."""
     if found.package is not None or found.mark is not None:
         return False

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from graphflow.errors import Place
-from graphflow.launchfiles.settings import pair, parameter, params, ros_words, setting
+from graphflow.launchfiles.settings import pair, parameter, params, ros_arguments, setting
 from graphflow.markup.source import Data
 from graphflow.markup.tree import Item, located
 
@@ -105,7 +105,7 @@ def test_words_for_ros() -> None:
     words = "--ros-args -r a:=b -p rate:=2 --log-level DEBUG --fast yes"
     entries: dict[str, Item] = {}
     noted: list[str] = []
-    ros_words(located({"args": words}, HERE), entries, lambda place, text: noted.append(text))
+    ros_arguments(located({"args": words}, HERE), entries, lambda place, text: noted.append(text))
     assert {key: item.plain() for key, item in entries.items()} == {
         "remap": {"a": "b"},
         "params": {"rate": 2},

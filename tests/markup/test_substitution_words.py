@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graphflow.markup.substitution_words import UnclosedError, Word, as_word, misspelt, quoted, spans, words
+from graphflow.markup.substitution_words import UnclosedError, Word, as_word, foreign_variables, quoted, spans, words
 from tests.cases import count
 
 
@@ -76,4 +76,4 @@ def test_a_quoted_text_is_read_back(text: str) -> None:
 )
 def test_variables_of_other_languages(text: str, found: list[tuple[str, str]]) -> None:
     """Are told if they are names that are known here."""
-    assert list(misspelt(text, ["rate", "who"])) == found
+    assert list(foreign_variables(text, ["rate", "who"])) == found

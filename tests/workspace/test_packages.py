@@ -199,7 +199,7 @@ def test_modules_below_a_folder_of_their_own(tmp_path: Path) -> None:
             ["go"],
             "setup.cfg:4: 'ho = a.go.main' names no function; write 'NAME = PACKAGE.MODULE:FUNCTION'",
         ),
-        ("[metadata]\nname = a\noptions.entry_points]\n", [], "setup.cfg:3: it is neither [section] nor KEY = VALUE, so"),
+        ("[metadata]\nname = a\noptions.entry_points]\n", [], "setup.cfg:3: it is neither [section] nor KEY = VALUE"),
         ("name = a\n", [], "setup.cfg:1: it is neither [section] nor KEY = VALUE, so the file has no exec"),
         ("[a]\n[a]\n", [], "setup.cfg: While reading from "),
     ],

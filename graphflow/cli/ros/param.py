@@ -321,7 +321,7 @@ def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
         node = view.node(name)
         fitting = [s for s in sections if s.fits(node) and (s.is_exact or not no_use_wildcard)]
         if not fitting:
-            raise UsageFault(f"{file} has nothing for {node}{params_file.meant(sections, node)}")
+            raise UsageFault(f"{file} has nothing for {node}{params_file.hint_for(sections, node)}")
         failed = _load(RemoteParameters(view, node, timeout), params_file.params_for(fitting, node))
     return exits.FAILED if failed else exits.OK
 

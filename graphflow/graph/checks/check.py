@@ -144,11 +144,11 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
         try:
             declared.fit(setting.value)
         except ParameterError as error:
-            way = _meant(declared, setting)
+            way = _value_correction(declared, setting)
             yield Problem(setting.place, f"{error}; {way}" if way else str(error))
 
 
-def _meant(declared: Parameter, setting: Setting) -> str:
+def _value_correction(declared: Parameter, setting: Setting) -> str:
     """Return the correction of a text as a parameter value: a list in brackets, or the value without quotes."""
     value, place = setting.value, setting.place
     if not isinstance(value, str):

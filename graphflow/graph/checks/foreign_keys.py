@@ -63,7 +63,7 @@ _OF_OTHERS = {
 """Keys of groups, arguments and steps."""
 
 
-def meant(key: str, known: Collection[str]) -> str:
+def correction(key: str, known: Collection[str]) -> str:
     """Return the correction of a key of another tool; empty for other keys.
 
     Args:

@@ -71,7 +71,7 @@ class Problems(list[Problem]):
         yield
         self._of_nodes[name] = self[known:]
 
-    def excuse(self, names: Iterable[str]) -> None:
+    def forget(self, names: Iterable[str]) -> None:
         """Drop the problems of nodes that are left out."""
         forgotten = [fault for name in names for fault in self._of_nodes.get(name, ())]
         self[:] = [problem for problem in self if problem not in forgotten]
@@ -147,7 +147,7 @@ def _misspelt(
     """Return whether a missing key is present with a typo, which is reported as an unknown key."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
     of_ros = key == "class" and not {"package", "executable"}.isdisjoint(unknown)
-    of_ros = of_ros or any(foreign_keys.meant(word, [key]) for word in unknown)
+    of_ros = of_ros or any(foreign_keys.correction(word, [key]) for word in unknown)
     return of_ros or any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
 
 
@@ -177,7 +177,7 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
     """
     correction = (
         _in_file(key, known, value)
-        or foreign_keys.meant(key, known)
+        or foreign_keys.correction(key, known)
         or _in_block(key, known, value)
         or _in_step(key, known)
     )

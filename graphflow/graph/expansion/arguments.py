@@ -143,7 +143,7 @@ def given_values(words: Sequence[str]) -> dict[str, str]:
     return {name: text for name, arrow, text in pairs if arrow and name}
 
 
-def behind_name(text: str) -> str:
+def arguments_after_name(text: str) -> str:
     """Return the fault of arguments after the name of an included file; empty if there are none."""
     name, _, given = text.partition(" ")
     pairs = ", ".join(f"{word}: {value}" for word, value in given_values(given.split()).items())

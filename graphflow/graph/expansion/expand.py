@@ -18,7 +18,7 @@ from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph.checks.validation import M, Problems, colon_fault, example, unknown_key, validated
-from graphflow.graph.expansion.arguments import Arguments, behind_name
+from graphflow.graph.expansion.arguments import Arguments, arguments_after_name
 from graphflow.graph.expansion.inherit import BY_ENTRY, after_groups, with_groups
 from graphflow.graph.expansion.loops import values_of
 from graphflow.graph.expansion.ros_pairs import as_class
@@ -180,7 +180,7 @@ class Expansion:
         if "$(" in str(path):  # a substitution that failed, which has been reported
             return None
         if not path.is_file():
-            raise GraphFileError([*self._problems, Problem(place, behind_name(path.name) or no_file(path))])
+            raise GraphFileError([*self._problems, Problem(place, arguments_after_name(path.name) or no_file(path))])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
         self._included += 1

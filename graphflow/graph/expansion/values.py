@@ -9,7 +9,7 @@ from pathlib import Path
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.checks.validation import Problems
 from graphflow.markup.source import Data
-from graphflow.markup.substitution_words import misspelt
+from graphflow.markup.substitution_words import foreign_variables
 from graphflow.markup.substitutions import Outside, SubstitutionError, Substitutions, Written, truth
 from graphflow.markup.tree import Item, located, shared
 
@@ -64,7 +64,7 @@ class Values:
         if not isinstance(value, str):
             return value
         if not is_word and place.file not in self._problems.launch_files:
-            for written, name in misspelt(value, scope.values):
+            for written, name in foreign_variables(value, scope.values):
                 self._problems.remark(place, f"{written} stays as it is; for the value of {name!r} write $(var {name})")
         if "$(" not in value:
             return value

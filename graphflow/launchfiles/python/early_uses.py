@@ -18,49 +18,49 @@ _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 def early_uses(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield the lines of such uses, each with a correction."""
-    yield from _of_scope(tree, {})
+    yield from _uses_in(tree, {})
 
 
-def _of_scope(scope: ast.AST, outer: dict[str, ast.Call]) -> Iterator[tuple[int, str]]:
+def _uses_in(scope: ast.AST, outer: dict[str, ast.Call]) -> Iterator[tuple[int, str]]:
     """Yield the early uses in a module or function, and in the functions within it.
 
     Args:
         outer: Substitutions of the enclosing scopes, by name.
     """
-    nodes = list(_own(scope))
-    known = {name: call for name, call in outer.items() if name not in _bound(scope, nodes)} | _made(scope, nodes)
+    nodes = list(_nodes_in(scope))
+    known = {name: call for name, call in outer.items() if name not in _bound(scope, nodes)} | _bound_once(scope, nodes)
     performs = isinstance(scope, _SCOPES) and any(arg.arg == "context" for arg in scope.args.args)
     seen: set[ast.AST] = set()  # already reported as part of a larger expression
     for node in nodes:
         match node:
             case ast.If(test=test) | ast.IfExp(test=test) | ast.While(test=test):
-                for part in _parts(test):
+                for part in _operands(test):
                     seen |= {*ast.walk(part)}
-                    if text := _of_test(part, known, performs):
+                    if text := _test_fault(part, known, performs):
                         yield part.lineno, text
             case (
                 ast.Call(args=[argument], keywords=[])
                 | ast.Call(args=[], keywords=[ast.keyword(arg="predicate_expression", value=argument)])
             ) if _name(node) in ("IfCondition", "UnlessCondition"):
-                way = None if _value(argument, known) else _way(argument, known)
-                if way is not None:
+                fix = None if _value(argument, known) else _equivalent(argument, known)
+                if fix is not None:
                     seen |= {*ast.walk(argument)}
                     shown = ast.unparse(argument)
-                    yield node.lineno, f"{shown} is decided before the launch has values: write {_name(node)}({way})"
-            case ast.Compare() if node not in seen and (way := _way(node, known)) is not None:
+                    yield node.lineno, f"{shown} is decided before the launch has values: write {_name(node)}({fix})"
+            case ast.Compare() if node not in seen and (fix := _equivalent(node, known)) is not None:
                 seen |= {*ast.walk(node)}
-                yield node.lineno, _compared(node, known, performs, way)
+                yield node.lineno, _comparison_fault(node, known, performs, fix)
             case ast.Call(func=ast.Name(id="str"), args=[argument], keywords=[]) if node not in seen and (
                 call := _value(argument, known)
             ):
                 shown = ast.unparse(call)
-                way = f"{shown}.perform(context)" if performs else f"{shown} alone"
-                yield node.lineno, f"{shown} has no value yet, and str() makes the name of an object: write {way}"
+                fix = f"{shown}.perform(context)" if performs else f"{shown} alone"
+                yield node.lineno, f"{shown} has no value yet, and str() makes the name of an object: write {fix}"
             case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.Lambda():
-                yield from _of_scope(node, known)
+                yield from _uses_in(node, known)
 
 
-def _own(scope: ast.AST) -> Iterator[ast.AST]:
+def _nodes_in(scope: ast.AST) -> Iterator[ast.AST]:
     """Yield the nodes of a scope, without the bodies of functions within it."""
     todo = list(ast.iter_child_nodes(scope))
     while todo:
@@ -77,7 +77,7 @@ def _bound(scope: ast.AST, nodes: list[ast.AST]) -> set[str]:
     return taken | {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
 
 
-def _made(scope: ast.AST, nodes: list[ast.AST]) -> dict[str, ast.Call]:
+def _bound_once(scope: ast.AST, nodes: list[ast.AST]) -> dict[str, ast.Call]:
     """Return the names that a scope binds once, and to a substitution."""
     stores = [node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
     found: dict[str, ast.Call] = {}
@@ -118,48 +118,48 @@ def _as_text(value: ast.expr) -> ast.expr:
     return value
 
 
-def _parts(test: ast.expr) -> Iterator[ast.expr]:
+def _operands(test: ast.expr) -> Iterator[ast.expr]:
     """Yield the operands of the boolean operators of a test."""
     match test:
         case ast.BoolOp(values=values):
             for value in values:
-                yield from _parts(value)
+                yield from _operands(value)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            yield from _parts(operand)
+            yield from _operands(operand)
         case _:
             yield test
 
 
-def _way(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
+def _equivalent(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
     """Return the substitution equivalent to an expression of substitutions; None for other expressions."""
     match value:
         case ast.BoolOp(op=op, values=values):
-            ways = [_way(part, known) for part in values]
+            fixes = [_equivalent(part, known) for part in values]
             kind = "And" if isinstance(op, ast.And) else "Or"
             kind = (
-                f"{kind}Substitution" if len(ways) == 2 else {"And": "AllSubstitution", "Or": "AnySubstitution"}[kind]
+                f"{kind}Substitution" if len(fixes) == 2 else {"And": "AllSubstitution", "Or": "AnySubstitution"}[kind]
             )
-            return None if None in ways else f"{kind}({', '.join(map(str, ways))})"
+            return None if None in fixes else f"{kind}({', '.join(map(str, fixes))})"
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            way = _way(operand, known)
-            return None if way is None else f"NotSubstitution({way})"
+            fix = _equivalent(operand, known)
+            return None if fix is None else f"NotSubstitution({fix})"
         case ast.Compare(left=left, ops=[ast.Eq() | ast.NotEq() as op], comparators=[right]):
-            sides = [_side(_as_text(side), known) for side in (left, right)]
+            sides = [_operand(_as_text(side), known) for side in (left, right)]
             is_of_one = any(_value(_as_text(side), known) for side in (left, right))
             kind = "Equals" if isinstance(op, ast.Eq) else "NotEquals"
             return f"{kind}Substitution({', '.join(map(str, sides))})" if is_of_one and None not in sides else None
         case ast.Compare(
             left=left, ops=[ast.In() | ast.NotIn() as op], comparators=[ast.Tuple() | ast.List() as among]
         ):
-            shown, sides = _value(_as_text(left), known), [_side(side, known) for side in among.elts]
+            shown, sides = _value(_as_text(left), known), [_operand(side, known) for side in among.elts]
             if shown is None or None in sides or not sides:
                 return None
-            way = f"AnySubstitution({', '.join(f'EqualsSubstitution({ast.unparse(shown)}, {side})' for side in sides)})"
-            return way if isinstance(op, ast.In) else f"NotSubstitution({way})"
-    return _side(value, known) if _value(value, known) is not None else None
+            fix = f"AnySubstitution({', '.join(f'EqualsSubstitution({ast.unparse(shown)}, {side})' for side in sides)})"
+            return fix if isinstance(op, ast.In) else f"NotSubstitution({fix})"
+    return _operand(value, known) if _value(value, known) is not None else None
 
 
-def _side(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
+def _operand(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
     """Return a substitution or literal as an argument of another substitution."""
     if isinstance(value, ast.Constant) and isinstance(value.value, (str, int, float)):
         return repr(str(value.value).lower() if isinstance(value.value, bool) else str(value.value))
@@ -167,20 +167,24 @@ def _side(value: ast.expr, known: Mapping[str, ast.Call]) -> str | None:
     return None if call is None else ast.unparse(call)
 
 
-def _of_test(part: ast.expr, known: Mapping[str, ast.Call], performs: bool) -> str:
+def _test_fault(part: ast.expr, known: Mapping[str, ast.Call], performs: bool) -> str:
     """Return the problem of an operand of a test; empty if its outcome is not fixed."""
     if isinstance(part, ast.Compare):
-        way = _way(part, known)
-        return "" if way is None else _compared(part, known, performs, f"condition=IfCondition({way}) at the action")
+        fix = _equivalent(part, known)
+        return (
+            ""
+            if fix is None
+            else _comparison_fault(part, known, performs, f"condition=IfCondition({fix}) at the action")
+        )
     call = _value(part, known)
     if call is None:
         return ""
     shown = ast.unparse(call)
-    way = f"condition={shown}" if _name(call) in _CONDITIONS else f"condition=IfCondition({shown})"
-    return f"{shown} has no value yet and is true in any test: write {way} at the action"
+    fix = f"condition={shown}" if _name(call) in _CONDITIONS else f"condition=IfCondition({shown})"
+    return f"{shown} has no value yet and is true in any test: write {fix} at the action"
 
 
-def _compared(comparison: ast.Compare, known: Mapping[str, ast.Call], performs: bool, way: str) -> str:
+def _comparison_fault(comparison: ast.Compare, known: Mapping[str, ast.Call], performs: bool, fix: str) -> str:
     """Return the problem of a comparison with a substitution.
 
     Args:
@@ -191,4 +195,4 @@ def _compared(comparison: ast.Compare, known: Mapping[str, ast.Call], performs: 
     shown = ast.unparse(call)
     if performs:
         return f"{shown} is an object and equals no text: write {shown}.perform(context)"
-    return f"{shown} has no value yet and equals no text: write {way}"
+    return f"{shown} has no value yet and equals no text: write {fix}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pydantic import BaseModel
 
-from graphflow.graph.checks.foreign_keys import _CONTAINED, meant
+from graphflow.graph.checks.foreign_keys import _CONTAINED, correction
 from graphflow.graph.model import Arg, GraphFile, GroupBlock, NodeSpec, StepSpec, keys_of
 
 
@@ -29,7 +29,7 @@ from graphflow.graph.model import Arg, GraphFile, GroupBlock, NodeSpec, StepSpec
 )
 def test_what_is_meant(key: str, model: type[BaseModel], text: str) -> None:
     """It depends on where the key stands; others have nothing."""
-    assert meant(key, keys_of(model)) == text
+    assert correction(key, keys_of(model)) == text
 
 
 @pytest.mark.parametrize("model", [Arg, GraphFile, GroupBlock, NodeSpec, StepSpec])
@@ -39,4 +39,4 @@ def test_keys_of_graph_files(model: type[BaseModel]) -> None:
 
     known = keys_of(model)
     allowed = {"namespace"} if model is NodeSpec else set()
-    assert {key for key in known if key in {**_OF_NODES, **_OF_COMPOSE} and meant(key, known)} <= allowed
+    assert {key for key in known if key in {**_OF_NODES, **_OF_COMPOSE} and correction(key, known)} <= allowed
