@@ -23,7 +23,8 @@ from graphflow.graph.model import BLOCKS, FROM_GROUPS, NO_CLASS, GraphFile, Grou
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.interface import CALL_TIMEOUT, GroupChange
-from graphflow.launchfiles.reading import Describe, read
+from graphflow.launchfiles.reading import read
+from graphflow.launchfiles.recorded import Describe
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.markup import source
 from graphflow.markup.source import Source

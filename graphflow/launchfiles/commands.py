@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from graphflow.errors import GraphFileError
 from graphflow.launchfiles.attributes import split
 from graphflow.markup import source
-from graphflow.markup.source import Complain as Complain
+from graphflow.markup.source import Complain
 from graphflow.markup.tree import Item, located, tree
 
 

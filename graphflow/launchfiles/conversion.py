@@ -22,12 +22,12 @@ from graphflow.errors import Place
 from graphflow.launchfiles.attributes import children, has_value, items, split
 from graphflow.launchfiles.attributes import words as words_of
 from graphflow.launchfiles.bodies import add, extend, put
-from graphflow.launchfiles.commands import Complain, one_word_fault, plain_words, step_of, typed
+from graphflow.launchfiles.commands import one_word_fault, plain_words, step_of, typed
 from graphflow.launchfiles.components import KNOWN, components
 from graphflow.launchfiles.known_actions import CONDITIONS, FORMER, RECORDED, SAME, is_known
 from graphflow.launchfiles.recorded import Action
 from graphflow.launchfiles.settings import as_text, conditional, conditions, pair, params, ros_arguments, setting
-from graphflow.markup.source import Data, Scalar
+from graphflow.markup.source import Complain, Data, Scalar
 from graphflow.markup.tree import Item, located
 from graphflow.workspace import executables
 from graphflow.workspace.packages import bundled, find_workspace

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from graphflow.launchfiles.attributes import shape_fault
-from graphflow.launchfiles.commands import Complain
 from graphflow.launchfiles.components import KNOWN as CONTAINERS
 from graphflow.markup import ros1_words
+from graphflow.markup.source import Complain
 from graphflow.markup.tree import Item
 from graphflow.names import did_you_mean
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.launchfiles import conversion
 from graphflow.launchfiles.attributes import unescaped
-from graphflow.launchfiles.commands import Complain
 from graphflow.launchfiles.conversion import ignore
 from graphflow.launchfiles.known_actions import KNOWN_ACTIONS
-from graphflow.launchfiles.recorded import Describe as Describe
+from graphflow.launchfiles.recorded import Describe
 from graphflow.markup import source, xml_source
+from graphflow.markup.source import Complain
 from graphflow.markup.tree import Item, tree
 from graphflow.workspace.project import project_root
 

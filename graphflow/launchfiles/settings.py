@@ -6,9 +6,10 @@ import re
 
 from graphflow.launchfiles.attributes import has_value, items
 from graphflow.launchfiles.attributes import words as words_of
-from graphflow.launchfiles.commands import Complain, typed
+from graphflow.launchfiles.commands import typed
 from graphflow.markup import ros1_words
 from graphflow.markup.param_types import as_type
+from graphflow.markup.source import Complain
 from graphflow.markup.substitution_words import as_word
 from graphflow.markup.substitutions import Written
 from graphflow.markup.tree import Item, located

@@ -84,7 +84,7 @@ def graphs() -> dict[str, list[Path]]:
 
 
 def interfaces() -> dict[str, Path]:
-    """The folders of packages with messages, services or actions that distributions bring, by name."""
+    """Return the folders of interface packages in installed distributions, by name."""
     tops = [top / "interfaces" for one in installed().values() for folder in one.folders for top in _tops(folder)]
     return {folder.name: folder for top in tops if top.is_dir() for folder in top.iterdir() if folder.is_dir()}
 

@@ -20,7 +20,7 @@ from graphflow.errors import (
     RemoteError,
     ServiceUnavailable,
 )
-from graphflow.graph.plan import StepKind, PlannedStep
+from graphflow.graph.plan import PlannedStep, StepKind
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult

@@ -33,7 +33,8 @@ from graphflow.graph.model import (
     keys_of,
 )
 from graphflow.launchfiles.conversion import FROM_LAUNCH
-from graphflow.launchfiles.reading import Describe, read
+from graphflow.launchfiles.reading import read
+from graphflow.launchfiles.recorded import Describe
 from graphflow.markup.source import Data
 from graphflow.markup.substitutions import Outside
 from graphflow.markup.tree import Item, merged, source_of
