@@ -1,5 +1,5 @@
-"""rclpy's API over graphflow's, importable as `rclpy` only where asked for: code written for ROS 2 runs as it stands.
+"""rclpy's API on top of graphflow's: ROS 2 code runs unchanged once `import rclpy` is enabled.
 
-`site/` holds what is imported under ROS's names; the modules beside it are what stands behind. Nothing of ROS is in it:
-it is written from what ROS 2 documents.
+`site/` holds the packages imported under ROS's names; the modules beside it support them. There is no ROS code in it:
+everything is written from ROS 2's documentation.
 """

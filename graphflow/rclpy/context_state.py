@@ -1,4 +1,4 @@
-"""The life of a context of rclpy's: its arguments, the network once a node needs it, and who waits for its end."""
+"""The life of an rclpy context: its arguments, its connection to the network, and the threads that wait for its end."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import logging
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import Any
 
 from graphflow.domain import domain_id
 from graphflow.errors import TransportError
@@ -20,14 +19,14 @@ LOOP = LoopThread()
 """The event loop of this process."""
 OPEN_LIMIT = 10.0
 CLOSE_LIMIT = 5.0
-"""Seconds that the network has to be joined, and to be left."""
+"""Seconds that joining, or leaving, the network may take."""
 ASK_AGAIN = (0.2, 0.5)
-"""Seconds until it is tried again to join the network."""
+"""Seconds between two attempts to join the network."""
 logger = logging.getLogger("graphflow")
 
 
 def parse_only_ros(words: Sequence[str]) -> RosArgs:
-    """What stands after `--ros-args` in a command line: as in ROS 2, the rest is the program's own.
+    """Return the ROS arguments, those after `--ros-args`; as in ROS 2, the program reads the rest itself.
 
     Raises:
         GraphflowError: An argument is wrong.
@@ -45,11 +44,11 @@ def parse_only_ros(words: Sequence[str]) -> RosArgs:
 
 
 class ContextState:
-    """One context's, from `rclpy.init` to its shutdown.
+    """The state of one context, from `rclpy.init` to its shutdown.
 
     Args:
-        words: The command line, its first word the program's.
-        domain: None for what the environment says.
+        words: The command line, including the program's name.
+        domain: None to use the environment's.
 
     Raises:
         GraphflowError: An argument, or the domain, is wrong.
@@ -59,18 +58,18 @@ class ContextState:
         self.args = parse_only_ros(words)
         self.domain = domain_id(domain)
         self.is_ok = True
-        """Whether it has not been shut down."""
+        """Whether the context has not been shut down."""
         self._ends_with_process = False
         self._context: Context | None = None
         self._lock = threading.Lock()
         self._wakes: dict[Wake, None] = {}
         self.nodes: dict[object, Callable[[], None]] = {}
-        """What closes each of its nodes, by node."""
-        self.on_leaving: list[Callable[[Any], None]] = []
-        """Called with each node that leaves, or that the end finds."""
+        """The function that closes each of the context's nodes."""
+        self.on_leaving: list[Callable[..., None]] = []
+        """Called with each node that leaves, or that is still open at the end."""
 
     def network(self) -> Context:
-        """The network, joined now if it was not before. Raises TransportError."""
+        """The network, joined on first use. Raises TransportError."""
         with self._lock:
             if self._context is None:
                 self._context = LOOP.wait(self._open, timeout=OPEN_LIMIT)
@@ -87,47 +86,47 @@ class ContextState:
         return await Context.open(self.domain)
 
     def on_loop(self, fn: Callable[[], object], *, wait: bool = True) -> None:
-        """Call `fn()` on the loop, if the network has not been left."""
+        """Call `fn()` on the loop, unless the context has left the network."""
         if wait and self.is_ok:
             LOOP.call(fn)
         elif self.is_ok:
             LOOP.soon(fn)
 
     def on_end(self, wake: Wake) -> None:
-        """Wake somebody when it ends; at once if it has."""
+        """Register `wake` to be set at the end; set it at once if the context has ended."""
         self._wakes[wake] = None
         if not self.is_ok:
             wake.set()
 
     def forget(self, wake: Wake) -> None:
-        """Wake it no more."""
+        """Unregister `wake`."""
         self._wakes.pop(wake, None)
 
     def leave(self, node: object) -> None:
-        """A node is destroyed, or all have ended. Twice is harmless."""
+        """Note that a node was destroyed; None closes them all. Idempotent."""
         if self.nodes.pop(node, None) is not None:
             for told in self.on_leaving:
                 told(node)
 
     def end(self) -> bool:
-        """Say that it is over, and wake all who wait; whether it was not over before. For signal handlers too."""
+        """Mark the context as ended and wake all waiting threads; return whether it was still running. Signal-safe."""
         was_ok, self.is_ok = self.is_ok, False
         for wake in list(self._wakes):
             wake.set()
         return was_ok
 
     def end_with_process(self) -> None:
-        """Leave the network because the program has ended; its daemon threads are not told."""
+        """Leave the network because the program has ended, without waking its daemon threads."""
         self._ends_with_process = True
         self.close()
 
     def end_daemon(self) -> None:
-        """End a daemon thread of a program that has ended, without a word. Raises SystemExit in such a one."""
+        """End a daemon thread quietly once the program has ended. Raises SystemExit in such a thread."""
         if self._ends_with_process and threading.current_thread().daemon:
             raise SystemExit  # which threads end by
 
     def close(self) -> None:
-        """Leave the network; where another thread does so already, wait until it has."""
+        """Leave the network; if another thread is already doing so, wait for it."""
         self.end()
         for node in list(self.nodes):
             self.leave(node)

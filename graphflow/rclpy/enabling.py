@@ -1,6 +1,6 @@
-"""Makes `import rclpy` work where somebody has asked for it: in this process, or in a virtual environment for good.
+"""Make `import rclpy` work, in this process or permanently in a virtual environment.
 
-A ROS 2 that is sourced comes before: then nothing of graphflow's stands in for it.
+A sourced ROS 2 takes precedence: graphflow's packages then stay out of the way.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import sys
 from graphflow.system import SITE
 
 FILE = "graphflow-rclpy.pth"
-"""What `enable` writes where Python looks for installed packages; Python runs the line each time that it starts."""
+"""The `.pth` file that `enable` writes into site-packages; Python runs its line at every start."""
 TYPINGS = "graphflow-rclpy"
-"""The folder beside it with what editors read of messages."""
+"""The folder beside it with the message stubs for editors."""
 LINES = f"""{SITE}
 {TYPINGS}
 import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.site_hook")
@@ -22,9 +22,9 @@ import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.r
 
 
 def elsewhere() -> str | None:
-    """The file of an rclpy that is not graphflow's; None if Python would find none.
+    """Return the file of an rclpy that is not graphflow's; None if there is none.
 
-    A source tree of it does not count: it cannot be imported before it has been built.
+    A source tree of rclpy does not count: it cannot be imported before it is built.
     """
     paths = [entry for entry in sys.path if os.path.abspath(entry or ".") != SITE and not _is_source_tree(entry)]
     found = importlib.machinery.PathFinder.find_spec("rclpy", paths)
@@ -38,7 +38,7 @@ def _is_source_tree(entry: str) -> bool:
 
 
 def here() -> bool:
-    """Let this process import rclpy, and messages under ROS's names; whether it is graphflow's that it imports."""
+    """Make rclpy, and messages under ROS's names, importable in this process; return whether rclpy is graphflow's."""
     if elsewhere() is not None:
         sys.path[:] = [entry for entry in sys.path if entry not in (SITE, typings())]
         return False
@@ -53,24 +53,24 @@ def here() -> bool:
 
 
 def file() -> str:
-    """The file that `enable` writes."""
+    """Return the path of the file that `enable` writes."""
     import sysconfig
 
     return os.path.join(sysconfig.get_path("purelib"), FILE)
 
 
 def typings() -> str:
-    """The folder that `enable` writes for editors."""
+    """Return the folder of stubs that `enable` writes for editors."""
     return os.path.join(os.path.dirname(file()), TYPINGS)
 
 
 def is_enabled() -> bool:
-    """Whether Python itself imports rclpy."""
+    """Whether Python imports rclpy on its own."""
     return os.path.isfile(file())
 
 
 def enable() -> str:
-    """Let this Python import rclpy from now on; returns the file that does it. Raises OSError if that fails."""
+    """Make this Python import rclpy from now on; return the file that does it. Raises OSError on failure."""
     from pathlib import Path
 
     from graphflow.msgs import registry
@@ -85,7 +85,7 @@ def enable() -> str:
 
 
 def disable() -> bool:
-    """Take that back; whether there was anything to take back. Raises OSError if that is not possible."""
+    """Undo `enable`; return whether it was enabled. Raises OSError on failure."""
     import shutil
 
     was_enabled = is_enabled()

@@ -1,7 +1,7 @@
-"""The event loop of a process whose own threads run callbacks: graphflow's objects live on a thread of their own.
+"""An event loop on a thread of its own, for processes whose other threads run the callbacks.
 
-What is asked of them is asked from other threads by `call` and `wait`, which wait for the answer. The loop's thread
-never runs a user's code, and so never waits for one.
+Other threads use graphflow's objects through `call` and `wait`, which block until the answer. The loop's thread
+never runs user code, so it never blocks on any.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from graphflow.transport.malloc import keep_freed_memory
 T = TypeVar("T")
 
 STOP_LIMIT = 2.0
-"""Seconds that the loop has to end when the process does."""
+"""Seconds that the loop may take to stop when the process ends."""
 
 
 class LoopThread:
-    """An event loop on a thread of its own, which ends with the process."""
+    """An event loop on a thread of its own that ends with the process."""
 
     def __init__(self) -> None:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
         self.at_exit: list[Callable[[], None]] = []
-        """Called, the last first, before the loop stops."""
+        """Callbacks that run, last registered first, before the loop stops."""
 
     def start(self) -> asyncio.AbstractEventLoop:
-        """The loop, started if it does not run yet."""
+        """Return the loop, starting it if necessary."""
         with self._lock:
             if self._loop is None:
                 keep_freed_memory()
@@ -57,7 +57,7 @@ class LoopThread:
         return threading.current_thread() is self._thread
 
     def call(self, fn: Callable[..., T], *args: Any) -> T:
-        """Call `fn(*args)` on the loop, and wait for what it returns or raises."""
+        """Call `fn(*args)` on the loop, and block until it returns or raises."""
         loop = self.start()
         if self.is_here:
             return fn(*args)
@@ -72,11 +72,11 @@ class LoopThread:
         loop.call_soon_threadsafe(work)
         return outcome.result()
 
-    def wait(self, fn: Callable[..., Coroutine[Any, Any, T]], *args: Any, timeout: float | None = None) -> T:
-        """Run the coroutine `fn(*args)` on the loop, and wait for what it returns or raises.
+    def wait(self, fn: Callable[..., Coroutine[object, object, T]], *args: Any, timeout: float | None = None) -> T:
+        """Run the coroutine `fn(*args)` on the loop, and block until it returns or raises.
 
         Raises:
-            TimeoutError: It has taken more than `timeout` seconds, and was cancelled.
+            TimeoutError: It took more than `timeout` seconds and was cancelled.
         """
         asked = asyncio.run_coroutine_threadsafe(fn(*args), self.start())
         try:
@@ -85,14 +85,14 @@ class LoopThread:
             asked.cancel()
             raise
 
-    def soon(self, fn: Callable[..., Any], *args: Any) -> None:
-        """Call `fn(*args)` on the loop, some time later; not if it has ended. Callable from any thread."""
+    def soon(self, fn: Callable[..., object], *args: Any) -> None:
+        """Schedule `fn(*args)` on the loop, unless it has ended. Callable from any thread."""
         loop = self._loop
         if loop is not None and not loop.is_closed():
             loop.call_soon_threadsafe(fn, *args)
 
     def _stop(self) -> None:
-        """End with the process."""
+        """Stop the loop when the process ends."""
         while self.at_exit:
             self.at_exit.pop()()
         loop, thread = self._loop, self._thread

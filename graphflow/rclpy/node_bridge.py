@@ -1,4 +1,4 @@
-"""A node that rclpy's holds: graphflow's, opened from a thread, and the bell that its arrivals ring."""
+"""The graphflow node behind an rclpy node, and the bell that its arrivals ring."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from graphflow.wire.liveliness import Entity
 P = TypeVar("P", bound=Part)
 
 SEEN_LIMIT = 2.0
-"""Seconds until a node and its endpoints must be in the process's own picture of the graph."""
+"""Seconds within which a node and its endpoints must appear in the process's own graph cache."""
 
 
 class Waker(Protocol):
@@ -33,15 +33,15 @@ class Waker(Protocol):
 
 
 class NodeBell:
-    """Wakes the executor of a node, whichever that is; without one, arrivals wait."""
+    """Wakes a node's executor; without one, arrivals wait."""
 
     def __init__(self) -> None:
         self.rung: deque[Inbox] = deque()
         self.pending = False
-        self.marked: deque[Any] = deque()
-        """What says itself that it has something to do, and has not been attended to."""
-        self.ready: dict[Any, None] = {}
-        """What may have something to do."""
+        self.marked: deque[object] = deque()
+        """Entities that have signalled work and have not been attended to."""
+        self.ready: dict[object, None] = {}
+        """Entities that may have work."""
         self.executor: Callable[[], Waker | None] = _none
 
     def ring(self) -> None:
@@ -51,16 +51,16 @@ class NodeBell:
             executor.wake()
 
     def mark(self, entity: Any) -> None:
-        """Say that something has something to do. Callable from any thread."""
+        """Signal that an entity has work. Callable from any thread."""
         self.marked.append(entity)
         self.ring()
 
     def wake(self) -> None:
-        """Have the executor look at timers and the like anew."""
+        """Make the executor recheck timers and readiness."""
         self.ring()
 
     def attend(self) -> None:
-        """Take note of all that has rung. For the thread that looks for something to do."""
+        """Move all marked entities to `ready`. For the thread that polls for work."""
         self.pending = False
         rung, marked = self.rung, self.marked
         while rung:
@@ -72,18 +72,18 @@ class NodeBell:
 
 
 def _none() -> None:
-    """Nobody to wake."""
+    """Return no executor."""
 
 
 class HeldNode(Node):
-    """The graphflow node behind one of rclpy's: what it has is made by rclpy's, and named as its code names it."""
+    """A graphflow node whose endpoints rclpy creates, and whose class is named after the user's."""
 
     dynamic_names: ClassVar[bool | Sequence[str]] = True
     error_budget: ClassVar[ErrorBudget | None] = None
 
 
-def overrides_for(args: RosArgs, names: Resolver) -> dict[str, tuple[Any, str]]:
-    """The parameter values that arguments have for a node, each with where it was written.
+def overrides_for(args: RosArgs, names: Resolver) -> dict[str, tuple[object, str]]:
+    """Return the parameter values that the arguments set for a node, each with its source.
 
     Raises:
         GraphFileError: A parameter file is wrong.
@@ -97,13 +97,13 @@ def overrides_for(args: RosArgs, names: Resolver) -> dict[str, tuple[Any, str]]:
 
 
 def open_node(life: ContextState, name: str, namespace: str, remaps: Sequence[Remap], *, rosout: bool) -> HeldNode:
-    """A node on the network.
+    """Open a node on the network.
 
     Args:
-        rosout: Whether what it logs is published.
+        rosout: Whether its log is published on /rosout.
 
     Raises:
-        GraphflowError: A name is not legal, or the network cannot be joined.
+        GraphflowError: A name is illegal, or the network cannot be joined.
     """
     return LOOP.wait(_start, life.network(), name, namespace, remaps, rosout)
 
@@ -130,7 +130,7 @@ async def _seen(core: NodeCore, condition: Callable[[], bool]) -> None:
 
 
 def describe_types(node: HeldNode) -> None:
-    """Let others ask for the definitions of a node's types. On the loop."""
+    """Serve the definitions of a node's types to others. Runs on the loop."""
     core = core_of(node)
     descriptions = TypeDescriptions(lambda: core.endpoints)
     name = "type_description_interfaces/srv/GetTypeDescription"
@@ -138,7 +138,7 @@ def describe_types(node: HeldNode) -> None:
 
 
 def add(node: HeldNode, make: Callable[[NodeCore], P]) -> P:
-    """Add an endpoint, made on the loop by `make(core)`, to a node, and wait until the graph shows it."""
+    """Add the endpoint that `make(core)` creates on the loop to a node, and wait until the graph shows it."""
     made: P = LOOP.wait(_add, core_of(node), make)
     return made
 
@@ -152,7 +152,7 @@ async def _add(core: Any, make: Callable[[NodeCore], P]) -> P:
 
 
 def remove(part: Part) -> None:
-    """Withdraw an endpoint; nothing if the network was left before."""
+    """Withdraw an endpoint, unless the context has already left the network."""
     LOOP.wait(_remove, part)
 
 
@@ -165,7 +165,7 @@ async def _remove(part: Part) -> None:
 
 
 def close_node(node: HeldNode) -> None:
-    """Take a node off the network."""
+    """Close a node's endpoints and take it off the network."""
     LOOP.wait(_close, core_of(node))
 
 

@@ -1,6 +1,6 @@
-"""What others ask of the parameters of one of rclpy's nodes, without changing them: it is answered on the loop.
+"""The parameter services of an rclpy node that only read, answered on the event loop.
 
-So the parameters of a node can be read that does not spin, or is stuck in a callback. What sets them is the executor's.
+So parameters can be read even if the node does not spin, or is stuck in a callback. Only the executor sets them.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from graphflow.runtime.parameters.values import to_message
 
 
 class Known(Protocol):
-    """The parameters of a node, as those who read them see them."""
+    """The parameters of a node, as the services read them."""
 
     @property
     def values(self) -> Mapping[str, Any]:
-        """By name; each has a `value` and a `type_`."""
+        """The parameters by name; each has a `value` and a `type_`."""
 
     @property
     def descriptors(self) -> Mapping[str, Any]: ...
 
     def listed(self, prefixes: Any, depth: int) -> Any:
-        """As rcl_interfaces/msg/ListParametersResult."""
+        """Return an rcl_interfaces/msg/ListParametersResult."""
 
 
 def _class(name: str) -> Any:
@@ -33,13 +33,13 @@ def _class(name: str) -> Any:
 
 
 class ParameterAnswers:
-    """The answers of one node."""
+    """The reading services of one node."""
 
     def __init__(self, parameters: Known) -> None:
         self._parameters = parameters
 
     def serve(self, core: NodeCore) -> None:
-        """Offer the services that read. On the loop."""
+        """Offer the services that read. Runs on the loop."""
         for name, type_name, answer in (
             ("get_parameters", "GetParameters", self.get),
             ("get_parameter_types", "GetParameterTypes", self.get_types),
@@ -71,7 +71,7 @@ class ParameterAnswers:
 
 
 def _descriptor(kind: Any, given: Any) -> Any:
-    """A descriptor of rclpy's as one of graphflow's."""
+    """Convert a descriptor of rclpy's to one of graphflow's."""
     plain = ("name", "type", "description", "additional_constraints", "read_only", "dynamic_typing")
     ranges = {
         name: [{part: getattr(r, part) for part in ("from_value", "to_value", "step")} for r in getattr(given, name)]

@@ -1,4 +1,4 @@
-"""What is made once for each name, however many threads ask for it at the same time."""
+"""A cache that makes one value per name, even if several threads request it at once."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import TypeVar
 T = TypeVar("T")
 
 _LOCK = threading.RLock()
-"""One for all, since what is made may need something else of the kind."""
+"""One lock for all: making a value may require another cached one."""
 
 
 def made_once(make: Callable[[str], T]) -> Callable[[str], T]:
-    """Keep what `make` returns. `functools.cache` lets two threads make two, and two classes of one name do not fit."""
+    """Cache what `make` returns. With `functools.cache`, two threads could make incompatible classes of one name."""
     made: dict[str, T] = {}
 
     @wraps(make)

@@ -1,4 +1,4 @@
-"""Programs written for rclpy, found where they lie and run as they stand: nothing is built or installed before."""
+"""Programs written for rclpy, found and run from source: nothing is built or installed first."""
 
 from __future__ import annotations
 
@@ -36,28 +36,28 @@ from graphflow.workspace.unfound import launching
 
 
 class Program(NamedTuple):
-    """Something to be run."""
+    """A program to run."""
 
     file: Path
-    """The file, or that of the function's module."""
+    """The file, or the file of the entry point's module."""
     entry: EntryPoint | None
-    """The function of a module that is to be called; None for a file that is run itself."""
+    """The function to call; None for a file that is run as a script."""
     workspace: Workspace
     words: list[str]
-    """Its arguments."""
+    """The program's arguments."""
 
 
 def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
-    """The program that is meant by a file, or by a package, its name or its folder, and an executable of it.
+    """Find the program that a file, or a package (name or folder) and an executable, specify.
 
     Args:
-        here: The folder whose workspace counts.
+        here: The folder whose workspace is searched.
 
     Returns:
-        None if that is no program of rclpy's.
+        None if there is no such rclpy program.
 
     Raises:
-        UsageFault: The package has no such executable, or none is named; the text says which it has.
+        UsageFault: The package has no such executable, or none is named; the text lists those it has.
     """
     file = here / what
     if what.endswith(".py") and file.is_file():
@@ -92,7 +92,7 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
 
 
 def _unnamed(package: Package, name: str) -> str:
-    """Say that a module of that name is there and only its line in setup.py is missing; empty where it is not so."""
+    """Report a module of that name whose entry in setup.py is missing; empty if there is none."""
     module = package.folder / package.name / f"{name.removesuffix('.py')}.py"
     if not module.is_file() or not (package.folder / "setup.py").is_file():
         return ""
@@ -101,7 +101,7 @@ def _unnamed(package: Package, name: str) -> str:
 
 
 def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] | None:
-    """The file, and the function, that an executable is; its name with or without `.py`."""
+    """Return the file and entry point of an executable, given with or without `.py`."""
     known = package.known_as(name)
     if known is None:
         return None
@@ -113,7 +113,7 @@ def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] |
 
 
 def make_importable(workspace: Workspace) -> bool:
-    """Let this process import rclpy and all that the packages of a workspace have; whether rclpy is graphflow's."""
+    """Make rclpy and the packages of a workspace importable in this process; return whether rclpy is graphflow's."""
     is_ours = enabling.here()
     if is_ours:
         for name, folder in workspace.interfaces.items():
@@ -131,8 +131,8 @@ def run(program: Program) -> None:
     """Run a program in this process, as its main module.
 
     Raises:
-        SystemExit: As the program has it.
-        UsageFault: It has not the function that it is said to be.
+        SystemExit: As the program raises it.
+        UsageFault: Its module lacks the entry point's function.
     """
     if make_importable(program.workspace):
         import_module("rclpy")  # which takes long, and would be interrupted by Ctrl-C in the middle of ours
@@ -176,7 +176,7 @@ def _begin(program: Program) -> None:
 
 
 def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
-    """Show an error that ends a program: in the program's own code, and with what may help."""
+    """Print an error that ends a program, limited to the program's own code, with a next step."""
     tracebacks.shorten(error)
     sys.__excepthook__(kind, error, error.__traceback__)
     if isinstance(error, ModuleNotFoundError) and error.name is not None and not hiding.hidden(error):
@@ -187,7 +187,7 @@ def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException,
 
 
 def _imported_in(error: BaseException) -> str:
-    """The first name that the line imports which an error is from; empty where it is of another form."""
+    """Return the first name that the failing line imports; empty if the line has another form."""
     parts = list(walk_tb(error.__traceback__))
     line = linecache.getline(parts[-1][0].f_code.co_filename, parts[-1][1]) if parts else ""
     found = re.match(r"\s*from\s+[\w.]+\s+import\s+\(?\s*(\w+)", line)
@@ -195,10 +195,10 @@ def _imported_in(error: BaseException) -> str:
 
 
 def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
-    """Where a module may be had that is not there.
+    """Suggest where to get a missing module.
 
     Args:
-        wanted: What is imported from it; empty where that is not known.
+        wanted: The name imported from it; empty if unknown.
     """
     name, _, kind = module.partition(".")
     package = workspace.packages.get(name)
@@ -237,7 +237,7 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
 
 
 def _no_module_in(package: ModuleType, module: str) -> str:
-    """The next step where a package is there, and lacks the module that is imported from it."""
+    """Suggest the next step where a package exists but lacks the module that is imported from it."""
     file = getattr(package, "__file__", None)
     folders = getattr(package, "__path__", None)
     owner, _, word = module.rpartition(".")
@@ -274,11 +274,11 @@ _ON_PYPI = {
     "pygame": "pygame",
     "xacro": "xacro",
 }
-"""What to install for modules that robots' programs often import."""
+"""The PyPI packages of modules that robot programs often import."""
 
 
 def _tell_build_faults(program: Program, name: str) -> None:
-    """Say why ROS 2 would not run it, though it runs here; and what runs in its place, where its line is a copy."""
+    """Warn about what would keep ROS 2 from running the program, and about stale copies of its entry points."""
     if program.entry is not None:
         for package in program.workspace.packages.values():
             if program.file.is_relative_to(package.folder):
@@ -288,13 +288,13 @@ def _tell_build_faults(program: Program, name: str) -> None:
 
 
 def _is_python(file: Path) -> bool:
-    """Whether a file without an ending is a Python script."""
+    """Whether a file without a suffix is a Python script."""
     with file.open("rb") as opened:
         return b"python" in opened.readline(100)
 
 
 def main(words: Sequence[str]) -> None:
-    """Run what the words mean: a file, or a package and an executable, and its arguments; or `-m MODULE FILE`."""
+    """Run a file, a package's executable, or `-m MODULE FILE`, with its arguments."""
     if words[0] == "-m":  # a module of graphflow's that is to read a file of a workspace
         signal.signal(signal.SIGINT, signal.default_int_handler)
         make_importable(find_workspace(Path(words[2])))

@@ -1,6 +1,6 @@
-"""Imported at the start of each Python of an environment in which `graphflow rclpy enable` was called.
+"""The hook that Python imports at each start in an environment where `graphflow rclpy enable` was run.
 
-rclpy and messages can be imported then, and what lies in the workspace around.
+It makes rclpy, messages and the packages of the surrounding workspace importable.
 """
 
 import sys

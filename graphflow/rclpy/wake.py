@@ -1,4 +1,4 @@
-"""Waking threads, also from a signal handler, which may interrupt the very thread that it wakes."""
+"""Wake-ups for threads that are safe in a signal handler, which may interrupt the very thread that it wakes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 LONGEST = 3600.0
-"""Seconds of one wait of a system call; a longer wait is several."""
+"""Seconds of one system call's wait; a longer wait uses several."""
 
 
 class Wake:
-    """Wakes the thread that waits, or the next one that does. Locks of Python's would not bear a signal handler."""
+    """Wakes the waiting thread, or else the next one that waits. Python's locks are unsafe in signal handlers."""
 
     __slots__ = ("_queue",)
 
@@ -21,12 +21,12 @@ class Wake:
         self._queue: queue.SimpleQueue[None] = queue.SimpleQueue()
 
     def set(self) -> None:
-        """Wake. Callable from any thread, and from signal handlers."""
+        """Wake the thread. Callable from any thread, and from signal handlers."""
         if self._queue.empty():
             self._queue.put(None)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait to be woken, at most `timeout` seconds; whether it was."""
+        """Wait at most `timeout` seconds; return whether woken."""
         until = None if timeout is None else time.monotonic() + timeout
         while True:
             left = LONGEST if until is None else max(0.0, until - time.monotonic())
@@ -39,7 +39,7 @@ class Wake:
                 return True
 
     def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Wait until `condition()` holds, looking again whenever woken, at most `timeout` seconds; whether it does."""
+        """Wait until `condition()` is true, checked on each wake, at most `timeout` seconds; return whether it is."""
         until = None if timeout is None else time.monotonic() + timeout
         while not condition():
             left = None if until is None else until - time.monotonic()
@@ -66,7 +66,7 @@ class SharedWake(Wake):
 
     @contextmanager
     def for_one(self) -> Iterator[Wake]:
-        """What one thread waits with: this itself, or another where this is in use."""
+        """Return the wake for one thread: this one, or another if this is in use."""
         with self._taking:
             wake = Wake() if self._is_taken else self
             self._is_taken = True

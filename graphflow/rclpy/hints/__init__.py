@@ -1,1 +1,1 @@
-"""The next steps for errors of rclpy programs. Begin with `lookup`, which is asked when an error is shown."""
+"""Next steps for errors of rclpy programs. Begin with `lookup`, which is called when an error is shown."""

@@ -1,4 +1,4 @@
-"""Next steps for errors about calls: of callbacks by graphflow, and of functions of rclpy's by the program."""
+"""Next steps for call errors: callbacks that graphflow called, and rclpy functions that the program called."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _MISCALLED = re.compile(r"^([\w.<>]+)\(\) (takes|got|missing)")
 
 
 def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
-    """How a callback is called by graphflow, or a function of rclpy's by the program."""
+    """Describe the right call of a callback, or of an rclpy function."""
     last = frames[-1] if frames else None
     if last is None or not isinstance(error, (TypeError, RuntimeError)):
         return ""
@@ -49,7 +49,7 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def called_value(error: BaseException, frames: list[FrameType]) -> str:
-    """What to write where something is called that is a value already: `.value()`, `is_cancel_requested()`."""
+    """Name the value to use where a value is called: `.value()`, `is_cancel_requested()`."""
     found = re.match(r"^'(\w+)' object is not callable", str(error))
     users = own(frames)
     if not isinstance(error, TypeError) or found is None or not users or users[-1] is not frames[-1]:
@@ -64,20 +64,20 @@ def called_value(error: BaseException, frames: list[FrameType]) -> str:
 
 
 _VALUES = ("value", "is_cancel_requested", "is_active", "request", "status", "nanoseconds", "goal_id")
-"""Properties of rclpy's that are taken for methods."""
+"""Properties of rclpy that are often called like methods."""
 
 
 def _called_at_once(name: str, line: str) -> str:
-    """The advice where a callback is called in the place where it is to be given; empty if that is not so."""
+    """Advise where a callback is called instead of passed; empty if that is not the mistake."""
     found = re.search(rf"\b({_TAKERS})\((?:.*[(,=])?\s*((?:\w+\.)*{name.rpartition('.')[2]})\(\)", line)
     return f"give {found[1]} the method itself, without parentheses: {found[2]}" if found is not None else ""
 
 
-def _of_rclpy(name: str, text: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
-    """How a function of rclpy's is called, or one of the packages beside it.
+def _of_rclpy(name: str, text: str, args: tuple[Any, ...], kwargs: dict[str, object]) -> str:
+    """Describe the right call of a function of rclpy or of a package beside it.
 
     Args:
-        args, kwargs: What it was given, its object first, where that is known.
+        args, kwargs: The arguments, the object first, where they are known.
     """
     for known, sentence in CALLS.items():
         if name == known or name.startswith(f"{known}."):
@@ -100,7 +100,7 @@ def _of_rclpy(name: str, text: str, args: tuple[Any, ...], kwargs: dict[str, Any
 
 
 def _written(parameter: inspect.Parameter) -> str:
-    """A parameter as a call has it: `name`, or `name=` where it may be left out or goes by name."""
+    """Format a parameter as in a call: `name`, or `name=` if it is optional or keyword-only."""
     if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
         return "..."
     goes_by_name = parameter.default is not parameter.empty or parameter.kind is parameter.KEYWORD_ONLY
@@ -108,12 +108,12 @@ def _written(parameter: inspect.Parameter) -> str:
 
 
 def _is_users_own(name: str, frame: FrameType) -> bool:
-    """Whether code of the user's has a function or class of that name."""
+    """Whether user code defines a function or class of that name."""
     return is_defined_by_user((frame.f_locals | frame.f_globals).get(name.partition(".")[0]))
 
 
 def _unmade(name: str, frame: FrameType) -> str:
-    """How an object is made, where a method is called of its class."""
+    """Show how to create the object where a method was called on its class."""
     method = name.rpartition(".")[2]
     line = linecache.getline(frame.f_code.co_filename, frame.f_lineno)
     for path in PATH.findall(line):
@@ -125,15 +125,15 @@ def _unmade(name: str, frame: FrameType) -> str:
 
 
 def _of_message(name: str, frame: FrameType) -> str:
-    """How a message is made."""
+    """Show how to create a message."""
     cls = (frame.f_locals | frame.f_globals).get(name.removesuffix(".__init__"))
     if not (isinstance(cls, type) and issubclass(cls, StrictMessage)):
         return ""
     return f"fields go by name: {cls.__name__}({', '.join(f'{f.name}=...' for f in cls.SCHEMA.fields)})"
 
 
-def _function(name: str) -> Callable[..., Any] | None:
-    """A function of rclpy's or of the packages beside it, by its qualified name."""
+def _function(name: str) -> Callable[..., object] | None:
+    """Return a function of rclpy or of a package beside it, by qualified name."""
     for module in [m for m in list(sys.modules.values()) if str(getattr(m, "__file__", "")).startswith(SITE)]:
         found: Any = module
         for part in name.split("."):
@@ -144,7 +144,7 @@ def _function(name: str) -> Callable[..., Any] | None:
 
 
 def _of_callback(text: str, frame: FrameType, name: str) -> str:
-    """How the callback is called that a function of graphflow's has called in vain."""
+    """Describe how graphflow calls the callback whose call failed."""
     if text.endswith("object is not callable") and frame.f_code.co_qualname == "Task._step":
         return "a callback is given as the function itself: add_done_callback(self.done), without parentheses"
     found = next(((fn, args) for fn, args in _callbacks(frame) if name in ("", fn.__qualname__)), None)
@@ -166,12 +166,12 @@ def _of_callback(text: str, frame: FrameType, name: str) -> str:
 
 
 def _word(argument: object) -> str:
-    """The name that a callback would give an argument."""
+    """Return the name that a callback would give an argument."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(argument).__name__).lower().replace("run", "future")
 
 
 def _callbacks(frame: FrameType) -> Iterator[tuple[Any, tuple[Any, ...]]]:
-    """The functions at hand in a frame, and those that its object has, with the arguments that are bound already."""
+    """Yield the functions visible in a frame, and its object's methods, with the number of bound arguments."""
     own = frame.f_locals.get("self")
     for value in (*frame.f_locals.values(), *getattr(own, "__dict__", {}).values()):
         inner: Any = value

@@ -1,4 +1,4 @@
-"""Next steps for errors about messages: fields that they have not, and values that do not fit."""
+"""Next steps for errors about messages: unknown fields, and values that do not fit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _RANGE_OR_LIST = re.compile(r"The '\w+' field must be (an? |string value)")
 
 
 def missing_field(error: BaseException, frames: list[FrameType]) -> str:
-    """The fields of a message that is asked for another."""
+    """List the fields of a message that lacks the requested one."""
     absent = lacking(error, frames)
     if absent is not None and isinstance(absent[0], StrictMessage):
         return _fields(type(absent[0]), absent[1])
@@ -33,7 +33,7 @@ def missing_field(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
-    """How a field is given what it takes, where a value of another type was given."""
+    """Show how to set a field to which a value of another type was assigned."""
     found = _FIELD.match(str(error))
     checks = [f.f_locals for f in frames if f.f_code.co_filename == values.__file__ and "value" in f.f_locals]
     if not isinstance(error, AssertionError) or not checks:
@@ -63,7 +63,7 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str:
-    """How a number is made of one of NumPy's, or of an array of them."""
+    """Show how to convert a NumPy scalar or array to plain numbers."""
     if not shape:
         return f"write {target} = {kind}({given})"
     whole = given if PATH.fullmatch(given) else f"({given})"
@@ -76,7 +76,7 @@ def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str
 
 
 def _given(checks: list[dict[str, Any]], text: str) -> str:
-    """Show a value that is out of its field's range, or a list with an element of the wrong type."""
+    """Show a value that is out of range, or a list with an element of the wrong type."""
     last, kind = checks[-1], _ELEMENTS.search(text)
     if "items" in last:
         if dimensions := getattr(last["item"], "ndim", 0):
@@ -90,7 +90,7 @@ def _given(checks: list[dict[str, Any]], text: str) -> str:
 
 
 def _part(target: str, given: str, value: object, cls: type[StrictMessage]) -> str:
-    """How a field is set that is a message itself."""
+    """Show how to set a field that is itself a message."""
     if type(value).__module__ in ("rclpy.time", "rclpy.duration") and type(value).__name__ == cls.__name__:
         return f"write {target} = {given}.to_msg()"
     if cls.__name__ == "Time" and isinstance(value, float) and "time.time()" in given:
@@ -104,7 +104,7 @@ def _part(target: str, given: str, value: object, cls: type[StrictMessage]) -> s
 
 
 def no_message(error: BaseException, frames: list[FrameType]) -> str:
-    """How a message is made, where its class was given in its place."""
+    """Show how to create a message where its class was passed."""
     found = re.fullmatch(r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]*\._Generated'>", str(error))
     if found is not None:
         return f"that is a class and no message: write {found[1].replace('_', '.')}()"
@@ -119,7 +119,7 @@ def no_message(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
-    """The part to take of a message that was reckoned with as if it were a value."""
+    """Name the field to use where a message was treated as a plain value."""
     users = own(frames)
     if not isinstance(error, TypeError) or not users or not _RECKONED.search(str(error)):
         return ""
@@ -139,7 +139,7 @@ def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def _class_as_message(line: str, frame: FrameType) -> str:
-    """How a message is made in place of its class, of which a line takes a field."""
+    """Show how to create a message where a line reads a field of its class."""
     for path in PATH.findall(line):
         owner = path.rpartition(".")[0]
         cls = named(owner, frame) if owner else None
@@ -167,7 +167,7 @@ def _fields(cls: type[StrictMessage], name: str) -> str:
 
 
 def _paths(cls: type[StrictMessage], name: str) -> Iterator[str]:
-    """The ways to a field of that name in a message's parts, and in parts of those."""
+    """Return the paths to a field of that name in a message's nested messages, two levels deep."""
     for field in cls.SCHEMA.fields:
         if field.type.is_primitive or field.type.array:
             continue

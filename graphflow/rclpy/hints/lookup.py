@@ -1,7 +1,7 @@
-"""The next step for errors of programs: one place, that is asked when an error is shown and not before.
+"""The next step for errors of rclpy programs, looked up only when an error is shown.
 
-The errors stay those that ROS 2 raises, in its words; what is added here is a sentence. Most are rows of two tables, by
-attribute and by text; the others follow from what is at hand: a message's fields, a call's arguments, a callback.
+The errors keep ROS 2's types and texts; a sentence is added here. Most sentences are rows of two tables, by
+attribute and by text; the others are derived from the message's fields, the call's arguments or the callback.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from graphflow.rclpy.messages.classes import StrictMessage
 
 
 def hint(error: BaseException) -> str:
-    """The next step; empty where there is nothing to add."""
+    """Return the next step; empty if there is none to add."""
     frames = [part.tb_frame for part in parts_of(error.__traceback__)]
     for rule in _RULES:
         # Rules look at the program's objects, whose attributes and texts may raise; the error itself must be shown.
@@ -42,7 +42,7 @@ def _text(error: BaseException, _: list[FrameType]) -> str:
 
 
 def _stamp(error: BaseException, frames: list[FrameType]) -> str:
-    """How a time is made of a message, where one is reckoned with."""
+    """Show how to convert a message's stamp where it is used in arithmetic."""
     users = own(frames)
     if (
         not isinstance(error, TypeError)
@@ -102,4 +102,4 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _text,
     message_as_value,
 )
-"""Asked in this order."""
+"""The rules, in order of precedence."""

@@ -1,4 +1,4 @@
-"""Next steps for errors about names: what a module has not, and where it is."""
+"""Next steps for errors about names: attributes that a module lacks, and where they are defined."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from graphflow.rclpy.hints.frames import PATH, line_of, named, own
 
 
 def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
-    """Where a name is that is imported from elsewhere."""
+    """Name the module that does define an imported name."""
     found = re.match(r"cannot import name '(\w+)' from '([\w.]+)'", str(error))
     if not isinstance(error, ImportError) or found is None:
         return ""
@@ -28,7 +28,7 @@ def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
 
 
 def _where(name: str, module: str) -> str:
-    """Where the name is that a module has not."""
+    """Describe the location of a name that a module lacks."""
     package, _, kind = module.partition(".")
     if kind in KINDS:
         if " must be " in (wrong := registry.misplaced(package, name)):
@@ -46,7 +46,7 @@ def _where(name: str, module: str) -> str:
 
 
 def _of_callback(path: str, name: str, frame: FrameType) -> str:
-    """What is to be cancelled and the like, where that is asked of its callback."""
+    """Name the object to use where a timer's or subscription's method was called on its callback."""
     owner, _, method = path.rpartition(".")
     thing = {**frame.f_globals, **frame.f_locals}.get(owner)
     kept = [
@@ -59,7 +59,7 @@ def _of_callback(path: str, name: str, frame: FrameType) -> str:
 
 
 def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
-    """The name that was meant by one that is not bound, or by an attribute that a module or a node has not."""
+    """Suggest the intended name for an unbound one, or for an attribute that a module or node lacks."""
     users = own(frames)
     if not users:
         return ""
@@ -89,7 +89,7 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def misspelt_init(error: BaseException, frames: list[FrameType]) -> str:
-    """The method of a class that should be its `__init__`, where that of `Node` is called without a name."""
+    """Name the method meant as `__init__` where `Node.__init__` is called without a node name."""
     users = own(frames)
     if not users or not re.search(r"__init__\(\) missing \d+ required positional argument", str(error)):
         return ""
@@ -104,13 +104,13 @@ def misspelt_init(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def _path_of(attribute: str, line: str) -> str:
-    """The owner of an attribute that a line reads: `self.pub` of `self.pub.publish(m)`."""
+    """Return the owner of an attribute that a line reads: `self.pub` of `self.pub.publish(m)`."""
     paths = [path.rpartition(".") for path in PATH.findall(line)]
     return next((owner for owner, _, name in paths if name == attribute and owner), "")
 
 
 def _unbound(name: str, frame: FrameType) -> str:
-    """The name that was meant by one that is not bound in a frame."""
+    """Suggest the intended name for one that is not bound in a frame."""
     if frame.f_code.co_name == name and "__qualname__" in frame.f_locals:
         return f"this line is inside class {name}: indent it less"
     node = frame.f_locals.get("self")
@@ -120,7 +120,7 @@ def _unbound(name: str, frame: FrameType) -> str:
 
 
 def unset(error: BaseException, frames: list[FrameType]) -> str:
-    """The method that sets an attribute which is None as yet."""
+    """Name the method that sets an attribute that is still None."""
     users = own(frames)
     if not isinstance(error, AttributeError) or not str(error).startswith("'NoneType' object") or not users:
         return ""
@@ -140,7 +140,7 @@ def unset(error: BaseException, frames: list[FrameType]) -> str:
 
 
 def _functions(cls: type) -> Iterator[CodeType]:
-    """The code of a class's methods that is the user's."""
+    """Return the code of a class's user-defined methods."""
     for owner in cls.__mro__:
         for value in vars(owner).values():
             code = getattr(value, "__code__", None)
@@ -158,11 +158,11 @@ FORMER = {
     "rclpy.loginfo": "write node.get_logger().info(...)",
     "rclpy.get_param": "write node.declare_parameter('name', 1.0).value",
 }
-"""Names of ROS 1's rospy."""
+"""Names from ROS 1's rospy."""
 
 
 def _in_rclpy(name: str, asked: str) -> str:
-    """The module of rclpy's that a name is from, or what it is called there."""
+    """Return the rclpy module that defines a name, or rclpy's name for a rospy one."""
     if f"{asked}.{name}" in FORMER:
         return FORMER[f"{asked}.{name}"]
     held = vars(sys.modules[asked]) if asked in sys.modules else {}

@@ -1,4 +1,4 @@
-"""Sentences for mistakes in programs that use rclpy, by what an error says: attributes, texts, and calls."""
+"""Sentences for common mistakes in rclpy programs: by attribute, by error text and by call."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ATTRIBUTES = {
     "ActionClient.call ActionClient.call_async": "of an action it is send_goal_async(goal)",
     "ActionClient.wait_for_service": "of an action it is wait_for_server()",
 }
-"""By the class of an object, `T` for nodes, and an attribute that it has not."""
+"""By class (`T` for nodes) and missing attribute."""
 
 TEXTS: dict[str, str] = {
     r'can only concatenate str \(not "(?:int|float|bool)"\)': "put it into the text: f'... {{value}}', or str(value)",
@@ -95,7 +95,7 @@ TEXTS: dict[str, str] = {
         "an empty text is no number; of a parameter take .value, since .string_value is empty unless it is a string"
     ),
 }
-"""By a pattern in an error's text; the sentence may have its groups."""
+"""By a pattern of the error's text; a sentence may refer to its groups."""
 
 CALLS = {
     "Node.__init__": (
@@ -110,7 +110,7 @@ CALLS = {
     "init": "write rclpy.init(), or rclpy.init(args=sys.argv)",
     "ParameterMethods.declare_parameters": "write declare_parameters('', [('a', 1), ('b', 2)])",
 }
-"""How functions are called, by their name or class, where their arguments alone do not say it."""
+"""The usage of functions, by name or class, where the signature alone does not explain it."""
 
 GIVEN = {
     "Service._do": "request, response",
@@ -122,4 +122,4 @@ GIVEN = {
     "NodeParameters._set": "parameters",
     "NodeParameters.set_all": "parameters",
 }
-"""Arguments that graphflow's functions give to callbacks."""
+"""Arguments that graphflow passes to callbacks."""

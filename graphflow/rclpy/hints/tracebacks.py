@@ -1,4 +1,4 @@
-"""Tracebacks of programs, without the frames by which graphflow runs their callbacks."""
+"""Tracebacks of programs, without the frames in which graphflow runs their callbacks."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from graphflow.runtime.mistakes.errors.attribute_errors import explain
 
 
 def install() -> None:
-    """Show errors that end the program or one of its threads this way; nothing where a hook of others is installed."""
+    """Install a hook that shortens uncaught errors of the program and its threads; keep another's hook."""
     if sys.excepthook is sys.__excepthook__:
         sys.excepthook = _show
     install_in_threads()
 
 
 def install_in_threads() -> None:
-    """Show errors that end a thread this way; nothing where a hook of others is installed."""
+    """Install a hook that shortens errors that end a thread; keep another's hook."""
     if threading.excepthook is threading.__excepthook__:
         threading.excepthook = _show_in_thread
 
 
 def shorten(error: BaseException) -> None:
-    """Leave in an error's traceback, and in those of the errors that led to it, what helps the program's author.
+    """Drop graphflow's frames from an error's traceback and those of its causes, and add the next step as a note.
 
-    The user's own frames stay. Of the others those stay that show where an error was raised, unless its text is enough:
-    KeyboardInterrupt, SyntaxError, the errors of rclpy's own, those that graphflow's code raises itself, and those for
-    which there is a next step to tell, which the error gets as a note.
+    The user's own frames stay, and so do the frames that show where an error was raised, unless its text is enough:
+    KeyboardInterrupt, SyntaxError, rclpy's own errors, those that graphflow raises itself, and those with a next
+    step.
     """
     explain(error)
     hint = lookup.hint(error)
@@ -66,7 +66,7 @@ def _is_ours(part: TracebackType) -> bool:
 
 
 def _is_clear(error: BaseException) -> bool:
-    """Whether the place in graphflow's code where an error was raised tells nothing."""
+    """Whether the frame in graphflow that raised an error adds no information."""
     return isinstance(error, (KeyboardInterrupt, SyntaxError)) or type(error).__module__.startswith("rclpy.")
 
 

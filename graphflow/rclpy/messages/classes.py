@@ -1,10 +1,10 @@
-"""Message classes as rosidl generates them for Python: properties refuse whatever is not of a field's type.
+"""Message classes as rosidl generates them for Python: properties reject values that do not fit the field's type.
 
-They differ from graphflow's own, which widen: here an integer is no float, sequences of numbers are `array.array`, a
+Unlike graphflow's own, they do not widen: an integer is not a float, sequences of numbers are `array.array`, a
 byte is a `bytes` of length one. Code that runs here runs on ROS 2.
 
 Source: rosidl_generator_py of Jazzy. Its checks are on here unless ROS_PYTHON_CHECK_FIELDS is 0: where they are off,
-ROS 2 ends the process when such a message is published. Here publishing fails then.
+ROS 2 aborts the process when such a message is published; here publishing raises an error.
 """
 
 from __future__ import annotations
@@ -26,28 +26,28 @@ from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import INTEGER_RANGES, Action, Constant, Field, FieldType, Message, Service
 
 CHECKS = os.environ.get("ROS_PYTHON_CHECK_FIELDS") != "0"
-"""Whether fields refuse what is not of their type when it is assigned, and not only when it is sent."""
+"""Whether fields check values on assignment, and not only when the message is sent."""
 
 
 class _Generated(type):
-    """The class of message classes: `rclpy` asks it for what it calls type support."""
+    """The metaclass of message classes, with rosidl's type support protocol."""
 
     _TYPE_SUPPORT: ClassVar[object] = object()
 
     @classmethod
     def __import_type_support__(cls) -> None:
-        """Nothing is missing: the codec is compiled when it is first used."""
+        """Do nothing: the codec is compiled on first use."""
 
 
 class StrictMessage(metaclass=_Generated):
-    """What all message classes have in common."""
+    """The base class of all message classes."""
 
     __slots__ = ()
     SCHEMA: ClassVar[Message]
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """The types of the fields by their names, in the words of rosidl: `double`, `sequence<geometry_msgs/Point>`."""
+        """Return the types of the fields by name, in rosidl's notation: `double`, `sequence<geometry_msgs/Point>`."""
         return {f.name: rosidl_type(f.type) for f in cls.SCHEMA.fields}
 
     def __eq__(self, other: object) -> bool:
@@ -80,7 +80,7 @@ def _text(value: Any) -> str:
 
 @made_once
 def message_class(name: str) -> type[StrictMessage]:
-    """The class of a message, including those derived from services and actions (`.../srv/Spawn_Request`).
+    """Return the class of a message, including those derived from services and actions (`.../srv/Spawn_Request`).
 
     Raises:
         UnknownInterface, InterfaceError: As for `registry.interface`.
@@ -91,7 +91,7 @@ def message_class(name: str) -> type[StrictMessage]:
     schema = registry.message_schema(name)
     package, kind, base = name.split("/")
     names: dict[str, Any] = {"ABSENT": _ABSENT, "REFUSE": _refuse}
-    body: dict[str, Any] = {
+    body: dict[str, object] = {
         "__slots__": tuple(f"_{f.name}" for f in schema.fields),
         "__module__": _module(package, kind, base),
         "__doc__": f"{name}: {', '.join(f'{f.type} {f.name}' for f in schema.fields) or 'no fields'}.",
@@ -115,19 +115,19 @@ def message_class(name: str) -> type[StrictMessage]:
     return cls
 
 
-def constant_value(constant: Constant) -> Any:
-    """The value of a constant: of a byte, as its fields take it."""
+def constant_value(constant: Constant) -> object:
+    """Return a constant's value: for a byte, as its fields take it."""
     value = constant.value
     return bytes([value]) if constant.type == "byte" and isinstance(value, int) else value
 
 
 def _module(package: str, kind: str, name: str) -> str:
-    """Where rosidl has a class: `std_srvs.srv._set_bool` for `SetBool` and `SetBool_Request`."""
+    """Return the name of rosidl's module for a class: `std_srvs.srv._set_bool` for `SetBool` and `SetBool_Request`."""
     return f"{package}.{kind}._{snake(name.partition('_')[0])}"
 
 
 def snake(name: str) -> str:
-    """`LaserScan` as rosidl names its module: `laser_scan`."""
+    """Convert `LaserScan` to rosidl's module name `laser_scan`."""
     name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
@@ -158,8 +158,8 @@ def _refuse(others: dict[str, Any]) -> None:
         raise AssertionError(f"Invalid arguments passed to constructor: {', '.join(sorted(others))}")
 
 
-def default(field: Field) -> Callable[[], Any]:
-    """What makes a field's default value."""
+def default(field: Field) -> Callable[[], object]:
+    """Return a factory for a field's default value."""
     type_, given = field.type, field.default
     if not type_.array:
         if not type_.is_primitive:
@@ -183,13 +183,13 @@ def default(field: Field) -> Callable[[], Any]:
     return lambda: list(items) if items is not None else [zero] * count
 
 
-def _zero(base: str) -> Any:
+def _zero(base: str) -> object:
     if base == "byte":
         return b"\0"
     return 0 if base in INTEGER_RANGES else {"string": "", "wstring": "", "bool": False}.get(base, 0.0)
 
 
-def _numpy(base: str, items: list[Any]) -> Any:
+def _numpy(base: str, items: list[object]) -> object:
     import numpy as np
 
     from graphflow.wire.cdr.arrays import DTYPES
@@ -199,15 +199,15 @@ def _numpy(base: str, items: list[Any]) -> Any:
 
 @made_once
 def codec(name: str) -> Codec:
-    """The codec of a message class by the name of its type."""
+    """Return the codec of a message class by type name."""
     return Codec(registry.message_schema(name), Types(registry.message_schema, message_class, _checked, "rosidl"))
 
 
 def encode(message: Any) -> bytes:
-    """A message as CDR.
+    """Encode a message as CDR.
 
     Raises:
-        EncodeError: A part that was changed in place does not fit; the text names the field.
+        EncodeError: A part that was changed in place no longer fits; the text names the field.
     """
     if isinstance(message, StrictMessage):
         return codec(message.SCHEMA.name).encode(message)
@@ -215,12 +215,12 @@ def encode(message: Any) -> bytes:
 
 
 def decode(cls: Any, payload: bytes) -> Any:
-    """A message of a class, strict or graphflow's own. Raises DecodeError."""
+    """Decode a message of a class, strict or graphflow's own. Raises DecodeError."""
     return codec(cls.SCHEMA.name).decode(payload) if issubclass(cls, StrictMessage) else cls.from_bytes(payload)
 
 
 def _checked(message: StrictMessage) -> StrictMessage:
-    """Raise EncodeError, which names the part of a message that does not fit."""
+    """Raise an EncodeError that names the part of a message that does not fit."""
     for field in message.SCHEMA.fields:
         value = getattr(message, field.name)
         try:
@@ -235,7 +235,7 @@ def _checked(message: StrictMessage) -> StrictMessage:
 
 @made_once
 def service_class(name: str) -> type:
-    """The class of a service; it holds `Request`, `Response` and `Event`."""
+    """Return the class of a service, with `Request`, `Response` and `Event`."""
     schema = registry.service_schema(name)
     package, kind, base = name.split("/")
     parts = {"Request": schema.request, "Response": schema.response, "Event": schema.event}
@@ -245,7 +245,7 @@ def service_class(name: str) -> type:
 
 @made_once
 def action_class(name: str) -> type:
-    """The class of an action; it holds `Goal`, `Result`, `Feedback`, and in `Impl` what carries them."""
+    """Return the class of an action, with `Goal`, `Result`, `Feedback`, and the carrier types in `Impl`."""
     schema = registry.interface(name)
     assert isinstance(schema, Action)
     package, kind, base = name.split("/")
@@ -257,13 +257,13 @@ def action_class(name: str) -> type:
         GoalStatusMessage=message_class("action_msgs/msg/GoalStatusArray"),
     )
     parts = {"Goal": schema.goal, "Result": schema.result, "Feedback": schema.feedback}
-    body: dict[str, Any] = {word: message_class(part.name) for word, part in parts.items()}
+    body: dict[str, object] = {word: message_class(part.name) for word, part in parts.items()}
     body |= {"__module__": _module(package, kind, base), "NAME": name, "Impl": carriers}
     return _NoInstances(base, (), body)
 
 
 def interface_class(name: str) -> type:
-    """The class of `package/kind/Name`, or of a part of one.
+    """Return the class of `package/kind/Name`, or of a part of one.
 
     Raises:
         UnknownInterface, InterfaceError: As for `registry.interface`.
@@ -274,5 +274,5 @@ def interface_class(name: str) -> type:
 
 
 def type_name(cls: Any) -> str:
-    """`package/kind/Name` of a message, service or action class. Raises AttributeError for anything else."""
+    """Return the `package/kind/Name` of a message, service or action class. Raises AttributeError for anything else."""
     return str(cls.SCHEMA.name if hasattr(cls, "SCHEMA") else cls.NAME)

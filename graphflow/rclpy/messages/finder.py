@@ -1,6 +1,6 @@
-"""Lets `import` see message packages under ROS's names: `from geometry_msgs.msg import Twist`.
+"""Import hooks for message packages under ROS's names: `from geometry_msgs.msg import Twist`.
 
-A package of ROS's own, or of the user's, that Python finds anyway is left to Python: a sourced ROS wins.
+A package that Python finds without them is left to Python: a sourced ROS 2 takes precedence.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ _HERE = os.path.dirname(os.path.abspath(__file__))
 BUNDLED = os.path.join(os.path.dirname(os.path.dirname(_HERE)), "msgs")
 KINDS = ("msg", "srv", "action")
 KNOWN: dict[str, str] = {}
-"""Folders of message packages that are not bundled, by name."""
+"""Folders of message packages that are not bundled, by package name."""
 
 
 class MessagePackages:
-    """Finder and loader in one: it must cost next to nothing, since every import of the process asks it."""
+    """Finder and loader in one. It must be nearly free: every import of the process consults it."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -92,7 +92,7 @@ class MessagePackages:
 
 
 class OwnPackages:
-    """Finds graphflow's rclpy, tf2_ros and the like also where a source tree of theirs comes before them."""
+    """Finds graphflow's rclpy, tf2_ros and related packages even if a source tree of theirs is first on the path."""
 
     def __init__(self) -> None:
         self._names = frozenset(os.listdir(SITE))
@@ -105,13 +105,13 @@ class OwnPackages:
 
 
 _NEVER = ("sitecustomize", "usercustomize", "org")
-"""Modules that Python looks for at each start, and Jython's, which `pickle` looks for: they are hardly ever there."""
+"""Modules that Python imports at each start, and Jython's, which `pickle` tries: they rarely exist."""
 
 
 class WorkspacePackages:
-    """Finds what nobody else has found, in the workspace that the program, or else the shell, is in.
+    """Finds otherwise missing packages in the workspace around the program, or else around the shell.
 
-    It is for Python that was started by itself, such as `python -m pytest`; it looks once.
+    For Python that is started directly, such as `python -m pytest`. It searches once.
     """
 
     def __init__(self) -> None:
@@ -140,7 +140,7 @@ class WorkspacePackages:
 
 
 def _of_workspace() -> list[str]:
-    """Make the messages of the workspace around known; returns the folders that Python is to import from."""
+    """Register the message packages of the surrounding workspace; return the folders to import from."""
     from pathlib import Path
 
     from graphflow.folders import home
@@ -158,19 +158,19 @@ def _of_workspace() -> list[str]:
 
 
 def is_package(name: str) -> bool:
-    """Whether there are definitions of a message package of that name."""
+    """Whether definitions of a message package of that name exist."""
     folder = os.path.join(BUNDLED, name)
     return name in KNOWN or name == "turtlesim_msgs" or any(os.path.isdir(os.path.join(folder, k)) for k in KINDS)
 
 
 def _is_elsewhere(fullname: str, path: Sequence[str] | None) -> bool:
-    """Whether Python finds a package of that name with code in it."""
+    """Whether Python finds a package of that name that contains code."""
     found = importlib.machinery.PathFinder.find_spec(fullname, path)
     return found is not None and found.origin is not None
 
 
 def _tell_hidden(package: str) -> None:
-    """Say that a module is imported in the place of a package: what it lacks is an error, or nothing at all."""
+    """Warn that a module shadows a package: importing from it fails, or silently yields something else."""
     found = importlib.machinery.PathFinder.find_spec(package)
     if found is not None and found.origin is not None and found.submodule_search_locations is None:
         from pathlib import Path
@@ -181,13 +181,13 @@ def _tell_hidden(package: str) -> None:
 
 
 def _is_ours(package: str) -> bool:
-    """Whether modules below a package are made from definitions: those of ours, or those that lie in its folder."""
+    """Whether a package's modules are generated from definitions: graphflow's, or those in its folder."""
     parent = sys.modules.get(package)
     return parent is not None and (hasattr(parent, "__graphflow__") or _folder(package) is not None)
 
 
 def _folder(package: str) -> str | None:
-    """The folder of a package that has been imported, if there are definitions in it."""
+    """Return the folder of an imported package if it contains definitions."""
     for entry in getattr(sys.modules.get(package), "__path__", ()):
         for kind in KINDS:
             folder = os.path.join(entry, kind)
@@ -197,18 +197,18 @@ def _folder(package: str) -> str | None:
 
 
 def install() -> None:
-    """Let `import` see them, from now on."""
+    """Install the hook for message packages."""
     if not any(isinstance(finder, MessagePackages) for finder in sys.meta_path):
         sys.meta_path.insert(0, MessagePackages())
 
 
 def prefer_own() -> None:
-    """Let `import` find graphflow's packages before others of their names."""
+    """Install the hook that prefers graphflow's packages over others of their names."""
     if not any(isinstance(finder, OwnPackages) for finder in sys.meta_path):
         sys.meta_path.insert(0, OwnPackages())
 
 
 def look_around() -> None:
-    """Let `import` see what is in the workspace around, too."""
+    """Install the hook that searches the surrounding workspace."""
     if not any(isinstance(finder, WorkspacePackages) for finder in sys.meta_path):
         sys.meta_path.append(WorkspacePackages())

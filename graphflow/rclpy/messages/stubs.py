@@ -1,6 +1,6 @@
-"""What editors and type checkers see of messages under ROS's names, which are made when they are imported.
+"""Type stubs for messages under ROS's names, whose classes exist only at run time.
 
-`graphflow rclpy enable` writes it for the bundled packages, `graphflow interface stubs` for those of a workspace.
+`graphflow rclpy enable` writes them for the bundled packages, `graphflow interface stubs` for those of a workspace.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _SCALARS = {"bool": "bool", "byte": "bytes", "string": "str", "wstring": "str"}
 
 
 def stubs(packages: Iterable[str], folder: Path) -> dict[Path, str]:
-    """The text of the stubs of packages, by file.
+    """Return the text of the packages' stubs, by file.
 
     Args:
         packages: Their names; known to the registry.
-        folder: One from which Python, or a checker, imports.
+        folder: One on the import path of Python or of a type checker.
     """
     found = {}
     for package in packages:
@@ -46,7 +46,7 @@ def stubs(packages: Iterable[str], folder: Path) -> dict[Path, str]:
 
 
 def stub(package: str, kind: str) -> str:
-    """The stub of a module such as `geometry_msgs.msg`."""
+    """Return the stub of a module such as `geometry_msgs.msg`."""
     names = registry.names_in(package, kind)
     body = "\n".join(text for name in names for text in _classes(f"{package}/{kind}/{name}"))
     others = sorted(set(re.findall(r"\b(\w+)\.msg\.[A-Z]", body)) - ({package} if kind == "msg" else set()))
@@ -97,14 +97,14 @@ def _message(message: Message) -> str:
 
 
 def _held(type_: FieldType, module: str) -> str:
-    """The type of an array that a message holds."""
+    """Return the type of an array that a field holds."""
     if type_.base not in SEQUENCE_CODES:
         return f"list[{_element(type_.base, module)}]"
     return "npt.NDArray[Any]" if type_.array == "fixed" else f"array[{_element(type_.base, module)}]"
 
 
 def _taken(type_: FieldType, module: str) -> str:
-    """The type of what a field may be set to."""
+    """Return the type that a field may be set to."""
     element = _element(type_.base, module)
     if not type_.array:
         return element

@@ -1,9 +1,9 @@
-"""What a field of a strict message takes, and what it says of all else.
+"""Checks of the values that fields of strict messages accept, with rosidl's error texts.
 
-A sequence of numbers takes whatever Python makes such numbers of, as in ROS 2: integers are floats there. One number
-does not: ROS 2 ends the process when a message with such a one is published.
+A sequence of numbers accepts anything that Python converts to them, as in ROS 2: integers become floats. A single
+number is not converted: ROS 2 aborts the process when it publishes a message with a wrong one.
 
-Source: the setters that rosidl_generator_py writes, whose words these are.
+Source: the setters that rosidl_generator_py generates, and their error texts.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any
 
 from graphflow.wire.schema import INTEGER_RANGES, STRINGS, FieldType
 
-Check = Callable[[Any], Any]
-"""Returns what is kept of a value; raises AssertionError for one that does not fit."""
+Check = Callable[..., object]
+"""Returns the value to store; raises AssertionError for one that does not fit."""
 
 SEQUENCE_CODES = {
     "float32": "f",
@@ -34,14 +34,14 @@ SEQUENCE_CODES = {
     "int64": "q",
     "uint64": "Q",
 }
-"""Numbers whose sequences are kept as `array.array`, with its codes, and whose fixed arrays as numpy's."""
+"""Numeric types whose sequences are stored as `array.array`, by type code; their fixed arrays are NumPy arrays."""
 WORDS = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet", "char": "uint8"}
-"""What rosidl calls some basic types."""
+"""rosidl's names of some basic types."""
 _FLOAT32 = 3.402823466e38
 
 
 def rosidl_type(type_: FieldType) -> str:
-    """A field's type in rosidl's words: `sequence<double, 3>`."""
+    """Return a field's type in rosidl's notation: `sequence<double, 3>`."""
     base = WORDS.get(type_.base, type_.base.replace("/msg/", "/"))
     if type_.string_bound:
         base = f"{base}<{type_.string_bound}>"
@@ -56,18 +56,18 @@ def rosidl_type(type_: FieldType) -> str:
 
 
 def checker(name: str, type_: FieldType, cls: type | None) -> Check:
-    """What checks the values of a field.
+    """Return the check for the values of a field.
 
     Args:
-        cls: The class of its messages, if it holds messages.
+        cls: The message class, for fields of messages.
     """
     return _sequence(name, type_, cls) if type_.array else _single(name, type_, cls)
 
 
 def lenient(check: Check) -> Check:
-    """What keeps a value that does not fit."""
+    """Return a check that also accepts values that do not fit."""
 
-    def keep(value: Any) -> Any:
+    def keep(value: Any) -> object:
         try:
             return check(value)
         except AssertionError:
@@ -94,7 +94,7 @@ def _single(name: str, type_: FieldType, cls: type | None) -> Check:
 
 
 def _kind(cls: type, complaint: str) -> Check:
-    def check(value: Any) -> Any:
+    def check(value: Any) -> object:
         if not isinstance(value, cls):
             raise AssertionError(complaint)
         return value
@@ -194,14 +194,14 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
 
 
 def _is_sequence(value: Any) -> bool:
-    """Whether something has elements; one number of numpy's has a type as its arrays have, and none."""
+    """Whether a value has elements; a NumPy scalar has its arrays' dtype, but none."""
     if hasattr(value, "dtype"):
         return getattr(value, "ndim", 1) > 0
     return isinstance(value, (Sequence, AbstractSet, UserList, array)) and not isinstance(value, str)
 
 
-def _fixed(type_: FieldType, value: Any, plain: Check) -> Any:
-    """An array of fixed length, as numpy's."""
+def _fixed(type_: FieldType, value: Any, plain: Check) -> object:
+    """Return an array of fixed length as a NumPy array."""
     import numpy as np
 
     from graphflow.wire.cdr.arrays import DTYPES, ndarray

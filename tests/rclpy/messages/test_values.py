@@ -66,7 +66,7 @@ def test_a_sequence_of_numbers_becomes_an_array(given: Any) -> None:
 )
 def test_a_sequence_takes_what_numbers_can_be_made_of(type_: FieldType, given: Any, kept: Any) -> None:
     """As ROS 2 does, where an integer among floats is a float."""
-    made = checker("x", type_, None)(given)
+    made: Any = checker("x", type_, None)(given)
     assert type(made) is type(kept)
     assert made.tolist() == kept.tolist()
     assert getattr(made, "dtype", None) == getattr(kept, "dtype", None)

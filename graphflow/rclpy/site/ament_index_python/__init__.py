@@ -1,4 +1,4 @@
-"""Where the files of packages are."""
+"""The resource index: where the files of packages are."""
 
 from __future__ import annotations
 

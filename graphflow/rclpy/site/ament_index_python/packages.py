@@ -1,6 +1,6 @@
-"""Packages and their folders: those of the workspace that the program is in, and what is installed.
+"""Packages and their folders: those of the program's workspace, and those that are installed.
 
-Nothing is built: the `share` folder of a workspace's package is the package itself, or one of links to its files.
+Nothing is built: a workspace package's `share` folder is its source folder, or a folder of links to its files.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from graphflow.workspace.unfound import why_no_package
 
 
 class PackageNotFoundError(KeyError):
-    """There is no package of that name."""
+    """No package has that name."""
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
 def _workspace() -> Workspace:
-    """The one that the program is in; failing that, the one that the shell is in."""
+    """Return the workspace of the program, or else of the shell's current folder."""
     program = Path(sys.argv[0] if sys.argv else "")
     found = find_workspace(program) if program.is_file() else None
     return found if found is not None and found.packages else find_workspace(Path.cwd())
@@ -37,17 +37,17 @@ def _missing(package_name: str, known: Workspace) -> PackageNotFoundError:
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
-    """The folder of a package's launch files, parameters and other data.
+    """Return the folder of a package's launch files, parameters and other data.
 
     Raises:
-        ValueError: That is no name of a package.
-        PackageNotFoundError: There is none of that name.
+        ValueError: Not a legal package name.
+        PackageNotFoundError: No package has that name.
     """
     return Path(get_package_share_directory(package_name))
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    """The same as a text. Raises ValueError, PackageNotFoundError."""
+    """Return the share folder as text. Raises ValueError, PackageNotFoundError."""
     _check(package_name)
     workspace = _workspace()
     own = workspace.packages.get(package_name)
@@ -58,7 +58,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
 
 
 def get_package_prefix(package_name: str) -> str:
-    """The folder below which a package is installed. Raises ValueError, PackageNotFoundError."""
+    """Return the folder below which a package is installed. Raises ValueError, PackageNotFoundError."""
     _check(package_name)
     workspace = _workspace()
     own = workspace.packages.get(package_name)
@@ -69,7 +69,7 @@ def get_package_prefix(package_name: str) -> str:
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """The packages of the workspace, and where each is."""
+    """Return the packages of the workspace, each with its folder."""
     return {name: str(package.folder) for name, package in _workspace().packages.items()}
 
 

@@ -1,4 +1,4 @@
-"""What packages have registered in the index: that they are there, and that they define interfaces."""
+"""The resources that packages register in the index: their existence, and the interfaces that they define."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ TYPES = ("packages", "rosidl_interfaces")
 
 
 class InvalidResourceTypeNameError(ValueError):
-    """That is no name of a kind of resource."""
+    """Not a legal name of a resource type."""
 
 
 class InvalidResourceNameError(ValueError):
-    """That is no name of a resource."""
+    """Not a legal name of a resource."""
 
 
 def get_resource_types() -> set[str]:
-    """The kinds of resources that there are."""
+    """Return the known resource types."""
     return set(TYPES)
 
 
 def get_resources(resource_type: str) -> dict[str, str]:
-    """The resources of a kind, each with the folder that it is from; none of a kind that is not known here.
+    """Return the resources of a type, each with its folder; empty for an unknown type.
 
     Raises:
-        ValueError: That is no name of a kind.
+        ValueError: Not a legal name of a resource type.
     """
     if not resource_type or "/" in resource_type or "\\" in resource_type:
         raise InvalidResourceTypeNameError(f"Resource type '{resource_type}' is invalid")
@@ -39,11 +39,11 @@ def get_resources(resource_type: str) -> dict[str, str]:
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
-    """What a resource says, and the folder that it is from.
+    """Return the content of a resource and its folder.
 
     Raises:
-        ValueError: That is no name of a kind, or of a resource.
-        LookupError: There is none of that name.
+        ValueError: Not a legal name of a resource type, or of a resource.
+        LookupError: No resource has that name.
     """
     folder = has_resource(resource_type, resource_name)
     if folder is False:
@@ -54,7 +54,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | bool:
-    """The folder that a resource is from; False if there is none of that name. Raises ValueError."""
+    """Return the folder of a resource; False if there is none of that name. Raises ValueError."""
     if not resource_name or "/" in resource_name or "\\" in resource_name:
         raise InvalidResourceNameError(f"Resource name '{resource_name}' is invalid")
     return get_resources(resource_type).get(resource_name, False)

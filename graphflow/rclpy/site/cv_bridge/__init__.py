@@ -1,4 +1,4 @@
-"""Images of messages as arrays of OpenCV, and back."""
+"""Conversion between image messages and OpenCV arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conversion between `sensor_msgs/Image` and numpy arrays. Only to change colours, and to compress, needs OpenCV."""
+"""Conversion between `sensor_msgs/Image` and NumPy arrays. OpenCV is needed only to convert colours and to compress."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 _KINDS = {"8U": "u1", "8S": "i1", "16U": "u2", "16S": "i2", "32S": "i4", "32F": "f4", "64F": "f8"}
-"""OpenCV's names of types, and numpy's."""
+"""OpenCV's type names and NumPy's."""
 _COLOURS = {
     "mono8": ("8U", 1),
     "mono16": ("16U", 1),
@@ -22,26 +22,26 @@ _COLOURS = {
     "yuv422": ("8U", 2),
     "yuv422_yuy2": ("8U", 2),
 }
-"""Encodings with a meaning: the type and the number of channels."""
+"""Colour encodings: the element type and the number of channels."""
 _PLAIN = re.compile(r"(8U|8S|16U|16S|32S|32F|64F)C([1-9]\d?)?")
 _YUV = ("UYVY", "YUY2")
 _FILE_ENDINGS = {"jpg": ".jpg", "jpeg": ".jpg", "png": ".png", "bmp": ".bmp", "tiff": ".tiff", "webp": ".webp"}
 
 
 class CvBridgeError(TypeError):
-    """An image does not fit its encoding, or cannot be converted."""
+    """An image does not match its encoding, or cannot be converted."""
 
 
 class CvBridge:
-    """Converts images."""
+    """Converter of images."""
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """The type and the channels of an encoding, as ("uint8", 3). Raises CvBridgeError: It is unknown."""
+        """Return the type and channels of an encoding, as ("uint8", 3). Raises CvBridgeError if it is unknown."""
         kind, channels = _parse(encoding)
         return np.dtype(_KINDS[kind]).name, channels
 
     def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
-        """OpenCV's name of a type with channels, as 8UC3. Raises CvBridgeError: It has none."""
+        """Return OpenCV's name of a type with channels, as 8UC3. Raises CvBridgeError if it has none."""
         code = np.dtype(dtype).str[1:]
         for name, known in _KINDS.items():
             if known == code:
@@ -49,13 +49,13 @@ class CvBridge:
         raise CvBridgeError(f"images have no numbers of type {np.dtype(dtype)}")
 
     def imgmsg_to_cv2(self, img_msg: Image, desired_encoding: str = "passthrough") -> NDArray[Any]:
-        """An image as an array.
+        """Convert an image message to an array.
 
         Args:
-            desired_encoding: What it is converted to; `passthrough` for as it is.
+            desired_encoding: The encoding of the result; `passthrough` to leave it unchanged.
 
         Returns:
-            Shape (height, width), or (height, width, channels). It is the message's own memory where nothing has to be
+            Shape (height, width), or (height, width, channels). A view of the message's memory if nothing has to be
             converted.
 
         Raises:
@@ -77,14 +77,14 @@ class CvBridge:
         return image if desired_encoding == "passthrough" else _converted(image, img_msg.encoding, desired_encoding)
 
     def cv2_to_imgmsg(self, cvim: NDArray[Any], encoding: str = "passthrough", header: Header | None = None) -> Image:
-        """An array as an image.
+        """Convert an array to an image message.
 
         Args:
             cvim: Shape (height, width), or (height, width, channels).
-            encoding: What its numbers mean; `passthrough` for OpenCV's name of its type.
+            encoding: The encoding of the array; `passthrough` for OpenCV's name of its type.
 
         Raises:
-            CvBridgeError: The encoding is unknown, or the array is of another type.
+            CvBridgeError: The encoding is unknown, or does not match the array's type.
         """
         if not isinstance(cvim, np.ndarray) or cvim.ndim not in (2, 3):
             raise TypeError("Your input type is not a numpy array of two or three dimensions")
@@ -108,7 +108,7 @@ class CvBridge:
     def compressed_imgmsg_to_cv2(
         self, cmprs_img_msg: CompressedImage, desired_encoding: str = "passthrough"
     ) -> NDArray[Any]:
-        """A compressed image as an array: blue, green, red, or as `desired_encoding` says. Raises CvBridgeError."""
+        """Convert a compressed image to an array, BGR or in `desired_encoding`. Raises CvBridgeError."""
         cv2 = _opencv("to read compressed images")
         data = np.frombuffer(memoryview(cmprs_img_msg.data), dtype=np.uint8)
         image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
@@ -120,13 +120,13 @@ class CvBridge:
         return image if desired_encoding == "passthrough" else _converted(image, known, desired_encoding)
 
     def cv2_to_compressed_imgmsg(self, cvim: NDArray[Any], dst_format: str = "jpg") -> CompressedImage:
-        """An array, compressed.
+        """Compress an array.
 
         Args:
             dst_format: jpg, png, bmp, tiff or webp.
 
         Raises:
-            CvBridgeError: OpenCV cannot compress it so.
+            CvBridgeError: OpenCV cannot compress it in this format.
         """
         ending = _FILE_ENDINGS.get(dst_format.lower())
         if ending is None:
@@ -138,7 +138,7 @@ class CvBridge:
 
 
 def _parse(encoding: str) -> tuple[str, int]:
-    """The type and the number of channels."""
+    """Return the type and the number of channels."""
     plain = _PLAIN.fullmatch(encoding)
     if plain is not None:
         return plain[1], int(plain[2] or 1)
@@ -149,7 +149,7 @@ def _parse(encoding: str) -> tuple[str, int]:
 
 
 def _converted(image: NDArray[Any], encoding: str, desired: str) -> NDArray[Any]:
-    """The same picture in another encoding: its colours, and its numbers, which are scaled from 8 to 16 bits."""
+    """Convert an image to another encoding: its colours, and its values, scaled between 8 and 16 bits."""
     kind, channels = _parse(desired)
     if encoding == desired:
         return image
@@ -171,7 +171,7 @@ def _converted(image: NDArray[Any], encoding: str, desired: str) -> NDArray[Any]
 
 
 def _colour(encoding: str) -> str:
-    """OpenCV's name of what the channels are."""
+    """Return OpenCV's name of the channels."""
     name = re.sub(r"(8|16)$", "", encoding)
     if name.startswith("bayer_"):  # OpenCV names them by the second row and column
         return {"rggb": "BayerBG", "bggr": "BayerRG", "gbrg": "BayerGR", "grbg": "BayerGB"}[name[6:]]

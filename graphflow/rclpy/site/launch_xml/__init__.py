@@ -1,4 +1,4 @@
-"""launch_xml for code that is shared with launch files: stand-ins, which remember what they are called with."""
+"""Recording replacements for launch_xml, for code that is shared with launch files."""
 
 from graphflow.launchfiles.python.stand_ins import stand_in
 

@@ -1,4 +1,4 @@
-"""Filters that messages pass: kept for a while, or held until those of other topics belong to them.
+"""Filters for messages: caching, and synchronization of several topics by time.
 
 Source: the Python API of message_filters.
 """
@@ -21,32 +21,32 @@ from rclpy.subscription import Subscription
 from rclpy.time import Time
 
 UNHEARD = 3
-"""Times that a synchronizer without a callback puts messages together until that is told."""
+"""Times that a synchronizer without a callback drops a set of messages before it warns."""
 logger = logging.getLogger("graphflow")
 
 __all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
 
 
 class SimpleFilter:
-    """Passes messages on to callbacks, other filters among them."""
+    """The base class of filters: passes messages to callbacks, among them other filters."""
 
     def __init__(self) -> None:
-        self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
+        self.callbacks: dict[int, tuple[Callable[..., object], tuple[object, ...]]] = {}
 
-    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:  # noqa: N802 - its name there
-        """Have `cb` called with each message that comes out, and `args` behind it; returns its number."""
+    def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:  # noqa: N802 - its name there
+        """Register `cb`, called with each output message followed by `args`; return its number."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
     def signalMessage(self, *msg: Any) -> None:  # noqa: N802 - its name there
-        """Pass messages on."""
+        """Pass messages to the callbacks."""
         for callback, args in list(self.callbacks.values()):
             callback(*msg, *args)
 
 
 class Subscriber(SimpleFilter):
-    """What arrives on a topic. Its arguments are the node, and those of `create_subscription` without the callback."""
+    """A filter of a topic's messages. Takes the node and the arguments of `create_subscription` except the callback."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__()
@@ -55,24 +55,24 @@ class Subscriber(SimpleFilter):
         self.sub = self.node.create_subscription(*args[1:], self.callback, **kwargs)
 
     def callback(self, msg: Any) -> None:
-        """A message has arrived."""
+        """Pass on an incoming message."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:  # noqa: N802 - its name there
-        """The topic, as it was given."""
+        """Return the topic as it was given."""
         topic: str = self.topic
         return topic
 
     def __getattr__(self, key: str) -> Any:
-        """What a subscription has."""
+        """Return an attribute of the subscription."""
         return getattr(self.__dict__["sub"], key)
 
 
 def _connected(f: Any, who: object, callback: Callable[..., Any], *args: Any) -> int:
-    """Have a callback called with what comes out of a filter.
+    """Connect a callback to a filter's output.
 
     Raises:
-        AttributeError: It is none, such as a subscription.
+        AttributeError: It is not a filter, but for example a subscription.
     """
     if isinstance(f, Subscription):
         kind, name = type(who).__name__, f.msg_type.__name__
@@ -83,23 +83,23 @@ def _connected(f: Any, who: object, callback: Callable[..., Any], *args: Any) ->
 
 
 class Cache(SimpleFilter):
-    """The last messages of a filter, with their times.
+    """A cache of a filter's last messages, by time.
 
     Args:
         f: The filter.
-        cache_size: How many are kept.
-        allow_headerless: Whether messages without a header are kept, too, with the time of their arrival.
+        cache_size: The number of messages to keep.
+        allow_headerless: Whether to keep messages without a header as well, by time of arrival.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
         super().__init__()
         self.cache_size, self.allow_headerless = cache_size, allow_headerless
-        self.cache_msgs: list[Any] = []
+        self.cache_msgs: list[object] = []
         self.cache_times: list[Time] = []
         self.connectInput(f)
 
     def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802 - its name there
-        """Take messages from a filter."""
+        """Connect a filter as the input."""
         self.incoming_connection = _connected(f, self, self.add)
 
     def add(self, msg: Any) -> None:
@@ -113,43 +113,43 @@ class Cache(SimpleFilter):
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # noqa: N802 - its name there
-        """The messages of a span of time, both ends included."""
+        """Return the messages of a closed time interval."""
         assert from_stamp <= to_stamp
         return [msg for msg, time in self._kept() if from_stamp <= time <= to_stamp]
 
     def getElemAfterTime(self, stamp: Time) -> Any:  # noqa: N802 - its name there
-        """The first message that is not before a time, or None."""
+        """Return the first message at or after a time, or None."""
         return next((msg for msg, time in self._kept() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Time) -> Any:  # noqa: N802 - its name there
-        """The last message that is not after a time, or None."""
+        """Return the last message at or before a time, or None."""
         return next((msg for msg, time in reversed(self._kept()) if time <= stamp), None)
 
     def getLastestTime(self) -> Time | None:  # noqa: N802 - its name there
-        """The time of the last message, or None."""
+        """Return the time of the last message, or None."""
         return self.cache_times[-1] if self.cache_times else None
 
     getLatestTime = getLastestTime  # noqa: N815 - its name there
 
     def getOldestTime(self) -> Time | None:  # noqa: N802 - its name there
-        """The time of the first message that is kept, or None."""
+        """Return the time of the oldest message kept, or None."""
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:  # noqa: N802 - its name there
-        """The last message, or None."""
+        """Return the last message, or None."""
         latest = self.getLastestTime()
         return None if latest is None else self.getElemAfterTime(latest)
 
-    def _kept(self) -> list[tuple[Any, Time]]:
+    def _kept(self) -> list[tuple[object, Time]]:
         return list(zip(self.cache_msgs, self.cache_times, strict=True))
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Passes on one message of each of several filters, all with the same stamp.
+    """Passes on sets of messages, one from each filter, with equal stamps.
 
     Args:
         fs: The filters.
-        queue_size: How many messages of each wait for the others.
+        queue_size: The number of messages of each filter that wait for the others.
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
@@ -161,13 +161,13 @@ class TimeSynchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802 - its name there
-        """Take messages from filters."""
-        self.queues: list[dict[int, Any]] = [{} for _ in fs]
+        """Connect filters as the inputs."""
+        self.queues: list[dict[int, object]] = [{} for _ in fs]
         pairs = enumerate(zip(fs, self.queues, strict=True))
         self.input_connections = [_connected(f, self, self.add, queue, index) for index, (f, queue) in pairs]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """A message has come out of a filter."""
+        """Take a message from a filter."""
         with self.lock:
             self._keep(Time.from_msg(msg.header.stamp).nanoseconds, msg, my_queue)
             common = sorted(set[int].intersection(*(set(queue) for queue in self.queues)))
@@ -183,20 +183,20 @@ class TimeSynchronizer(SimpleFilter):
                 text = "%sthis synchronizer has put messages together, and nothing is called with them; write %s"
                 logger.warning(text, self._graphflow_place, "synchronizer.registerCallback(self.callback)")
 
-    def _keep(self, stamp_ns: int, msg: Any, queue: dict[int, Any]) -> None:
+    def _keep(self, stamp_ns: int, msg: Any, queue: dict[int, object]) -> None:
         queue[stamp_ns] = msg
         while len(queue) > self.queue_size:
             del queue[min(queue)]
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Passes on one message of each of several filters, with stamps that are near to each other.
+    """Passes on sets of messages, one from each filter, with approximately equal stamps.
 
     Args:
         fs: The filters.
-        queue_size: How many messages of each wait for the others.
-        slop: Seconds that the stamps of messages which belong together differ at most.
-        allow_headerless: Whether messages without a header count, too, with the time of their arrival.
+        queue_size: The number of messages of each filter that wait for the others.
+        slop: The greatest difference between the stamps of a set, in seconds.
+        allow_headerless: Whether to accept messages without a header as well, by time of arrival.
     """
 
     def __init__(
@@ -206,7 +206,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.slop, self.allow_headerless = Duration(seconds=slop), allow_headerless
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """A message has come out of a filter."""
+        """Take a message from a filter."""
         stamp = _stamp(msg, self.allow_headerless, "message_filters_approx")
         if stamp is None:
             return
@@ -217,8 +217,8 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if together:
             self.signalMessage(*together)
 
-    def _nearest(self, stamp_ns: int, mine: dict[int, Any]) -> Sequence[int]:
-        """The stamps of messages that belong to the one that has come, nearest first; none if one is missing."""
+    def _nearest(self, stamp_ns: int, mine: dict[int, object]) -> Sequence[int]:
+        """Return the stamps nearest to a new message's, one per filter, nearest first; empty if one is missing."""
         slop_ns = self.slop.nanoseconds
         if stamp_ns not in mine:  # older than all that are kept
             return ()
@@ -230,11 +230,11 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
 
 _logger = cache(get_logger)
-"""Loggers that are kept: each knows by itself when it has said something last."""
+"""Cached loggers: each throttles its own warnings."""
 
 
 def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Time | None:
-    """When a message was made; None, with a warning, if it does not say."""
+    """Return a message's stamp; None, with a warning, if it has none."""
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
     if stamp is not None:
         return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)

@@ -1,4 +1,4 @@
-"""rclpy, without ROS: its API over graphflow's, on the wire of rmw_zenoh.
+"""rclpy without ROS: its API implemented with graphflow, on the wire of rmw_zenoh.
 
 rclpy.init()
 node = MyNode()
@@ -54,14 +54,14 @@ _global_executor: Executor | None = None
 
 
 def __getattr__(name: str) -> Any:
-    """A module of rclpy's, which programs use that import rclpy alone."""
+    """Import a submodule on first access, for programs that only `import rclpy`."""
     if not name.startswith("_") and find_spec(f"rclpy.{name}") is not None:
         return import_module(f"rclpy.{name}")
     raise AttributeError(f"module 'rclpy' has no attribute {name!r}")
 
 
 class InitContextManager:
-    """What `init` returns: a block that shuts down what was begun when it is left."""
+    """The result of `init`: a context manager that shuts the context down on exit."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -84,16 +84,16 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Begin: read the command line, and handle signals.
+    """Initialize a context: read the command line, and handle signals.
 
     Args:
-        args: The command line; None for this program's.
-        context: What begins; None for the default one.
-        domain_id: None for what the environment says.
-        signal_handler_options: The signals that end it; by default all, for the default context.
+        args: The command line; None for the program's own.
+        context: The context to initialize; None for the default one.
+        domain_id: None for the environment's.
+        signal_handler_options: The signals that shut it down; by default all, for the default context.
 
     Raises:
-        RuntimeError: It has begun before, or an argument is wrong.
+        RuntimeError: It is already initialized, or an argument is wrong.
     """
     chosen = get_default_context() if context is None else context
     if signal_handler_options is None:
@@ -111,7 +111,7 @@ def init(
 
 
 def get_global_executor() -> Executor:
-    """The executor of whoever names none."""
+    """Return the executor that is used where none is named."""
     global _global_executor
     if _global_executor is None or _global_executor.context is not get_default_context():
         from rclpy.executors import SingleThreadedExecutor
@@ -122,14 +122,14 @@ def get_global_executor() -> Executor:
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """End: leave the network.
+    """Shut a context down, and leave the network.
 
     Args:
-        context: What ends; None for the default one.
-        uninstall_handlers: Whether signals do again what they did before; by default for the default context.
+        context: The context to shut down; None for the default one.
+        uninstall_handlers: Whether to restore the signals' former handlers; by default for the default context.
 
     Raises:
-        RuntimeError: It has ended before, or not begun.
+        RuntimeError: It was not initialized, or is already shut down.
     """
     global _global_executor
     if context is None and _global_executor is not None:
@@ -154,7 +154,7 @@ def create_node(
     automatically_declare_parameters_from_overrides: bool = False,
     enable_logger_service: bool = False,
 ) -> Node:
-    """A node; arguments and errors as for `rclpy.node.Node`."""
+    """Create a node; arguments and errors as for `rclpy.node.Node`."""
     from rclpy.node import Node
 
     return Node(
@@ -173,7 +173,7 @@ def create_node(
 
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
-    """Run one callback of a node, waiting at most `timeout_sec` seconds for one that is ready."""
+    """Run one callback of a node, waiting at most `timeout_sec` seconds for one to become ready."""
     check_node(node, "spin_once")
     check_executor(executor, "spin_once")
     executor = get_global_executor() if executor is None else executor
@@ -221,7 +221,7 @@ def spin_until_future_complete(
 
 
 def _take_out(node: Node, executor: Executor, former: Executor | None, what: str) -> None:
-    """Spin a node no more that was added for `what`."""
+    """Remove from its executor a node that was added for `what`."""
     executor.remove_node(node)
     if former is not None and former is not executor:
         from rclpy.impl.watches.orphans import watch

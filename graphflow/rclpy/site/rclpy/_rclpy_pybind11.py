@@ -1,6 +1,6 @@
-"""Names that code imports from rclpy's extension module: its exceptions, and a few of its enumerations.
+"""Names that programs import from rclpy's extension module: its exceptions and a few enumerations.
 
-There is no extension here. What wraps rcl's own objects, such as wait sets, has no equivalent.
+There is no extension here: wrappers of rcl objects, such as wait sets, have no equivalent.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 
 class RCLError(RuntimeError):
-    """What rcl reports."""
+    """An error from rcl."""
 
 
 class RCLInvalidROSArgsError(RCLError):
@@ -18,11 +18,11 @@ class RCLInvalidROSArgsError(RCLError):
 
 
 class UnknownROSArgsError(RuntimeError):
-    """Arguments after `--ros-args` that are not ROS's."""
+    """Arguments after `--ros-args` are not ROS arguments."""
 
 
 class NodeNameNonExistentError(RCLError):
-    """There is no node of that name."""
+    """No node has that name."""
 
 
 class UnsupportedEventTypeError(RCLError):
@@ -30,11 +30,11 @@ class UnsupportedEventTypeError(RCLError):
 
 
 class RCUtilsError(RuntimeError):
-    """What rcutils reports."""
+    """An error from rcutils."""
 
 
 class RMWError(RuntimeError):
-    """What the middleware reports."""
+    """An error from the middleware."""
 
 
 class TimerCancelledError(RCLError):
@@ -42,11 +42,11 @@ class TimerCancelledError(RCLError):
 
 
 class InvalidHandle(RuntimeError):
-    """What is used was destroyed before."""
+    """An entity was used after it was destroyed."""
 
 
 class SignalHandlerOptions(Enum):
-    """Signals that rclpy handles."""
+    """The signals that rclpy handles."""
 
     NO = 0
     SIGINT = 1
@@ -55,7 +55,7 @@ class SignalHandlerOptions(Enum):
 
 
 class ClockChange(IntEnum):
-    """How a clock changed its source when it jumped."""
+    """A change of a clock's source in a jump."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -64,7 +64,7 @@ class ClockChange(IntEnum):
 
 
 class GoalEvent(Enum):
-    """What happens to a goal at its server."""
+    """The events of a goal at its server."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1
@@ -74,7 +74,7 @@ class GoalEvent(Enum):
 
 
 class TransitionCallbackReturnType(Enum):
-    """What a lifecycle callback answers."""
+    """The result of a lifecycle callback."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -82,18 +82,18 @@ class TransitionCallbackReturnType(Enum):
 
 
 class rmw_qos_profile_t:  # noqa: N801 - rmw's name
-    """rmw's profiles."""
+    """rmw's QoS profiles."""
 
     @staticmethod
     def predefined(name: str) -> Any:
-        """One of them by its name: `qos_profile_default`."""
+        """Return a predefined profile by name: `qos_profile_default`."""
         from rclpy import qos
 
         return getattr(qos, name)
 
 
 class ServiceIntrospectionState(Enum):
-    """What is published of each call of a service."""
+    """The part of a service's calls that is published."""
 
     OFF = 0
     METADATA = 1

@@ -1,4 +1,4 @@
-"""Which callbacks may run at the same time."""
+"""Callback groups: which callbacks may run at the same time."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from weakref import WeakSet
 
 
 class CallbackGroup:
-    """Decides when the callbacks of its entities may run. Not for use itself: derive from it."""
+    """The base class of callback groups, which decide when their entities' callbacks may run."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.entities: WeakSet[Any] = WeakSet()
+        self.entities: WeakSet[object] = WeakSet()
 
     def add_entity(self, entity: Any) -> None:
-        """Add a timer, subscription or the like."""
+        """Add an entity, such as a timer or subscription."""
         self.entities.add(entity)
 
     def has_entity(self, entity: Any) -> bool:
@@ -27,16 +27,16 @@ class CallbackGroup:
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Take what the callback needs; False if it must not run after all."""
+        """Reserve a place for the callback; return False if it must not run after all."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Give back what the callback had."""
+        """Release the callback's place."""
         raise NotImplementedError
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """All callbacks may run at the same time."""
+    """A group without limits: all callbacks may run at the same time."""
 
     def can_execute(self, entity: Any) -> bool:
         return True
@@ -45,15 +45,15 @@ class ReentrantCallbackGroup(CallbackGroup):
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Nothing was taken."""
+        """Do nothing: nothing was reserved."""
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One callback runs at a time, and until it has ended: also while it awaits something."""
+    """A group that runs one callback at a time, until it has ended: awaiting something does not release it."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._active_entity: Any = None
+        self._active_entity: object = None
         self._lock = threading.Lock()
 
     def can_execute(self, entity: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Clients of services."""
+"""Service clients."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Client(ServiceEnd):
-    """A client of a service. Make it by `Node.create_client`."""
+    """A service client. Create it with `Node.create_client`."""
 
     turn = 3
     _endpoint: ThreadedClient
@@ -50,20 +50,20 @@ class Client(ServiceEnd):
         self._pending: dict[int, Future[Any]] = {}
         self._lock = threading.Lock()
         self._changed = changed
-        """Those who wait for a server."""
+        """The wake-ups of threads that wait for a server."""
 
-    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
-        """Send a request, and block until the response is there: some other thread must be spinning.
+    def call(self, request: object, timeout_sec: float | None = None) -> Any:
+        """Send a request and block until the response; another thread must be spinning.
 
         Args:
-            timeout_sec: Seconds to wait; None for any time.
+            timeout_sec: Seconds to wait; None for no limit.
 
         Returns:
-            The response; None if it did not come in time.
+            The response; None on timeout.
 
         Raises:
-            TypeError: That is no request of the service's.
-            CallError: A server of graphflow's has answered with an error.
+            TypeError: Not a request of the service's type.
+            CallError: A graphflow server answered with an error.
         """
         future = self.call_async(request)
         wake = Wake()
@@ -82,9 +82,9 @@ class Client(ServiceEnd):
         return future.result()
 
     def call_async(self, request: Any) -> Future[Any]:
-        """Send a request; the future has the response once a thread that spins has taken it.
+        """Send a request; the future is done once a spinning thread has taken the response.
 
-        A request without a server is never answered, which is told: `wait_for_service` before. Errors as for `call`.
+        A request without a server logs a warning and gets no answer: call `wait_for_service` first. Errors: see `call`.
         """
         if not isinstance(request, self.srv_type.Request):
             made = f"{self.srv_type.__name__}.Request()"
@@ -99,25 +99,25 @@ class Client(ServiceEnd):
         return future
 
     def get_pending_request(self, sequence_number: int) -> Future[Any]:
-        """The future of a call by its number. Raises KeyError if it does not wait."""
+        """Return the future of a pending call by its number. Raises KeyError if it is not pending."""
         return self._pending[sequence_number]
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Wait for a response no longer."""
+        """Stop waiting for a response."""
         with self._lock:
             for sequence, waiting in list(self._pending.items()):
                 if waiting is future:
                     del self._pending[sequence]
 
     def service_is_ready(self) -> bool:
-        """Whether there is a server. Raises RCLError where the context was shut down."""
+        """Whether a server is available. Raises RCLError if the context was shut down."""
         with self._handle:
             if not self._life.is_ok:
                 raise RCLError("failed to check service availability: rcl node's context is invalid")
             return self._endpoint.has_server
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Block until there is a server, at most `timeout_sec` seconds; whether there is one. Errors as above."""
+        """Block until a server is available, at most `timeout_sec` seconds; return whether one is. Errors as above."""
         wake = Wake()
         self._changed[wake] = None
         self._life.on_end(wake)
@@ -132,7 +132,7 @@ class Client(ServiceEnd):
     def has_work(self) -> bool:
         return bool(self._endpoint.inbox.items)
 
-    def take_work(self) -> Callable[[], Any] | None:
+    def take_work(self) -> Callable[[], object] | None:
         answered = self._endpoint.take()
         return None if answered is None else partial(self._settle, answered)
 

@@ -1,4 +1,4 @@
-"""Clocks: the time of day, the simulator's time, and time that never jumps."""
+"""Clocks: wall time, simulated time, and monotonic time."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ __all__ = ["Clock", "ClockChange", "ClockType", "JumpHandle", "JumpThreshold", "
 
 
 class JumpThreshold:
-    """Which jumps of a clock somebody wants to know of.
+    """The jumps of a clock that a callback wants to be notified of.
 
     Args:
-        min_forward: The least jump ahead; None for none of those. It must be positive.
-        min_backward: The least jump back; None for none of those. It must be negative.
-        on_clock_change: Whether to tell that simulated time begins or ends.
+        min_forward: The smallest forward jump to report; None for none. Must be positive.
+        min_backward: The smallest backward jump to report; None for none. Must be negative.
+        on_clock_change: Whether to report that simulated time begins or ends.
 
     Raises:
-        ValueError: A span has the wrong sign, or no jump at all is wanted.
+        ValueError: A duration has the wrong sign, or no jump at all is selected.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class JumpThreshold:
         self.min_forward, self.min_backward, self.on_clock_change = min_forward, min_backward, on_clock_change
 
     def covers(self, change: ClockChange, delta_ns: int) -> bool:
-        """Whether a jump is to be told."""
+        """Whether a jump is to be reported."""
         if change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
             return self.on_clock_change
         ahead = self.min_forward is not None and delta_ns >= self.min_forward.nanoseconds
@@ -55,7 +55,7 @@ class JumpThreshold:
 
 
 class TimeJump:
-    """A jump that has happened."""
+    """A jump of a clock."""
 
     def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
         self._clock_change, self._delta = clock_change, delta
@@ -66,19 +66,19 @@ class TimeJump:
 
     @property
     def delta(self) -> Duration:
-        """How far it went."""
+        """The size of the jump."""
         return self._delta
 
 
 class TimeJumpDictionary(TypedDict):
-    """A jump as rcl tells it."""
+    """A jump as rcl reports it."""
 
     clock_change: ClockChange
     delta: int
 
 
 class JumpHandle:
-    """Somebody's wish to know of jumps, until it is unregistered."""
+    """A registration for jumps, until it is unregistered."""
 
     def __init__(
         self,
@@ -86,7 +86,7 @@ class JumpHandle:
         clock: Clock,
         threshold: JumpThreshold,
         pre_callback: Callable[[], None] | None,
-        post_callback: Callable[[Any], None] | None,
+        post_callback: Callable[..., None] | None,
     ) -> None:
         if pre_callback is None and post_callback is None:
             raise ValueError("One of pre_callback or post_callback must be callable")
@@ -99,7 +99,7 @@ class JumpHandle:
         clock._jumps.append(self)
 
     def unregister(self) -> None:
-        """Be told no more. Twice is harmless."""
+        """Stop being notified. Idempotent."""
         clock, self._clock = self._clock, None
         if clock is not None:
             clock._jumps.remove(self)
@@ -112,13 +112,13 @@ class JumpHandle:
 
 
 class Watches(Protocol):
-    """What is told when a clock has moved: a timer's executor, or somebody who sleeps."""
+    """An observer of a clock's movements: a timer's executor, or a sleeping thread."""
 
     def clock_moved(self) -> None: ...
 
 
 class Clock:
-    """A clock of some type; for ROS_TIME, a `ROSClock` is made. Raises TypeError for anything but a `ClockType`."""
+    """A clock of some type; for ROS_TIME, a `ROSClock` is created. Raises TypeError unless given a `ClockType`."""
 
     _clock_type: ClockType
     _jumps: list[JumpHandle]
@@ -143,7 +143,7 @@ class Clock:
         return self
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> None:
-        """Everything is made before this, for subclasses that leave it out."""
+        """Do nothing: `__new__` initializes everything, for subclasses that skip `__init__`."""
 
     @property
     def clock_type(self) -> ClockType:
@@ -163,16 +163,16 @@ class Clock:
         return self._override_ns if self._is_overridden else time.time_ns()
 
     def now(self) -> Time:
-        """The time."""
+        """Return the current time."""
         return Time(nanoseconds=self.now_ns(), clock_type=self._clock_type)
 
     @property
     def is_set_from_outside(self) -> bool:
-        """Whether it goes by what is set, and stands still in between."""
+        """Whether the clock shows a time that is set from outside, and stands still in between."""
         return self._is_overridden
 
     def watch(self, watcher: Watches) -> None:
-        """Tell `watcher` whenever simulated time moves, begins or ends."""
+        """Notify `watcher` whenever simulated time moves, begins or ends."""
         self._watching.add(watcher)
 
     def create_jump_callback(
@@ -182,7 +182,7 @@ class Clock:
         pre_callback: Callable[[], None] | None = None,
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
-        """Call `pre_callback()` before, and `post_callback(TimeJump)` after each jump that the threshold covers."""
+        """Call `pre_callback()` before and `post_callback(TimeJump)` after each jump that the threshold covers."""
         after = post_callback
         if after is not None and callable(after):
             wanted = after
@@ -194,14 +194,14 @@ class Clock:
         return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=after)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
-        """Sleep until a time of this clock's.
+        """Sleep until a time of this clock.
 
         Returns:
-            Whether that time has come: False when the context was shut down, or simulated time began or ended.
+            Whether that time was reached: False if the context was shut down, or simulated time began or ended.
 
         Raises:
-            ValueError: The time is another clock's.
-            NotInitializedException: The context has not begun, or has ended.
+            ValueError: The time is of another clock type.
+            NotInitializedException: The context is not initialized, or has ended.
         """
         context = get_default_context() if context is None else context
         life = context.life
@@ -223,7 +223,7 @@ class Clock:
             life.forget(sleeper.wake)
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
-        """Sleep for a span of this clock's time. Returns and errors as for `sleep_until`."""
+        """Sleep for a duration of this clock's time. Returns and raises as `sleep_until`."""
         until_ns = max(0, self.now_ns() + rel_time.nanoseconds)
         return self.sleep_until(Time(nanoseconds=until_ns, clock_type=self._clock_type), context)
 
@@ -238,17 +238,17 @@ class _Sleeper:
 
 
 class ROSClock(Clock):
-    """The clock of nodes: the time of day, or what the simulator says, as `use_sim_time` has it."""
+    """The clock of nodes: wall time, or simulated time if `use_sim_time` is true."""
 
-    def __new__(cls, **_: Any) -> Self:
+    def __new__(cls, **_: object) -> Self:
         return super().__new__(cls, clock_type=ClockType.ROS_TIME)
 
-    def __init__(self, **_: Any) -> None:
-        """Nothing to choose: its type is ROS_TIME."""
+    def __init__(self, **_: object) -> None:
+        """Take no arguments: the type is ROS_TIME."""
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether it goes by what is set with `set_ros_time_override`."""
+        """Whether the clock shows the time set by `set_ros_time_override`."""
         return self._is_overridden
 
     def _set_ros_time_is_active(self, enabled: bool) -> None:
@@ -258,7 +258,7 @@ class ROSClock(Clock):
         self._jump(change, 0, lambda: setattr(self, "_is_overridden", enabled))
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set the time that it says while it goes by that."""
+        """Set the time that the clock shows while its override is active."""
         if not isinstance(time, Time):
             raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time).__name__}")
         new_ns = time.nanoseconds
@@ -281,4 +281,4 @@ class ROSClock(Clock):
 
 
 def _nothing() -> None:
-    """Nothing is held."""
+    """Do nothing."""

@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class ClockType(IntEnum):
-    """What a clock goes by: the simulator's time or else the time of day, the time of day, or time that never jumps."""
+    """The time that a clock shows: simulated time or else wall time, wall time, or monotonic time."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1

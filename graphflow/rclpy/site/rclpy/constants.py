@@ -1,4 +1,4 @@
-"""Numbers that rclpy names."""
+"""Constants that rclpy names."""
 
 S_TO_NS = 1000 * 1000 * 1000
-"""Nanoseconds in a second."""
+"""Nanoseconds per second."""

@@ -1,4 +1,4 @@
-"""Contexts: what `rclpy.init` begins and `rclpy.shutdown` ends."""
+"""Contexts: the scope from `rclpy.init` to `rclpy.shutdown`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ unrun.watch()
 
 
 class Context(AbstractContextManager["Context"]):
-    """What nodes of one program share: their arguments, their domain, and their end."""
+    """The shared state of a program's nodes: arguments, domain, and shutdown."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -43,20 +43,20 @@ class Context(AbstractContextManager["Context"]):
 
     @property
     def life(self) -> ContextState | None:
-        """graphflow's: what nodes, executors and sleeps ask. None before `init`."""
+        """graphflow's state of the context, which nodes, executors and sleeps consult. None before `init`."""
         return self._life
 
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
     ) -> None:
-        """Begin.
+        """Initialize the context.
 
         Args:
-            args: The command line; None for this program's.
-            domain_id: None for what the environment says.
+            args: The command line; None for the program's own.
+            domain_id: None for the environment's.
 
         Raises:
-            RuntimeError: It has begun before, or an argument is wrong.
+            RuntimeError: It is already initialized, or an argument is wrong.
         """
         unrun.made()
         words = list(sys.argv if args is None else args)
@@ -88,21 +88,21 @@ class Context(AbstractContextManager["Context"]):
             self._handle = Handle(self._destroy, ok=self.ok, get_domain_id=self.get_domain_id, shutdown=self.shutdown)
 
     def ok(self) -> bool:
-        """Whether it has begun and not ended."""
+        """Whether the context is initialized and not shut down."""
         return self._life is not None and self._life.is_ok
 
     def get_domain_id(self) -> int:
-        """The domain. Raises RuntimeError before `init`."""
+        """Return the domain. Raises RuntimeError before `init`."""
         if self._life is None:
             raise RuntimeError("Context must be initialized before it has a domain id")
         return self._life.domain
 
     def shutdown(self) -> None:
-        """End: call what asked for it, and leave the network.
+        """Shut down: call the registered callbacks, and leave the network.
 
         Raises:
-            RuntimeError: It has not begun.
-            RCLError: It has ended before.
+            RuntimeError: It is not initialized.
+            RCLError: It is already shut down.
         """
         if self._life is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
@@ -110,7 +110,7 @@ class Context(AbstractContextManager["Context"]):
             raise RCLError(_ALREADY)
 
     def try_shutdown(self) -> bool:
-        """End, if it has not yet; whether it did now."""
+        """Shut down if not done yet; return whether this call did."""
         with self._lock:
             life = self._life
             if life is None or not life.end():
@@ -119,7 +119,7 @@ class Context(AbstractContextManager["Context"]):
         return True
 
     def finish(self) -> None:
-        """What follows when its life has ended: it may take a while, and call users' code."""
+        """Run the callbacks and leave the network after the end; may take a while, and runs user code."""
         with self._lock:
             life, callbacks, self._callbacks = self._life, self._callbacks, []
         for reference in callbacks:
@@ -130,7 +130,7 @@ class Context(AbstractContextManager["Context"]):
             life.close()
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
-        """Call back when it ends, if `callback` is still there by then. Raises TypeError if that cannot be called."""
+        """Call `callback` at shutdown, if it still exists then. Raises TypeError if it is not callable."""
         if not callable(callback):
             raise TypeError(f"callback should be a callable, got {type(callback)}")
         with self._lock:
@@ -140,7 +140,7 @@ class Context(AbstractContextManager["Context"]):
             self._callbacks.append(WeakMethod(callback) if ismethod(callback) else ref(callback))
 
     def destroy(self) -> None:
-        """End, and be of no more use."""
+        """Shut down for good."""
         if self._handle is not None:
             self._handle.destroy_when_not_in_use()
 

@@ -1,4 +1,4 @@
-"""Spans of time."""
+"""Durations."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ _INFINITE = 2**63 - 1
 
 
 class Duration:
-    """A span of time in whole nanoseconds; may be negative.
+    """A duration in whole nanoseconds; may be negative.
 
     Args:
         seconds: Added to `nanoseconds`.
 
     Raises:
-        OverflowError: It does not fit 64 bits.
+        OverflowError: It does not fit in 64 bits.
     """
 
     def __init__(self, *, seconds: float = 0, nanoseconds: float = 0) -> None:
@@ -57,7 +57,7 @@ class Duration:
         return self._nanoseconds >= other._nanoseconds if isinstance(other, Duration) else NotImplemented
 
     def to_msg(self) -> DurationMessage:
-        """The span as builtin_interfaces/msg/Duration."""
+        """Convert to builtin_interfaces/msg/Duration."""
         from builtin_interfaces.msg import Duration as DurationMessage
 
         sec, nanosec = divmod(self._nanoseconds, S_TO_NS)
@@ -65,15 +65,15 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: DurationMessage) -> Duration:
-        """The span of a builtin_interfaces/msg/Duration. Raises TypeError for anything else."""
+        """Convert a builtin_interfaces/msg/Duration. Raises TypeError for anything else."""
         if not hasattr(msg, "nanosec"):
             raise TypeError("Must pass a builtin_interfaces.msg.Duration object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
 
     def get_c_duration(self) -> Duration:
-        """rclpy's, for its own use."""
+        """Return the duration itself; rclpy's internal handle has no equivalent."""
         return self
 
 
 Infinite = Duration(nanoseconds=_INFINITE)
-"""No limit."""
+"""The duration without limit."""

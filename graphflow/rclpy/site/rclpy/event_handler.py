@@ -1,4 +1,4 @@
-"""What endpoints notice about each other: who came and went, what is late, lost, silent or does not fit."""
+"""QoS events of endpoints: matches, missed deadlines, lost messages, liveliness and incompatibilities."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ __all__ = [
 
 
 class QoSPublisherEventType(IntEnum):
-    """What a publisher notices."""
+    """The events of a publisher."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -49,7 +49,7 @@ class QoSPublisherEventType(IntEnum):
 
 
 class QoSSubscriptionEventType(IntEnum):
-    """What a subscription notices."""
+    """The events of a subscription."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
@@ -65,27 +65,27 @@ class _Counts(NamedTuple):
 
 
 class QoSRequestedDeadlineMissedInfo(_Counts):
-    """A subscription has had no message in time."""
+    """A subscription received no message within its deadline."""
 
 
 class QoSOfferedDeadlineMissedInfo(_Counts):
-    """A publisher has sent nothing in time."""
+    """A publisher sent nothing within its deadline."""
 
 
 class QoSLivelinessLostInfo(_Counts):
-    """A publisher has not shown in time that it is alive."""
+    """A publisher failed to assert its liveliness in time."""
 
 
 class QoSMessageLostInfo(_Counts):
-    """Messages never arrived."""
+    """Messages were lost."""
 
 
 class IncompatibleTypeInfo(_Counts):
-    """Another endpoint of the topic is of another type."""
+    """Another endpoint of the topic has a different type."""
 
 
 class QoSLivelinessChangedInfo(NamedTuple):
-    """Publishers came, went, fell silent or were heard again."""
+    """Publishers appeared, left, fell silent or came alive again."""
 
     alive_count: int = 0
     not_alive_count: int = 0
@@ -94,7 +94,7 @@ class QoSLivelinessChangedInfo(NamedTuple):
 
 
 class QoSRequestedIncompatibleQoSInfo(NamedTuple):
-    """Another endpoint of the topic offers less than is asked for."""
+    """Another endpoint of the topic offers less than the requested QoS."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -105,7 +105,7 @@ QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
 
 
 class QoSSubscriptionMatchedInfo(NamedTuple):
-    """Endpoints of the other side came or went."""
+    """Endpoints of the other side appeared or left."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -137,11 +137,11 @@ _POLICIES = {
     "liveliness": QoSPolicyKind.LIVELINESS,
     "liveliness lease": QoSPolicyKind.LIVELINESS,
 }
-"""Policies as graphflow and as ROS 2 call them."""
+"""The policies' names in graphflow and in ROS 2."""
 
 
 class EventHandler(Waitable):
-    """Has an executor call `callback` with what an endpoint has noticed."""
+    """Has an executor call `callback` with an endpoint's events of one type."""
 
     def __init__(
         self,
@@ -149,7 +149,7 @@ class EventHandler(Waitable):
         callback_group: CallbackGroup,
         callback: Callable[[Any], None],
         event_type: IntEnum,
-        parent_impl: Any = None,
+        parent_impl: object = None,
         bell: NodeBell | None = None,
     ) -> None:
         super().__init__(callback_group)
@@ -162,21 +162,21 @@ class EventHandler(Waitable):
         self._is_destroyed = False
 
     def notice(self, event: QosEvent) -> None:
-        """The endpoint has noticed something. Callable from any thread."""
+        """Record an event of the endpoint. Callable from any thread."""
         if not self._is_destroyed:
             self._events.append(event)
             if self._bell is not None:
                 self._bell.mark(self)
 
-    def is_ready(self, wait_set: Any) -> bool:
+    def is_ready(self, wait_set: object) -> bool:
         return bool(self._events) and not self._is_destroyed
 
     def take_data(self) -> Any:
         events, self._events = self._events, deque(maxlen=1000)
         return self._info(list(events)) if events else None
 
-    def _info(self, events: list[QosEvent]) -> Any:
-        """Several events at once, as rcl tells them."""
+    def _info(self, events: list[QosEvent]) -> object:
+        """Merge several events into one, as rcl reports them."""
         last, more = events[-1], sum(event.change for event in events)
         match self.kind:
             case "liveliness_changed":
@@ -198,12 +198,12 @@ class EventHandler(Waitable):
                 return QoSLivelinessLostInfo(last.total, more)
         return IncompatibleTypeInfo(last.total, more)
 
-    async def execute(self, taken_data: Any) -> None:
+    async def execute(self, taken_data: object) -> None:
         if taken_data is not None:
             self.callback(taken_data)
 
     def destroy(self) -> None:
-        """Notice nothing more."""
+        """Stop recording events."""
         self._is_destroyed = True
 
 
@@ -211,7 +211,7 @@ QoSEventHandler = EventHandler
 
 
 def dispatcher(handlers: list[EventHandler]) -> Callable[[QosEvent], None]:
-    """What an endpoint calls with each event: it goes to those that want its kind."""
+    """Return the function that dispatches an endpoint's events to the handlers of their type."""
 
     def told(event: QosEvent) -> None:
         for handler in handlers:
@@ -222,10 +222,10 @@ def dispatcher(handlers: list[EventHandler]) -> Callable[[QosEvent], None]:
 
 
 class SubscriptionEventCallbacks:
-    """What a subscription's events call.
+    """The callbacks for a subscription's events.
 
     Args:
-        use_default_callbacks: Whether there are events of what does not fit, where no callback is given for that.
+        use_default_callbacks: Whether to handle incompatibilities for which no callback is given.
     """
 
     def __init__(
@@ -250,7 +250,7 @@ class SubscriptionEventCallbacks:
         topic_name: str,
         bell: NodeBell | None = None,
     ) -> list[EventHandler]:
-        """The handlers of these callbacks."""
+        """Create the handlers of these callbacks."""
         kinds = QoSSubscriptionEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
@@ -267,7 +267,7 @@ class SubscriptionEventCallbacks:
 
 
 class PublisherEventCallbacks:
-    """What a publisher's events call. `use_default_callbacks` as for `SubscriptionEventCallbacks`."""
+    """The callbacks for a publisher's events. `use_default_callbacks` as for `SubscriptionEventCallbacks`."""
 
     def __init__(
         self,
@@ -290,7 +290,7 @@ class PublisherEventCallbacks:
         topic_name: str,
         bell: NodeBell | None = None,
     ) -> list[EventHandler]:
-        """The handlers of these callbacks."""
+        """Create the handlers of these callbacks."""
         kinds = QoSPublisherEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
@@ -314,7 +314,7 @@ def _handlers(wanted: dict[Any, Any], group: CallbackGroup, bell: NodeBell | Non
 
 
 def _logged(info: object) -> None:
-    """Nothing more: the endpoint itself logs what does not fit, with both nodes and what to change."""
+    """Do nothing: the endpoint logs incompatibilities itself, with both nodes and the remedy."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""What rclpy raises."""
+"""rclpy's exceptions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ __all__ = [
 
 
 class NotInitializedException(Exception):
-    """`rclpy.init` has not been called, or its context was shut down."""
+    """`rclpy.init` has not been called, or the context was shut down."""
 
     def __init__(self, message: str | None = None) -> None:
         text = "rclpy.init() has not been called"
@@ -47,10 +47,10 @@ class NoTypeSupportImportedException(Exception):
 
 
 class NameValidationException(Exception):
-    """A name is not legal.
+    """A name is illegal.
 
     Attributes:
-        invalid_index: Where in `name` what is wrong begins.
+        invalid_index: The position in `name` at which the fault begins.
     """
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
@@ -60,38 +60,38 @@ class NameValidationException(Exception):
 
 
 class InvalidNamespaceException(NameValidationException):
-    """A namespace is not legal."""
+    """A namespace is illegal."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("namespace", name, error_msg, invalid_index)
 
 
 class InvalidNodeNameException(NameValidationException):
-    """A node's name is not legal."""
+    """A node's name is illegal."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("node name", name, error_msg, invalid_index)
 
 
 class InvalidTopicNameException(NameValidationException):
-    """A topic's name is not legal."""
+    """A topic's name is illegal."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("topic name", name, error_msg, invalid_index)
 
 
 class InvalidServiceNameException(NameValidationException):
-    """A service's name is not legal."""
+    """A service's name is illegal."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("service name", name, error_msg, invalid_index)
 
 
 class ParameterException(Exception):
-    """Something is wrong with parameters.
+    """An error about parameters.
 
     Args:
-        parameters: The name of one, or several.
+        parameters: The name of one parameter, or several.
     """
 
     def __init__(self, error_msg: str, parameters: str | Iterable[str], *args: object) -> None:
@@ -107,21 +107,21 @@ class ParameterNotDeclaredException(ParameterException):
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
-    """A parameter is declared a second time."""
+    """A parameter was declared twice."""
 
     def __init__(self, parameters: str | Iterable[str], *args: object) -> None:
         super().__init__("Parameter(s) already declared", parameters, *args)
 
 
 class InvalidParameterException(ParameterException):
-    """A parameter's name is not legal."""
+    """A parameter's name is illegal."""
 
     def __init__(self, parameter: str, *args: object) -> None:
         super().__init__("Invalid parameter name", parameter, *args)
 
 
 class InvalidParameterTypeException(ParameterException):
-    """A value is of another type than its parameter."""
+    """A value's type differs from its parameter's."""
 
     def __init__(self, parameter: Parameter[Any], expected_type: object, *args: object) -> None:
         name = getattr(expected_type, "name", expected_type)
@@ -134,7 +134,7 @@ class InvalidParameterTypeException(ParameterException):
 
 
 class InvalidParameterValueException(ParameterException):
-    """A value was refused."""
+    """A value was rejected."""
 
     def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
         super().__init__(
@@ -147,21 +147,21 @@ class InvalidParameterValueException(ParameterException):
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter was to be changed."""
+    """A read-only parameter cannot be changed."""
 
     def __init__(self, parameter: str, *args: object) -> None:
         super().__init__("Attempted to modify read-only parameter", parameter, *args)
 
 
 class ParameterUninitializedException(ParameterException):
-    """A parameter was declared with a type only, and has no value yet."""
+    """A parameter was declared with only a type, and has no value yet."""
 
     def __init__(self, parameter: str, *args: object) -> None:
         super().__init__("The parameter is not initialized", parameter, *args)
 
 
 class ROSInterruptException(Exception):
-    """What was waited for was cut off by a shutdown."""
+    """A wait was interrupted by a shutdown."""
 
     def __init__(self) -> None:
         super().__init__("rclpy.shutdown() has been called")

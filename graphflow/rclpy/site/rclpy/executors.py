@@ -1,4 +1,4 @@
-"""Executors: threads that run the callbacks of nodes."""
+"""Executors, whose threads run the callbacks of nodes."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ __all__ = [
 ]
 
 all_executors: WeakSet[Executor] = WeakSet()
-"""Those of this process, for the search for deadlocks."""
+"""The executors of this process, for the deadlock detector."""
 
 
 class TimeoutObject:
-    """A time limit in seconds that several calls share."""
+    """A time limit in seconds, shared by several calls."""
 
     def __init__(self, timeout: float) -> None:
         self._timeout = timeout
@@ -62,18 +62,18 @@ class TimeoutObject:
 
 
 async def await_or_execute(callback: Any, *args: Any) -> Any:
-    """Call `callback(*args)`, and await it if it is a coroutine function."""
+    """Call `callback(*args)`, and await the result if it is a coroutine function."""
     return await callback(*args) if inspect.iscoroutinefunction(callback) else callback(*args)
 
 
 class Executor(AbstractContextManager["Executor"]):
-    """What all executors have in common. A subclass says in `spin_once` in what thread work is done."""
+    """The base class of executors. A subclass's `spin_once` chooses the thread that does the work."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__()
         self._context = get_default_context() if context is None else context
         self._graphflow = Spinning(self, self._context)
-        self._graphflow_watched: WeakSet[Any] = WeakSet()
+        self._graphflow_watched: WeakSet[object] = WeakSet()
         all_executors.add(self)
 
     @property
@@ -82,7 +82,7 @@ class Executor(AbstractContextManager["Executor"]):
 
     @property
     def spinning(self) -> Spinning:
-        """graphflow's: its workings."""
+        """graphflow's implementation of the spinning."""
         return self._graphflow
 
     @property
@@ -93,20 +93,20 @@ class Executor(AbstractContextManager["Executor"]):
     def _is_shutdown(self, value: bool) -> None:
         self._graphflow.is_shutdown = value
 
-    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
-        """Run a function, a coroutine function or a coroutine as a task; returns it."""
+    def create_task(self, callback: Any, *args: Any, **kwargs: object) -> Task[Any]:
+        """Run a function, a coroutine function or a coroutine as a task; return the task."""
         run = Run(self, callback, args, kwargs)
         self._graphflow.start(run)
         return run
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Begin nothing more.
+        """Start no more work.
 
         Args:
-            timeout_sec: Seconds to wait for callbacks that run in other threads; None not to wait.
+            timeout_sec: Seconds to wait for callbacks that run in other threads; None for not waiting.
 
         Returns:
-            Whether none runs any more.
+            Whether none is running any more.
         """
         spinning = self._graphflow
         spinning.is_shutdown = True
@@ -128,7 +128,7 @@ class Executor(AbstractContextManager["Executor"]):
             spinning.is_shutdown = True
 
     def add_node(self, node: Any) -> bool:
-        """Run a node's callbacks from now on; whether they were not before. Raises TypeError for no node."""
+        """Run a node's callbacks from now on; return whether the node was new. Raises TypeError if it is not a node."""
         check_node(node, "add_node")
         spinning = self._graphflow
         if node in spinning.nodes:
@@ -140,22 +140,22 @@ class Executor(AbstractContextManager["Executor"]):
         return True
 
     def remove_node(self, node: Any) -> None:
-        """Run a node's callbacks no more."""
+        """Stop running a node's callbacks."""
         if not is_node(node):
             tell("remove_node", node)
         if self._graphflow.nodes.pop(node, self) is None:
             self._graphflow.wake.set()
 
     def wake(self) -> None:
-        """Have the thread that waits look for work. From any thread."""
+        """Wake the waiting thread to check for work. Callable from any thread."""
         self._graphflow.wake.set()
 
     def get_nodes(self) -> list[Any]:
-        """The nodes whose callbacks it runs."""
+        """Return the nodes whose callbacks it runs."""
         return list(self._graphflow.nodes)
 
     def spin(self) -> None:
-        """Run callbacks until the context, or this executor, is shut down."""
+        """Run callbacks until the context or this executor is shut down."""
         while self._context.ok() and not self._graphflow.is_shutdown:
             self.spin_once()
 
@@ -175,7 +175,7 @@ class Executor(AbstractContextManager["Executor"]):
                 return
 
     def _graphflow_wake_when_done(self, future: Any) -> None:
-        """Look again when a future is done, be it one of asyncio's; once, however often it is waited for."""
+        """Wake the executor when a future, also one of asyncio's, is done; registered once per future."""
         if isinstance(future, Future):
             future._when_done(self.wake)
         elif future not in self._graphflow_watched:
@@ -187,13 +187,13 @@ class Executor(AbstractContextManager["Executor"]):
         return self._context.ok() and not is_over and not self._graphflow.is_shutdown
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for a callback that is ready, and run it. For subclasses to say how.
+        """Wait for a ready callback and run it. Subclasses implement it.
 
         Args:
-            timeout_sec: Seconds to wait for one; None or a negative number for any time.
+            timeout_sec: Seconds to wait for one; None or a negative number for no limit.
 
         Raises:
-            Exception: Whatever the callback raises.
+            Exception: Any error that the callback raises.
             ExternalShutdownException: The context was shut down.
         """
         raise NotImplementedError
@@ -201,11 +201,11 @@ class Executor(AbstractContextManager["Executor"]):
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        """As `spin_once`, but wait no longer when a future is done."""
+        """Like `spin_once`, but stop waiting when a future is done."""
         raise NotImplementedError
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether an entity's group lets its callback run now."""
+        """Whether an entity's group allows its callback to run now."""
         return bool(entity.callback_group.can_execute(entity))
 
     def wait_for_ready_callbacks(
@@ -214,18 +214,20 @@ class Executor(AbstractContextManager["Executor"]):
         nodes: list[Any] | None = None,
         condition: Callable[[], bool] = lambda: False,
     ) -> tuple[Task[Any], Any, Any]:
-        """Wait for something to do: a task to be called, the entity whose it is, and the node.
+        """Wait for work: return a task to call, its entity and its node.
 
         Raises:
-            TimeoutException: There was nothing in time.
+            TimeoutException: Nothing was ready in time.
             ShutdownException: The executor was shut down.
             ExternalShutdownException: The context was shut down.
-            ConditionReachedException: `condition()` holds.
+            ConditionReachedException: `condition()` is true.
         """
         timeout = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
         return self._graphflow.next(timeout, nodes, condition)
 
-    def _wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Generator[tuple[Task[Any], Any, Any], None, None]:
+    def _wait_for_ready_callbacks(
+        self, *args: Any, **kwargs: Any
+    ) -> Generator[tuple[Task[Any], object, object], None, None]:
         while True:
             yield self.wait_for_ready_callbacks(*args, **kwargs)
 
@@ -240,7 +242,7 @@ _NOTHING_TO_DO = (ShutdownException, TimeoutException, ConditionReachedException
 
 
 class SingleThreadedExecutor(Executor):
-    """Runs callbacks one after the other, in the thread that spins."""
+    """An executor that runs callbacks one at a time in the spinning thread."""
 
     def _graphflow_do_one(
         self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False
@@ -265,7 +267,7 @@ class SingleThreadedExecutor(Executor):
 
 
 class _Pool:
-    """Threads that end with the process, whatever runs in them."""
+    """A pool of daemon threads that end with the process, even in the middle of work."""
 
     def __init__(self, size: int, freed: Callable[[], None]) -> None:
         self._max_workers = size
@@ -304,10 +306,10 @@ class _Pool:
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks in a pool of threads, as many at a time as groups allow.
+    """An executor that runs callbacks in a pool of threads, in parallel as far as groups allow.
 
     Args:
-        num_threads: None for as many as there are processors.
+        num_threads: None for the number of processors.
     """
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:

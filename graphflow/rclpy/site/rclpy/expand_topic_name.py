@@ -1,4 +1,4 @@
-"""Full names of topics and services."""
+"""Expansion of topic and service names to full names."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from rclpy.validate_topic_name import validate_topic_name
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """The full name of what a node calls `topic_name`, before remaps.
+    """Return the full name of a node's `topic_name`, before remapping.
 
     Raises:
-        ValueError: One of the names is not legal, or has a substitution that there is not.
+        ValueError: One of the names is illegal, or contains an unknown substitution.
     """
     try:
         validate_topic_name(topic_name)

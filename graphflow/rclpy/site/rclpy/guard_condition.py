@@ -1,4 +1,4 @@
-"""Callbacks that code triggers."""
+"""Guard conditions: callbacks that code triggers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class GuardCondition:
-    """Has an executor call `callback` after each `trigger`, however many came meanwhile."""
+    """Has an executor call `callback` after `trigger`; triggers that come meanwhile are merged."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class GuardCondition:
         return self._handle
 
     def trigger(self) -> None:
-        """Have the callback called. From any thread."""
+        """Schedule the callback. Callable from any thread."""
         with self._handle:
             self._is_triggered = True
             if self._bell is not None:
@@ -43,17 +43,17 @@ class GuardCondition:
     def has_work(self) -> bool:
         return self._is_triggered and not self._handle.is_destroyed
 
-    def take_work(self) -> Callable[[], Any] | None:
+    def take_work(self) -> Callable[[], object] | None:
         was_triggered, self._is_triggered = self._is_triggered, False
         return self.callback if was_triggered else None
 
     def destroy(self) -> None:
-        """Be of no more use. `Node.destroy_guard_condition` is what to call."""
+        """End the guard condition. Call `Node.destroy_guard_condition` instead."""
         self._handle.destroy_when_not_in_use()
 
 
 def _nothing() -> None:
-    """Nothing is held."""
+    """Do nothing."""
 
 
 def __getattr__(name: str) -> Any:

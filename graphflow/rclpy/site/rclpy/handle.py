@@ -1,25 +1,25 @@
-"""Stands for rclpy's handles, which wrap rcl's objects: something that is in use, and then destroyed."""
+"""Handles of entities, which in rclpy wrap rcl objects: in use, then destroyed."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 from graphflow.errors import ClosedError
 from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 
 
 class Handle:
-    """What an entity holds until it is destroyed.
+    """The handle of an entity until it is destroyed.
 
     Args:
-        withdraw: Called once, when it is destroyed.
-        more: What code asks of such a handle besides.
+        withdraw: Called once, when the handle is destroyed.
+        more: Further attributes that programs read from such a handle.
     """
 
-    def __init__(self, withdraw: Callable[[], None], **more: Any) -> None:
+    def __init__(self, withdraw: Callable[[], None], **more: object) -> None:
         self._withdraw: Callable[[], None] | None = withdraw
         self.__dict__.update(more)
 
@@ -39,12 +39,12 @@ class Handle:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Raise RCLError where the network was left meanwhile; what is in use is not counted."""
+        """Raise RCLError if the network was left meanwhile; uses are not counted."""
         if isinstance(error, ClosedError):
             raise _left(error) from None
 
     def destroy_when_not_in_use(self) -> None:
-        """Destroy it. Twice is harmless."""
+        """Destroy the handle. Idempotent."""
         withdraw, self._withdraw = self._withdraw, None
         if withdraw is not None:
             withdraw()
@@ -52,7 +52,7 @@ class Handle:
 
 @contextmanager
 def sending() -> Iterator[None]:
-    """Send something. Raises RCLError where the network was left meanwhile."""
+    """Guard a send. Raises RCLError if the network was left meanwhile."""
     try:
         yield
     except ClosedError as error:

@@ -28,51 +28,51 @@ _root_logger = RcutilsLogger()
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """The logger of a name. Raises ValueError for an empty one."""
+    """Return the logger of a name. Raises ValueError for an empty one."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return _root_logger.get_child(name)
 
 
 def initialize() -> None:
-    """Nothing is needed before a line is logged."""
+    """Do nothing: no setup is needed."""
 
 
 def shutdown() -> None:
-    """Nothing is held."""
+    """Do nothing: there is nothing to release."""
 
 
 def clear_config() -> None:
-    """Have all loggers go by the level of the root again."""
+    """Reset all loggers to the root's level."""
     for name, logger in list(python_logging.Logger.manager.loggerDict.items()):
         if name.startswith(f"{ROOT}.") and isinstance(logger, python_logging.Logger):
             logger.setLevel(python_logging.NOTSET)
 
 
 def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bool = False) -> None:
-    """Have the logger of a name log only what matters this much.
+    """Make the logger of a name log only lines of at least this severity.
 
     Args:
-        detailed_error: rcutils' wish for a longer text.
+        detailed_error: Ignored; rcutils' option for a longer text.
 
     Raises:
-        ValueError: There is no such level.
+        ValueError: No such level.
     """
     RcutilsLogger(name).set_level(LoggingSeverity(level))
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """What the lines of a logger must matter: its own level, or that of the nearest above it that has one."""
+    """Return a logger's effective level: its own, or that of its nearest ancestor that has one."""
     return RcutilsLogger(name).get_effective_level()
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """The level of a logger itself."""
+    """Return a logger's own level."""
     return LoggingSeverity(RcutilsLogger(name)._logger.level)
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """The level of a word. Raises RCUtilsError if there is none."""
+    """Convert a severity's name. Raises RCUtilsError if there is none of that name."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:
@@ -80,7 +80,7 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
 
 
 def get_logging_directory() -> Path:
-    """The folder for log files, as ROS 2 has it."""
+    """Return the folder of log files, as ROS 2 chooses it."""
     given, home = os.environ.get("ROS_LOG_DIR"), os.environ.get("ROS_HOME")
     if given:
         return Path(given).expanduser()

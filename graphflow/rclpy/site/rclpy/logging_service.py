@@ -1,4 +1,4 @@
-"""The services by which others ask for, and set, the levels of a process's loggers."""
+"""Services with which others get and set the levels of a process's loggers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rclpy.logging import get_logger_level, set_logger_level
 
 
 class LoggingService:
-    """Offers them as a node's."""
+    """The logger services of a node."""
 
     def __init__(self, node: Any) -> None:
         from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
@@ -20,14 +20,14 @@ class LoggingService:
         self._set = node.create_service(SetLoggerLevels, f"{name}/set_logger_levels", self._asked_to_set)
 
     @staticmethod
-    def _asked(request: Any, response: Any) -> Any:
+    def _asked(request: Any, response: Any) -> object:
         from rcl_interfaces.msg import LoggerLevel
 
         response.levels = [LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names]
         return response
 
     @staticmethod
-    def _asked_to_set(request: Any, response: Any) -> Any:
+    def _asked_to_set(request: Any, response: Any) -> object:
         from rcl_interfaces.msg import SetLoggerLevelsResult
 
         for wanted in request.levels:

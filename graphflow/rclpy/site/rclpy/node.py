@@ -1,4 +1,4 @@
-"""Nodes."""
+"""Nodes: rclpy's interface, implemented with graphflow."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ HIDDEN_NODE_PREFIX = "_"
 
 
 class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
-    """A node. Its arguments, like those of its methods, are rclpy's; what it does, graphflow does.
+    """A node with rclpy's interface, implemented by a graphflow node.
 
     Raises:
-        NotInitializedException: The context has not begun, or has ended.
-        InvalidNodeNameException, InvalidNamespaceException: A name is not legal.
+        NotInitializedException: The context is not initialized, or has ended.
+        InvalidNodeNameException, InvalidNamespaceException: A name is illegal.
     """
 
     def __init__(
@@ -124,7 +124,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     @property
     def executor(self) -> Executor | None:
-        """What runs its callbacks."""
+        """The executor that runs the node's callbacks."""
         found: Executor | None = self._graphflow.executor()
         return found
 
@@ -148,7 +148,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The group of whatever names none: its callbacks exclude each other."""
+        """The group of entities that name none: its callbacks exclude each other."""
         return self._graphflow.group
 
     @property
@@ -183,7 +183,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             return self._graphflow.node.full_name
 
     def get_clock(self) -> Clock:
-        """The node's clock: the time of day, or simulated time where `use_sim_time` is true."""
+        """Return the node's clock: wall time, or simulated time if `use_sim_time` is true."""
         return self._graphflow.clock
 
     def get_logger(self) -> RcutilsLogger:
@@ -198,12 +198,12 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         return full if only_expand else inner.core.names.resolve(full, kind)
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The full name of a topic; remapped, unless it is only to be expanded."""
+        """Return the full name of a topic, remapped unless `only_expand`."""
         with self.handle:
             return self._graphflow_resolved(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The full name of a service; remapped, unless it is only to be expanded."""
+        """Return the full name of a service, remapped unless `only_expand`."""
         with self.handle:
             return self._graphflow_resolved(service, "service", only_expand=only_expand)
 
@@ -221,7 +221,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: Any = Publisher,
     ) -> Any:
-        """A publisher of messages of a class. `callback_group` is that of its events."""
+        """Create a publisher of messages of a class. `callback_group` is that of its events."""
         qos = validated(qos_profile)
         group = callback_group or self.default_callback_group
         name = self._graphflow_topic(msg_type, topic)
@@ -264,11 +264,11 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription:
-        """Have `callback` called with each message of a topic.
+        """Call `callback` with each message of a topic.
 
         Args:
-            callback: Takes the message, and perhaps a `MessageInfo`.
-            raw: Whether it takes CDR in place of the message.
+            callback: Takes the message, and optionally a `MessageInfo`.
+            raw: Whether it takes CDR bytes instead of the message.
         """
         qos = validated(qos_profile)
         group = callback_group or self.default_callback_group
@@ -304,7 +304,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         validate_topic_name(topic)
         return self._graphflow_resolved(topic)
 
-    def _graphflow_service(self, srv_type: Any, srv_name: str) -> str:
+    def _graphflow_service(self, srv_type: object, srv_name: str) -> str:
         check_is_valid_srv_type(srv_type)
         validate_topic_name(srv_name, is_service=True)
         return self._graphflow_resolved(srv_name, "service")
@@ -316,13 +316,13 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     @explained
     def create_client(
         self,
-        srv_type: Any,
+        srv_type: object,
         srv_name: str,
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
     ) -> Client:
-        """A client of a service. Its answers need a place in its group."""
+        """Create a service client. Handling its answers needs a place in its callback group."""
         group = callback_group or self.default_callback_group
         name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
         type_ = registry.interface_class(classes.type_name(srv_type))
@@ -358,14 +358,14 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     @explained
     def create_service(
         self,
-        srv_type: Any,
+        srv_type: object,
         srv_name: str,
         callback: Callable[[Any, Any], Any],
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
     ) -> Service:
-        """Have `callback(request, response)` answer the requests of a service; it returns the response."""
+        """Answer a service's requests with `callback(request, response)`, which returns the response."""
         group = callback_group or self.default_callback_group
         name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
         type_ = registry.interface_class(classes.type_name(srv_type))
@@ -392,7 +392,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         clock: Clock | None = None,
         autostart: bool = True,
     ) -> Timer:
-        """Have `callback` called once in `timer_period_sec` seconds of the node's clock, or of another."""
+        """Call `callback` every `timer_period_sec` seconds of the node's clock, or of another."""
         group = callback_group or self.default_callback_group
         inner = self._graphflow
         period_ns = int(float(timer_period_sec) * S_TO_NS)
@@ -413,7 +413,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def create_guard_condition(
         self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
-        """Have `callback` called when somebody triggers it."""
+        """Call `callback` when the guard condition is triggered."""
         group = callback_group or self.default_callback_group
         made = GuardCondition(callback, group, context=self.context, bell=self._graphflow.bell)
         group.add_entity(made)
@@ -422,7 +422,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     @explained
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """A rhythm for threads. Raises ValueError for a frequency that is not positive."""
+        """Create a rate for threads. Raises ValueError for a frequency that is not positive."""
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         from rclpy.callback_groups import ReentrantCallbackGroup
@@ -433,7 +433,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         return Rate(timer, context=self.context)
 
     def destroy_node(self) -> None:
-        """Take the node off the network, with all it has. Twice is harmless."""
+        """Take the node off the network, with all its entities. Idempotent."""
         inner = self._graphflow
         if self.handle.is_destroyed:
             return
@@ -466,7 +466,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
 
 class _Mark:
-    """Says that an entity has something to do, once there is the entity; called by whom the node's bell wakes."""
+    """Signals an entity's work to the node's bell, as soon as the entity exists."""
 
     def __init__(self, bell: NodeBell) -> None:
         self._bell, self.entity = bell, None  # type: Any, Any

@@ -1,4 +1,4 @@
-"""Parameters, and their values as messages."""
+"""Parameters, and the conversion of their values to and from messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 PARAMETER_SEPARATOR_STRING = "."
-AllowableParameterValue = Any
+AllowableParameterValue = object
 
 _ARRAYS = {bool: "BOOL_ARRAY", int: "INTEGER_ARRAY", float: "DOUBLE_ARRAY", str: "STRING_ARRAY", bytes: "BYTE_ARRAY"}
 _CODES = {"b": "INTEGER_ARRAY", "q": "INTEGER_ARRAY", "i": "INTEGER_ARRAY", "l": "INTEGER_ARRAY", "d": "DOUBLE_ARRAY"}
@@ -34,7 +34,7 @@ class Parameter(Generic[T]):
         type_: None for the type of the value.
 
     Raises:
-        TypeError: That is no type.
+        TypeError: `type_` is not a parameter type.
         ValueError: The value is not of the type.
     """
 
@@ -53,8 +53,8 @@ class Parameter(Generic[T]):
         STRING_ARRAY = 9
 
         @classmethod
-        def from_parameter_value(cls, parameter_value: Any) -> Parameter.Type:
-            """The type of a value. Raises TypeError for a value that no parameter can have."""
+        def from_parameter_value(cls, parameter_value: object) -> Parameter.Type:
+            """Return the type of a value. Raises TypeError for a value that no parameter can have."""
             if parameter_value is None:
                 return cls.NOT_SET
             for kind, name in ((bool, "BOOL"), (int, "INTEGER"), (float, "DOUBLE"), (str, "STRING")):
@@ -75,7 +75,7 @@ class Parameter(Generic[T]):
                 raise TypeError(f"The given value is not a list of one of the allowed types '{parameter_value}'.")
             raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
 
-        def check(self, parameter_value: Any) -> bool:
+        def check(self, parameter_value: object) -> bool:
             """Whether a value is of the type."""
             match self.name:
                 case "NOT_SET":
@@ -106,7 +106,7 @@ class Parameter(Generic[T]):
 
     @classmethod
     def from_parameter_msg(cls, param_msg: ParameterMessage) -> Parameter[Any]:
-        """The parameter that a message holds."""
+        """Convert a message to a parameter."""
         type_ = Parameter.Type(value=param_msg.value.type)
         return cls(param_msg.name, type_, parameter_value_to_python(param_msg.value))
 
@@ -126,7 +126,7 @@ class Parameter(Generic[T]):
         return f"Parameter(name={self._name!r}, type={self._type_}, value={self._value!r})"
 
     def get_parameter_value(self) -> ParameterValue:
-        """The value as rcl_interfaces/msg/ParameterValue."""
+        """Return the value as rcl_interfaces/msg/ParameterValue."""
         message = self._message()
         check(self, message)
         return message
@@ -142,18 +142,18 @@ class Parameter(Generic[T]):
         return ParameterValue(**{"type": self._type_.value, FIELDS[self._type_.value]: value})
 
     def to_parameter_msg(self) -> ParameterMessage:
-        """The parameter as rcl_interfaces/msg/Parameter."""
+        """Return the parameter as rcl_interfaces/msg/Parameter."""
         from rcl_interfaces.msg import Parameter as ParameterMessage
 
         return ParameterMessage(name=self.name, value=self.get_parameter_value())
 
 
-def _items(value: Any) -> Iterable[Any]:
+def _items(value: Any) -> Iterable[object]:
     return value if isinstance(value, (list, tuple)) else ()
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """What a text reads as, as a message."""
+    """Parse a text as YAML to a message."""
     try:
         value = parse_value(string_value)
     except GraphflowError:
@@ -167,7 +167,7 @@ def get_parameter_value(string_value: str) -> ParameterValue:
 
 
 def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
-    """The value that a message holds: a list for an array. Raises RuntimeError for a type that there is not."""
+    """Return a message's value, arrays as lists. Raises RuntimeError for an unknown type."""
     if not 0 <= parameter_value.type < len(FIELDS):
         raise RuntimeError(f"unexpected parameter type {parameter_value.type}")
     if not parameter_value.type:
@@ -182,16 +182,16 @@ def parameter_dict_from_yaml_file(
     target_nodes: Sequence[str] | None = None,
     namespace: str = "",
 ) -> dict[str, ParameterMessage]:
-    """The parameters of a file by their names, as messages.
+    """Return the parameters of a file as messages, by name.
 
     Args:
-        use_wildcard: Whether sections for all nodes count.
-        target_nodes: The full names of the nodes that are meant; None for all.
-        namespace: What the names begin with.
+        use_wildcard: Whether to include sections for all nodes.
+        target_nodes: The full names of the nodes; None for all.
+        namespace: The prefix of the names.
 
     Raises:
         FileNotFoundError: There is no such file.
-        RuntimeError: The file has nothing for these nodes, or cannot be read.
+        RuntimeError: The file has no parameters for these nodes, or cannot be parsed.
     """
     if not Path(parameter_file).is_file():
         raise FileNotFoundError(f"there is no file {parameter_file}")

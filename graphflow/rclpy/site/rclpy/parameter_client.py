@@ -1,4 +1,4 @@
-"""The parameters of other nodes."""
+"""Access to the parameters of other nodes."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from rclpy.qos_overriding_options import QoSOverridingOptions
     from rclpy.subscription import Subscription
 
-Callback = Callable[[Any], Any] | None
+Callback = Callable[..., object] | None
 
 
 class AsyncParameterClient:
-    """A client of the parameter services of a node; each call returns a future of the service's response.
+    """A client of a node's parameter services; each call returns a future of the service's response.
 
     Args:
-        remote_node_name: The node's full name, or one relative to this node's namespace.
+        remote_node_name: The node's name, absolute or relative to this node's namespace.
     """
 
     def __init__(
@@ -51,11 +51,11 @@ class AsyncParameterClient:
         self._clients = (self._get, self._list, self._set, self._types, self._describe, self._set_all)
 
     def services_are_ready(self) -> bool:
-        """Whether the node is there, with all its services."""
+        """Whether the node is available, with all its parameter services."""
         return all(client.service_is_ready() for client in self._clients)
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Block until it is, at most `timeout_sec` seconds; whether it is."""
+        """Block until the services are available, at most `timeout_sec` seconds; return whether they are."""
         life, wake = self.node.context.life, Wake()
         life.on_end(wake)
         for client in self._clients:
@@ -79,7 +79,7 @@ class AsyncParameterClient:
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Callback = None
     ) -> Future[Any]:
-        """The names below prefixes, at most `depth` levels."""
+        """List the names below prefixes, at most `depth` levels."""
         request = self._list.srv_type.Request(prefixes=prefixes or [], depth=depth or 0)
         return self._call(self._list, request, callback)
 
@@ -97,26 +97,26 @@ class AsyncParameterClient:
         return self._call(self._types, self._types.srv_type.Request(names=names), callback)
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Callback = None) -> Future[Any]:
-        """Set parameters, all or none."""
+        """Set all parameters or none."""
         return self._call(self._set_all, self._set_all.srv_type.Request(parameters=_messages(parameters)), callback)
 
     def delete_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
-        """Delete parameters; only those with dynamic typing can be."""
+        """Delete parameters; only those with dynamic typing can be deleted."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
         self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None
     ) -> Future[Any]:
-        """Set what a file has for the node. Errors as for `parameter_dict_from_yaml_file`."""
+        """Set a file's parameters for the node. Errors as for `parameter_dict_from_yaml_file`."""
         return self.set_parameters(self._of_file(parameter_file, use_wildcard), callback)
 
     def load_parameter_file_atomically(
         self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None
     ) -> Future[Any]:
-        """Set what a file has for the node, all or none."""
+        """Set all of a file's parameters for the node, or none."""
         return self.set_parameters_atomically(self._of_file(parameter_file, use_wildcard), callback)
 
-    def _of_file(self, file: str, use_wildcard: bool) -> list[Any]:
+    def _of_file(self, file: str, use_wildcard: bool) -> list[object]:
         return list(parameter_dict_from_yaml_file(file, use_wildcard).values())
 
     def on_parameter_event(
@@ -129,7 +129,7 @@ class AsyncParameterClient:
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription:
-        """Have `callback` called with each change of parameters in the graph."""
+        """Call `callback` with each change of parameters in the graph."""
         made: Subscription = on_parameter_event(
             self.node,
             callback,
@@ -143,13 +143,13 @@ class AsyncParameterClient:
 
 
 def on_parameter_event(node: Any, callback: Callable[..., Any], qos_profile: QoSProfile, **options: Any) -> Any:
-    """A subscription of /parameter_events."""
+    """Subscribe to /parameter_events."""
     from rcl_interfaces.msg import ParameterEvent
 
     return node.create_subscription(ParameterEvent, "/parameter_events", callback, qos_profile, **options)
 
 
-def _messages(parameters: Sequence[Any]) -> list[Any]:
+def _messages(parameters: Sequence[Any]) -> list[object]:
     return [p.to_parameter_msg() if isinstance(p, Parameter) else p for p in parameters]
 
 

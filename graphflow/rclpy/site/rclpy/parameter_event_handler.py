@@ -39,7 +39,7 @@ class _Callbacks:
         self._lock = threading.RLock()
 
     def event_callback(self, event: ParameterEvent) -> None:
-        """Call all that an event is for, the newest first."""
+        """Call the callbacks that an event concerns, newest first."""
         with self._lock:
             for (parameter_name, node_name), handles in list(self.parameter_callbacks.items()):
                 parameter = ParameterEventHandler.get_parameter_from_event(event, parameter_name, node_name)
@@ -75,12 +75,12 @@ class ParameterEventHandler:
         )
 
     def destroy(self) -> None:
-        """Call back no more."""
+        """Stop calling back."""
         self.node.destroy_subscription(self.parameter_event_subscription)
 
     @staticmethod
     def get_parameter_from_event(event: ParameterEvent, parameter_name: str, node_name: str) -> Any:
-        """The message of a parameter that an event says is new or changed; None if it does not."""
+        """Return an event's message of a new or changed parameter; None if it has none."""
         if event.node != node_name:
             return None
         found = (p for p in ParameterEventHandler.get_parameters_from_event(event) if p.name == parameter_name)
@@ -88,7 +88,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: ParameterEvent) -> list[Any]:
-        """The messages of all parameters that an event says are new or changed."""
+        """Return an event's messages of all new or changed parameters."""
         return [*event.new_parameters, *event.changed_parameters]
 
     def add_parameter_callback(
@@ -102,7 +102,7 @@ class ParameterEventHandler:
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Call it no more. Raises RuntimeError if it was not called before."""
+        """Remove such a callback. Raises RuntimeError if it was not added."""
         key = (handle.parameter_name, handle.node_name)
         with self._callbacks._lock:
             handles = self._callbacks.parameter_callbacks.get(key, [])
@@ -120,14 +120,14 @@ class ParameterEventHandler:
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Call it no more. Raises RuntimeError if it was not called before."""
+        """Remove such a callback. Raises RuntimeError if it was not added."""
         with self._callbacks._lock:
             if handle not in self._callbacks.event_callbacks:
                 raise RuntimeError("Callback doesn't exist")
             self._callbacks.event_callbacks.remove(handle)
 
     def _resolve_path(self, node_path: str | None = None) -> str:
-        """The full name of a node, by default of this one."""
+        """Return the full name of a node, by default of this one."""
         if not node_path:
             return str(self.node.get_fully_qualified_name())
         if node_path.startswith("/"):

@@ -21,7 +21,7 @@ _FOREVER = Duration(seconds=-1)
 
 
 class Publisher:
-    """A publisher. Make it by `Node.create_publisher`."""
+    """A publisher. Create it with `Node.create_publisher`."""
 
     def __init__(
         self,
@@ -41,10 +41,10 @@ class Publisher:
         self.event_handlers = event_handlers
 
     def publish(self, msg: Any) -> None:
-        """Send a message, or the CDR of one as bytes. Never waits.
+        """Publish a message, or the CDR bytes of one. Never waits.
 
         Raises:
-            TypeError: It is no message of the publisher's type.
+            TypeError: Not a message of the publisher's type.
             RCLError: The context was shut down.
             InvalidHandle: The publisher was destroyed.
         """
@@ -60,7 +60,7 @@ class Publisher:
             self._endpoint.put(payload)
 
     def get_subscription_count(self) -> int:
-        """The number of subscriptions that get its messages."""
+        """Return the number of matched subscriptions."""
         with self._handle:
             return len(self._endpoint.matched)
 
@@ -75,18 +75,18 @@ class Publisher:
         return self._handle
 
     def destroy(self) -> None:
-        """Withdraw it. `Node.destroy_publisher` is what to call."""
+        """Withdraw the publisher. Call `Node.destroy_publisher` instead."""
         for handler in self.event_handlers:
             handler.destroy()
         self._handle.destroy_when_not_in_use()
 
     def assert_liveliness(self) -> None:
-        """Show that it is alive, for MANUAL_BY_TOPIC."""
+        """Assert liveliness, for MANUAL_BY_TOPIC."""
         with self._handle:
             self._life.on_loop(self._endpoint.assert_liveliness)
 
     def wait_for_all_acked(self, timeout: Duration = _FOREVER) -> bool:
-        """Whether all has arrived: always, since the wire has no acknowledgements."""
+        """Return True: the wire has no acknowledgements to wait for."""
         with self._handle:
             return True
 

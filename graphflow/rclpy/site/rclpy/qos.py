@@ -1,4 +1,4 @@
-"""Quality of service: what a publisher offers, and what a subscription asks for."""
+"""Quality of service: the profile that a publisher offers, and that a subscription requests."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _POLICIES = (
 
 
 class QoSPolicyKind(IntEnum):
-    """The policies, in numbers."""
+    """The policies, by number."""
 
     INVALID = 1
     DURABILITY = 2
@@ -33,28 +33,28 @@ class QoSPolicyKind(IntEnum):
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """The name of a policy."""
+    """Return the name of a policy."""
     return QoSPolicyKind(policy_kind).name
 
 
 class InvalidQoSProfileException(Exception):
-    """A profile is not complete."""
+    """A profile is incomplete."""
 
     def __init__(self, *args: object) -> None:
         super().__init__("Invalid QoSProfile", *args)
 
 
 class QoSPolicyEnum(IntEnum):
-    """The values of a policy, which have short names too."""
+    """The base class of policy enumerations, whose values also have short names."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """The short names: `reliable`, `best_effort`."""
+        """Return the short names: `reliable`, `best_effort`."""
         return [name.lower() for name in cls.__members__ if not name.startswith("RMW")]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> Self:
-        """The value of a short name. Raises KeyError if there is none."""
+        """Return the value of a short name. Raises KeyError if there is none."""
         return cls[name.upper()]
 
     @property
@@ -63,7 +63,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """Which messages are kept."""
+    """The messages that are kept."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -72,7 +72,7 @@ class HistoryPolicy(QoSPolicyEnum):
 
 
 class ReliabilityPolicy(QoSPolicyEnum):
-    """Whether what is lost is sent again."""
+    """Whether lost messages are sent again."""
 
     SYSTEM_DEFAULT = 0
     RELIABLE = 1
@@ -82,7 +82,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether those who come later get what was sent before."""
+    """Whether late subscriptions receive earlier messages."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -102,7 +102,7 @@ class LivelinessPolicy(QoSPolicyEnum):
 
 
 class _FormerName:
-    """A value by the name that it had in ROS 2's first versions; it is warned of."""
+    """A value under its name from ROS 2's first versions; using it warns."""
 
     def __init__(self, former: str, name: str) -> None:
         self._former, self._name = former, name
@@ -128,7 +128,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 def _wanted(name: str, kind: type, value: object) -> str:
-    """Say what to write in place of a value of the wrong type."""
+    """Show what to write instead of a value of the wrong type."""
     way = f"{kind.__name__}(seconds={value})" if kind is Duration else "10" if kind is int else ""
     if issubclass(kind, Enum):
         members = [member.name for member in kind]
@@ -137,14 +137,14 @@ def _wanted(name: str, kind: type, value: object) -> str:
 
 
 class QoSProfile:
-    """The policies of one endpoint.
+    """The QoS policies of one endpoint.
 
     Args:
         kwargs: Policies by name; with KEEP_LAST, or no `history`, a `depth` must be given.
 
     Raises:
         InvalidQoSProfileException: Neither history nor depth is given, or KEEP_LAST without a depth.
-        AssertionError: A value is of the wrong type, or a word is no policy.
+        AssertionError: A value is of the wrong type, or a keyword is not a policy.
     """
 
     __slots__ = tuple(f"_{name}" for name in _POLICIES)
@@ -268,11 +268,11 @@ class QoSProfile:
         self._avoid_ros_namespace_conventions = value
 
     def to_dict(self) -> dict[str, Any]:
-        """The policies by name."""
+        """Return the policies by name."""
         return {name: getattr(self, name) for name in _POLICIES}
 
     def get_c_qos_profile(self) -> QoSProfile:
-        """rclpy's, for its own use."""
+        """Return the profile itself; rclpy's internal handle has no equivalent."""
         return self
 
     def __eq__(self, other: object) -> bool:
@@ -290,7 +290,7 @@ DeadlineBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)
 LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)
 
 
-def _profile(depth: int, **policies: Any) -> QoSProfile:
+def _profile(depth: int, **policies: object) -> QoSProfile:
     return QoSProfile(history=policies.pop("history", HistoryPolicy.KEEP_LAST), depth=depth, **policies)
 
 
@@ -325,7 +325,7 @@ qos_profile_action_status_default = _profile(1, durability=DurabilityPolicy.TRAN
 
 
 class QoSPresetProfiles(Enum):
-    """The profiles that have names."""
+    """The predefined profiles."""
 
     UNKNOWN = qos_profile_unknown
     DEFAULT = qos_profile_default
@@ -339,17 +339,17 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """The names in lower case."""
+        """Return the names in lower case."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        """The profile of a name. Raises KeyError if there is none."""
+        """Return the profile of a name. Raises KeyError if there is none."""
         return cls[name.upper()].value
 
 
 class QoSCompatibility(IntEnum):
-    """Whether a publisher and a subscription would find each other."""
+    """Whether a publisher and a subscription would match."""
 
     OK = 0
     WARNING = 1
@@ -360,7 +360,7 @@ _UNDECIDED = ("SYSTEM_DEFAULT", "UNKNOWN", "BEST_AVAILABLE")
 
 
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
-    """Whether a publisher's messages would reach a subscription under DDS, and why not."""
+    """Check whether a publisher's messages would reach a subscription under DDS, and give the reason if not."""
     errors, warned = [], []
 
     def compare(what: str, offered: Any, wanted: Any, weak: str, strong: str) -> None:
@@ -386,12 +386,12 @@ def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile
 
 
 def to_graphflow(profile: QoSProfile) -> Qos:
-    """A profile as graphflow has it. What is left to the system, or unknown, is the default."""
+    """Convert a profile to graphflow's. Values that are system defaults, or unknown, become graphflow's default."""
 
     def span(duration: Duration) -> int:
         return INFINITE_NS if duration.nanoseconds in (0, _BEST_AVAILABLE_NS) else duration.nanoseconds
 
-    def chosen(kind: type[Any], value: IntEnum, otherwise: Any) -> Any:
+    def chosen(kind: type[Any], value: IntEnum, otherwise: object) -> Any:
         return kind(value) if value in kind._value2member_map_ else otherwise
 
     return Qos(
@@ -407,7 +407,7 @@ def to_graphflow(profile: QoSProfile) -> Qos:
 
 
 def from_graphflow(qos: Qos) -> QoSProfile:
-    """A profile as it was announced."""
+    """Convert an announced profile of graphflow's."""
 
     def span(nanoseconds: int) -> Duration:
         return Duration(nanoseconds=nanoseconds)
@@ -425,7 +425,7 @@ def from_graphflow(qos: Qos) -> QoSProfile:
 
 
 def validated(qos_profile: QoSProfile | int) -> QoSProfile:
-    """A profile, or the default one with a depth. Raises ValueError for a negative depth, TypeError for all else."""
+    """Return the profile, or the default one with a depth. Raises ValueError for a negative depth, else TypeError."""
     if isinstance(qos_profile, QoSProfile):
         return qos_profile
     if isinstance(qos_profile, int):

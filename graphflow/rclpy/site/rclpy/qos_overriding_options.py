@@ -1,4 +1,4 @@
-"""Policies that a node's parameters may override."""
+"""QoS policies that a node's parameters may override."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from rclpy.impl.reexports import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSPolicyEnum, QoSPolicyKind, QoSProfile
 
-QosCallbackType = Callable[[QoSProfile], Any]
+QosCallbackType = Callable[[QoSProfile], object]
 
 
 class InvalidQosOverridesError(Exception):
-    """The callback has refused the profile."""
+    """The callback has rejected the profile."""
 
 
 class QoSOverridingOptions:
-    """Which policies parameters may override.
+    """The policies that parameters may override.
 
     Args:
-        callback: Called with the profile that results; it may refuse it.
-        entity_id: Tells endpoints of one topic apart.
+        callback: Called with the resulting profile, which it may reject.
+        entity_id: Distinguishes endpoints of one topic.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class QoSOverridingOptions:
     def with_default_policies(
         cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """History, depth and reliability."""
+        """Return the options for history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
@@ -68,13 +68,13 @@ _ALLOWED = {"publisher": _FOR_SUBSCRIPTIONS | {QoSPolicyKind.LIFESPAN}, "subscri
 def _declare_qos_parameters(
     entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
 ) -> None:
-    """Declare what may override the policies of `qos`, and change it accordingly.
+    """Declare the parameters that override policies of `qos`, and change it accordingly.
 
     Args:
         entity_type: `Publisher` or `Subscription`.
 
     Raises:
-        InvalidQosOverridesError: The callback has refused the result.
+        InvalidQosOverridesError: The callback has rejected the result.
     """
     from rcl_interfaces.msg import ParameterDescriptor
 
@@ -99,8 +99,8 @@ def _declare_qos_parameters(
             )
 
 
-def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> Any:
-    """A policy as the value of a parameter."""
+def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> object:
+    """Return a policy as the value of a parameter."""
     value = getattr(qos, policy.name.lower())
     if isinstance(value, QoSPolicyEnum):
         return value.name.lower()

@@ -1,4 +1,4 @@
-"""Servers of services."""
+"""Service servers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RequestHeader(NamedTuple):
-    """Whose request it is, by which it is answered."""
+    """The sender of a request, needed to answer it."""
 
     asked: Asked
 
@@ -37,7 +37,7 @@ class RequestHeader(NamedTuple):
 
 
 class Service(ServiceEnd):
-    """A server of a service. Make it by `Node.create_service`."""
+    """A service server. Create it with `Node.create_service`."""
 
     turn = 4
     _endpoint: ThreadedService
@@ -60,7 +60,7 @@ class Service(ServiceEnd):
         handle.__dict__["service_take_request"] = self._take_request
 
     def send_response(self, response: Any, header: RequestHeader) -> None:
-        """Answer a request. Raises TypeError if that is no response of the service's."""
+        """Answer a request. Raises TypeError if the response is not of the service's type."""
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
         with self._handle:
@@ -71,7 +71,7 @@ class Service(ServiceEnd):
     def has_work(self) -> bool:
         return bool(self._endpoint.inbox.items)
 
-    def take_work(self) -> Callable[[], Any] | None:
+    def take_work(self) -> Callable[[], object] | None:
         asked = self._endpoint.take()
         if asked is None:
             return None
@@ -101,7 +101,7 @@ class Service(ServiceEnd):
             raise TypeError(must_return(self.callback, "its response", response))
         self.send_response(response, RequestHeader(asked))
 
-    def _take_request(self, request_type: Any) -> tuple[Any, RequestHeader | None]:
+    def _take_request(self, request_type: object) -> tuple[object, RequestHeader | None]:
         asked = self._endpoint.take()
         return (None, None) if asked is None else (classes.decode(request_type, asked.payload), RequestHeader(asked))
 

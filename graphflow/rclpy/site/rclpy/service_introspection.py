@@ -1,4 +1,4 @@
-"""What is published of the calls of a service."""
+"""Service introspection: the part of a service's calls that is published."""
 
 from rclpy._rclpy_pybind11 import ServiceIntrospectionState
 

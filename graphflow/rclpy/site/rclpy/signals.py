@@ -1,4 +1,4 @@
-"""What SIGINT and SIGTERM do while rclpy is in use: they end its contexts, and then what they did before."""
+"""Handlers for SIGINT and SIGTERM while rclpy is in use: they shut contexts down, then do what they did before."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _watched: WeakSet[Context] = WeakSet()
 _former: dict[int, Any] = {}
 _options = SignalHandlerOptions.NO
 PUT_OFF = 0.002
-"""Seconds after which a signal that came in the middle of logging is handled."""
+"""Seconds by which a signal that interrupts logging is postponed."""
 PUT_OFF_BOUND = 50
-"""How often that is done again: logging itself may block."""
+"""The number of postponements, at most: logging itself may block."""
 _put_off: dict[int, int] = {}
 _NUMBERS = {
     SignalHandlerOptions.NO: (),
@@ -39,12 +39,12 @@ _NUMBERS = {
 
 
 def watch(context: Context) -> None:
-    """End a context when a signal comes."""
+    """End a context when a signal arrives."""
     _watched.add(context)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Handle these signals. Outside the main thread, where Python has none, nothing is done."""
+    """Install handlers for signals. Outside the main thread, where Python allows none, do nothing."""
     global _options
     if threading.current_thread() is not threading.main_thread():
         return
@@ -55,12 +55,12 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """The signals that are handled now."""
+    """Return the signals that are handled now."""
     return _options
 
 
 def uninstall_signal_handlers() -> None:
-    """Handle signals no more."""
+    """Restore the former handlers."""
     global _options
     _options = SignalHandlerOptions.NO
     if threading.current_thread() is not threading.main_thread():

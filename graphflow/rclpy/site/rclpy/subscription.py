@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class MessageInfo(TypedDict):
-    """What came beside a message: times in nanoseconds, and the publisher's number for it."""
+    """The metadata of a message: times in nanoseconds, and the publisher's sequence number."""
 
     source_timestamp: int
     received_timestamp: int
@@ -31,12 +31,12 @@ class MessageInfo(TypedDict):
 
 
 class Subscription:
-    """A subscription. Make it by `Node.create_subscription`."""
+    """A subscription. Create it with `Node.create_subscription`."""
 
     turn = 1
 
     class CallbackType(Enum):
-        """What a callback takes."""
+        """The arguments that a callback takes."""
 
         MessageOnly = 0
         WithMessageInfo = 1
@@ -60,12 +60,12 @@ class Subscription:
         self.callback_group, self.raw, self.event_handlers = callback_group, raw, event_handlers
         self._callback: Callable[..., Any] = callback
         self._callback_type = self.CallbackType.MessageOnly
-        self._run: Callable[[Taken], Any] = self._do
+        self._run: Callable[[Taken], object] = self._do
         self.callback = callback
         handle.__dict__["take_message"] = self._take_message
 
     def get_publisher_count(self) -> int:
-        """The number of publishers whose messages arrive."""
+        """Return the number of matched publishers."""
         with self._handle:
             return len(self._endpoint.matched)
 
@@ -81,7 +81,7 @@ class Subscription:
 
     @property
     def callback(self) -> Callable[..., Any]:
-        """What is called with each message: with one argument, or with the `MessageInfo` too."""
+        """The function that is called with each message, and optionally with its `MessageInfo`."""
         return self._callback
 
     @callback.setter
@@ -93,12 +93,12 @@ class Subscription:
     def has_work(self) -> bool:
         return self._endpoint.waiting > 0
 
-    def take_work(self) -> Callable[[], Any] | None:
+    def take_work(self) -> Callable[[], object] | None:
         taken = self._endpoint.take()
         return None if taken is None else partial(self._run, taken)
 
     def _arguments(self, taken: Taken) -> tuple[Any, ...]:
-        """What the callback is called with; nothing if what came is no message of the type."""
+        """Return the callback's arguments; empty if the arrival is not a message of the type."""
         if self.raw:
             message: Any = taken.payload
         else:
@@ -121,14 +121,14 @@ class Subscription:
         if arguments:
             await self._callback(*arguments)
 
-    def _take_message(self, msg_type: Any, raw: bool) -> tuple[Any, MessageInfo] | None:
+    def _take_message(self, msg_type: Any, raw: bool) -> tuple[object, MessageInfo] | None:
         taken = self._endpoint.take()
         if taken is None:
             return None
         return (taken.payload if raw else classes.decode(msg_type, taken.payload)), info_of(taken)
 
     def destroy(self) -> None:
-        """Withdraw it. `Node.destroy_subscription` is what to call."""
+        """Withdraw the subscription. Call `Node.destroy_subscription` instead."""
         for handler in self.event_handlers:
             handler.destroy()
         self._handle.destroy_when_not_in_use()
@@ -141,7 +141,7 @@ class Subscription:
 
 
 def info_of(taken: Taken) -> MessageInfo:
-    """What came beside a message."""
+    """Return the metadata of a message."""
     return MessageInfo(
         source_timestamp=taken.info.source_ns,
         received_timestamp=time.time_ns(),

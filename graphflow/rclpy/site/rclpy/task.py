@@ -1,4 +1,4 @@
-"""Results that come later, and the tasks of an executor that bring them about."""
+"""Futures, and the executor's tasks that complete them."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ T = TypeVar("T")
 
 
 class Runs(Protocol):
-    """What runs tasks: an executor."""
+    """A runner of tasks: an executor."""
 
     def create_task(self, callback: Any, *args: Any) -> Any: ...
 
 
 class _Stepping(threading.local):
-    """The task that the thread is stepping."""
+    """The task that the current thread is stepping."""
 
     task: Task[Any] | None = None
 
@@ -32,17 +32,17 @@ _stepping = _Stepping()
 
 
 class Future(Generic[T]):
-    """A result that comes later. It may be awaited in an executor's tasks and callbacks, and in asyncio's tasks.
+    """A result that will be set later. Awaitable in an executor's tasks and callbacks, and in asyncio's tasks.
 
     Args:
-        executor: Runs the callbacks when it is done; without one they run where it is set.
+        executor: Runs the done callbacks; without one they run in the thread that completes the future.
     """
 
     def __init__(self, *, executor: Runs | None = None) -> None:
         self._result: T | None = None
         self._exception: BaseException | None = None
         self._is_done = self._is_cancelled = self._was_raised = False
-        self._callbacks: list[Callable[[Any], Any]] = []
+        self._callbacks: list[Callable[..., object]] = []
         self._lock = threading.RLock()
         self._runs: Callable[[], Runs | None] = _none
         self._set_executor(executor)
@@ -53,7 +53,7 @@ class Future(Generic[T]):
             warnings.warn(f"The following exception was never retrieved: {error}", stacklevel=1)
 
     def _is_set_here(self) -> None:
-        """Let what is called when it is done be tasks of the executor whose work sets it."""
+        """Run the done callbacks as tasks of the executor whose work completes the future."""
         task = _stepping.task
         if task is not None:
             self._set_executor(task._runs())
@@ -61,7 +61,7 @@ class Future(Generic[T]):
     def _set_executor(self, executor: Runs | None) -> None:
         self._runs = _none if executor is None else weakref.ref(executor)
 
-    def __await__(self) -> Generator[Any, None, T]:
+    def __await__(self) -> Generator[object, None, T]:
         if not (self._is_done or self._is_cancelled) and _stepping.task is None and asyncio._get_running_loop():
             yield from self._of_asyncio().__await__()
         while not (self._is_done or self._is_cancelled):
@@ -69,7 +69,7 @@ class Future(Generic[T]):
         return self.result()  # type: ignore[return-value]
 
     def _of_asyncio(self) -> asyncio.Future[None]:
-        """A future of the running event loop that is done when this one is."""
+        """Return a future of the running event loop that is done when this one is."""
         loop = asyncio.get_running_loop()
         twin: asyncio.Future[None] = loop.create_future()
 
@@ -81,7 +81,7 @@ class Future(Generic[T]):
         return twin
 
     def _when_done(self, callback: Callable[[], Any]) -> None:
-        """Call back, at once and in whatever thread, when it is done or cancelled."""
+        """Register an immediate callback, run in whichever thread completes or cancels the future."""
         wanted = _AtOnce(callback)
         with self._lock:
             if not (self._is_done or self._is_cancelled):
@@ -91,7 +91,7 @@ class Future(Generic[T]):
         callback()
 
     def cancel(self) -> None:
-        """Nobody waits any more; nothing is set afterwards. Without effect when it is done."""
+        """Cancel the future; a result set later is ignored. No effect when it is done."""
         with self._lock:
             if self._is_done:
                 return
@@ -105,7 +105,7 @@ class Future(Generic[T]):
         return self._is_done
 
     def result(self) -> T | None:
-        """The result; None as long as there is none. Raises the exception, if that was set."""
+        """Return the result; None until it is set. Raises the exception, if that was set."""
         if not (self._is_done or self._is_cancelled):
             early_results.check(caller(1))
         error = self.exception()
@@ -114,7 +114,7 @@ class Future(Generic[T]):
         return self._result
 
     def exception(self) -> BaseException | None:
-        """The exception that was set, if one was."""
+        """Return the exception, if one was set."""
         self._was_raised = True
         return self._exception
 
@@ -147,7 +147,7 @@ class Future(Generic[T]):
                     warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
     def add_done_callback(self, callback: Callable[[Any], Any]) -> None:
-        """Call `callback(future)` when it is done: as a task of the executor, else in the thread that sets it."""
+        """Call `callback(future)` when done: as a task of the executor, or else in the completing thread."""
         with self._lock:
             if not (self._is_done or self._is_cancelled):
                 self._callbacks.append(callback)
@@ -160,7 +160,7 @@ class Future(Generic[T]):
 
 
 class _AtOnce:
-    """A callback that is no user's, and does not wait for an executor."""
+    """A callback that is not a user's and runs without an executor."""
 
     def __init__(self, callback: Callable[[], Any]) -> None:
         self._callback = callback
@@ -176,11 +176,11 @@ class _AtOnce:
 
 
 def _none() -> None:
-    """No executor."""
+    """Return no executor."""
 
 
 class Task(Future[T]):
-    """A function or coroutine that an executor runs, a step each time that it is called.
+    """A function or coroutine that an executor runs, one step per call.
 
     Args:
         handler: A function, a coroutine function, or a coroutine.
@@ -190,7 +190,7 @@ class Task(Future[T]):
         self,
         handler: Any,
         args: tuple[Any, ...] | None = None,
-        kwargs: dict[str, Any] | None = None,
+        kwargs: dict[str, object] | None = None,
         executor: Runs | None = None,
     ) -> None:
         super().__init__(executor=executor)
@@ -205,10 +205,10 @@ class Task(Future[T]):
             self._handler = handler
         self._step_lock = threading.Lock()
         self._awaits: Future[Any] | None = None
-        """What the coroutine waits for, where that is known."""
+        """The future that the coroutine awaits, if known."""
 
     def __call__(self) -> None:
-        """Run the function, or a step of the coroutine. Without effect when it is done, or another thread does."""
+        """Run the function, or one step of the coroutine. No effect when done, or while another thread runs it."""
         if self._is_done or self._is_cancelled or not self._step_lock.acquire(blocking=False):
             return
         try:
@@ -219,10 +219,10 @@ class Task(Future[T]):
             self._stepped()
 
     def _stepped(self) -> None:
-        """A step was made, and another thread may make the next."""
+        """Note the end of a step, so that another thread may run the next."""
 
     def executing(self) -> bool:
-        """Whether some thread is running it right now."""
+        """Whether a thread is running it right now."""
         return self._step_lock.locked()
 
     def _step(self) -> None:
@@ -251,7 +251,7 @@ class Task(Future[T]):
             _stepping.task = around
 
     def _suspends(self, result: Any) -> bool:
-        """Whether what the function has returned is to be stepped on."""
+        """Whether a function's result is to be stepped."""
         return False
 
     def _end(self, result: Any, error: BaseException | None) -> None:

@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 class Time:
-    """A point on a clock of some type, in whole nanoseconds.
+    """A point in time on a clock of some type, in whole nanoseconds.
 
     Args:
         seconds: Added to `nanoseconds`.
 
     Raises:
         ValueError: A number is negative.
-        OverflowError: It does not fit 64 bits.
-        TypeError: That is no clock type.
+        OverflowError: It does not fit in 64 bits.
+        TypeError: Not a clock type.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Time:
         return self._clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Whole seconds, and the nanoseconds above them."""
+        """Return whole seconds, and the remaining nanoseconds."""
         return divmod(self._nanoseconds, S_TO_NS)
 
     def __repr__(self) -> str:
@@ -110,7 +110,7 @@ class Time:
         return other <= self if isinstance(other, Time) else NotImplemented
 
     def to_msg(self) -> TimeMessage:
-        """The point as builtin_interfaces/msg/Time."""
+        """Convert to builtin_interfaces/msg/Time."""
         from builtin_interfaces.msg import Time as TimeMessage
 
         sec, nanosec = self.seconds_nanoseconds()
@@ -118,7 +118,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: TimeMessage, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """The point of a builtin_interfaces/msg/Time. Raises TypeError for anything else."""
+        """Convert a builtin_interfaces/msg/Time. Raises TypeError for anything else."""
         if not hasattr(msg, "nanosec"):
             raise TypeError("Must pass a builtin_interfaces.msg.Time object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)

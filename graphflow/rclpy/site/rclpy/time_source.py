@@ -1,6 +1,6 @@
-"""Simulated time: what comes on /clock sets the clocks of a node, while its parameter `use_sim_time` is true.
+"""Simulated time: messages on /clock set a node's clocks while its parameter `use_sim_time` is true.
 
-/clock is heard on a thread of its own, so that time goes on while a callback sleeps by it.
+/clock is received on a thread of its own, so that time goes on while a callback sleeps by it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class TimeSource:
-    """Sets the clocks that are attached to it."""
+    """Sets the attached clocks to simulated time."""
 
     def __init__(self, *, node: Any = None) -> None:
         self._clock_sub: _Hearing | None = None
@@ -45,12 +45,12 @@ class TimeSource:
 
     @property
     def last_ns(self) -> int:
-        """graphflow's: the last time that came on /clock; 0 before there is one."""
+        """The last time received on /clock, in nanoseconds; 0 before the first. graphflow's own."""
         return self._last.nanoseconds
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the clocks go by /clock."""
+        """Whether the clocks follow /clock."""
         return self._is_active
 
     @ros_time_is_active.setter
@@ -71,7 +71,7 @@ class TimeSource:
             self._clock_sub = None
 
     def attach_node(self, node: Any) -> None:
-        """Go by a node's parameter `use_sim_time`, which is declared if it is not. Raises TypeError for no node."""
+        """Follow a node's parameter `use_sim_time`, declaring it if necessary. Raises TypeError if it is not a node."""
         if not hasattr(node, "declare_parameter"):
             raise TypeError("Node must be of type rclpy.node.Node")
         if self._node is not None:
@@ -88,7 +88,7 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._set)
 
     def detach_node(self) -> None:
-        """Go by no node any more."""
+        """Stop following the node."""
         if self._clock_sub is not None:
             self._clock_sub.close()
             self._clock_sub = None
@@ -100,7 +100,7 @@ class TimeSource:
         self.ros_time_is_active = False
 
     def attach_clock(self, clock: ROSClock) -> None:
-        """Set this clock too. Raises ValueError for one that does not go by ROS time."""
+        """Attach a clock. Raises ValueError if it is not of ROS time."""
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
         clock.set_ros_time_override(self._last)
@@ -108,7 +108,7 @@ class TimeSource:
         self._clocks.append(clock)
 
     def clock_callback(self, msg: rosgraph_msgs.msg.Clock) -> None:
-        """Set the clocks by a message."""
+        """Set the clocks to a message's time."""
         self._last = Time.from_msg(msg.clock)
         for clock in self._clocks:
             clock.set_ros_time_override(self._last)
@@ -178,7 +178,7 @@ class _Hearing:
 
 
 def _nothing() -> None:
-    """The thread takes all there is."""
+    """Do nothing: the thread takes every message."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""Timers, and the rates that threads keep by them."""
+"""Timers, and the rates at which they pace threads."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class TimerInfo:
-    """When a call was due, and when it came."""
+    """The times at which a call was due, and at which it came."""
 
     def __init__(self, *, expected_call_time: int, actual_call_time: int, clock_type: Any) -> None:
         self.expected_call_time = Time(nanoseconds=max(0, expected_call_time), clock_type=clock_type)
@@ -32,11 +32,11 @@ class TimerInfo:
 
 
 class Timer:
-    """Has an executor call `callback` once a period, by a clock. Missed periods are skipped, and the phase is kept.
+    """Has an executor call `callback` periodically by a clock. Missed periods are skipped; the phase is kept.
 
     Args:
-        callback: Takes nothing, or a `TimerInfo`.
-        autostart: Whether it runs at once, or after its first `reset`.
+        callback: Takes no argument, or a `TimerInfo`.
+        autostart: Whether it starts at once, or at its first `reset`.
 
     Raises:
         RCLError: The period is negative.
@@ -105,12 +105,12 @@ class Timer:
             return self._is_canceled
 
     def cancel(self) -> None:
-        """Be due no more, until `reset`."""
+        """Stop the timer until `reset`."""
         with self._handle:
             self._is_canceled = True
 
     def reset(self) -> None:
-        """Begin a period now."""
+        """Start a new period now."""
         with self._handle, self._lock:
             self._is_canceled = False
             self._last_ns = self._clock.now_ns()
@@ -118,17 +118,17 @@ class Timer:
         self._look_again()
 
     def time_since_last_call(self) -> int:
-        """Nanoseconds since the last call."""
+        """Return the nanoseconds since the last call."""
         with self._handle:
             return self._clock.now_ns() - self._last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Nanoseconds until the next call; negative when it is overdue, None for a canceled timer."""
+        """Return the nanoseconds until the next call; negative if overdue, None for a cancelled timer."""
         with self._handle:
             return None if self._is_canceled else self._next_ns - self._clock.now_ns()
 
     def clock_moved(self) -> None:
-        """Its clock was set: what is due may have changed."""
+        """React to a jump of the clock, which may make the timer due."""
         now_ns = self._clock.now_ns()
         with self._lock:
             if self._next_ns - now_ns > self._period_ns:  # it went back
@@ -140,7 +140,7 @@ class Timer:
             self._bell.wake()
 
     def seconds_left(self) -> float | None:
-        """Seconds until it is due; None if no time of this machine's brings that about."""
+        """Return the seconds until it is due; None if that does not depend on this machine's time."""
         if self._is_canceled or self._handle.is_destroyed or self._clock.is_set_from_outside:
             return None
         return (self._next_ns - self._clock.now_ns()) / 1e9
@@ -148,7 +148,7 @@ class Timer:
     def has_work(self) -> bool:
         return not self._handle.is_destroyed and self.is_ready()
 
-    def take_work(self) -> Callable[[], Any] | None:
+    def take_work(self) -> Callable[[], object] | None:
         """Take the call that is due."""
         with self._lock:
             now_ns = self._clock.now_ns()
@@ -166,7 +166,7 @@ class Timer:
         return self.callback
 
     def destroy(self) -> None:
-        """Be of no more use. `Node.destroy_timer` is what to call."""
+        """End the timer. Call `Node.destroy_timer` instead."""
         self._handle.destroy_when_not_in_use()
 
 
@@ -182,13 +182,13 @@ def _takes_one(callback: Callable[..., Any]) -> bool:
 
 
 class Rate:
-    """Keeps a thread to a rhythm: `sleep` returns once a period. The timer's executor must be spinning meanwhile."""
+    """Paces a thread: `sleep` returns once per period. The timer's executor must be spinning meanwhile."""
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer, self._context = timer, context
         self._sleepers: dict[Wake, None] = {}
         self._has_ticked = False
-        """Whether the timer has called and nobody has slept since: the next sleep is over at once."""
+        """Whether the timer has fired since the last sleep: the next one then returns at once."""
         self._lock = threading.Lock()
         self._is_destroyed = False
         timer.callback = self._tick
@@ -200,13 +200,13 @@ class Rate:
                 sleeper.set()
 
     def destroy(self) -> None:
-        """End all sleeps. `Node.destroy_rate` is what to call."""
+        """End all sleeps. Call `Node.destroy_rate` instead."""
         self._is_destroyed = True
         self._timer.destroy()
         self._tick()
 
     def sleep(self) -> None:
-        """Block until the timer has called, or not at all if it has since the last sleep.
+        """Block until the timer fires; return at once if it has fired since the last sleep.
 
         Raises:
             ROSInterruptException: The context was shut down.
@@ -236,7 +236,7 @@ class Rate:
 
 
 def _nothing() -> None:
-    """Nothing is held."""
+    """Do nothing."""
 
 
 def __getattr__(name: str) -> Any:

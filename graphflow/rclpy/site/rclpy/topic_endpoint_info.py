@@ -1,4 +1,4 @@
-"""What is known of the endpoints of a topic."""
+"""Information on the endpoints of a topic."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def _checked(name: str, kind: type) -> property:
 
 
 class TopicEndpointInfo:
-    """One endpoint of a topic."""
+    """An endpoint of a topic."""
 
     __slots__ = (
         *("_endpoint_gid", "_endpoint_type", "_node_name", "_node_namespace", "_qos_profile", "_topic_type"),
         "_topic_type_hash",
     )
 
-    def __init__(self, **kwargs: Any) -> None:
+    def __init__(self, **kwargs: object) -> None:
         assert all(f"_{key}" in self.__slots__ for key in kwargs), f"Invalid arguments passed to constructor: {kwargs}"
         self.node_name = kwargs.get("node_name", "")
         self.node_namespace = kwargs.get("node_namespace", "")

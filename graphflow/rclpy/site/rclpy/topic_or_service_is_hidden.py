@@ -1,4 +1,4 @@
-"""Names that listings leave out."""
+"""Hidden names, which listings leave out."""
 
 HIDDEN_TOPIC_PREFIX = "_"
 

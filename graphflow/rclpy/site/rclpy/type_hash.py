@@ -1,10 +1,10 @@
-"""Hashes of types."""
+"""Type hashes."""
 
 from __future__ import annotations
 
 
 class TypeHash:
-    """The hash of a type's definition: the version of its making, and 32 bytes."""
+    """The hash of a type's definition: its version, and 32 bytes."""
 
     _TYPE_HASH_SIZE = 32
     __slots__ = ("_value", "_version")

@@ -1,4 +1,4 @@
-"""Whether a class is one of messages or services."""
+"""Checks that a class is a message or service class."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Raises AttributeError for what is no interface class, NoTypeSupportImportedException for one without support."""
+    """Raise AttributeError if it is not an interface class, NoTypeSupportImportedException if it lacks type support."""
     if hasattr(msg_or_srv_type, "SCHEMA") or hasattr(msg_or_srv_type, "NAME"):
         return
     kind = type(msg_or_srv_type)
@@ -33,7 +33,7 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Raises RuntimeError for what is no message class."""
+    """Raise RuntimeError if it is not a message class."""
     check_for_type_support(msg_type)
     if not hasattr(msg_type, "SCHEMA"):
         raise RuntimeError(
@@ -41,8 +41,8 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
         )
 
 
-def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Raises RuntimeError for what is no service class."""
+def check_is_valid_srv_type(srv_type: object) -> None:
+    """Raise RuntimeError if it is not a service class."""
     check_for_type_support(srv_type)
     if not (hasattr(srv_type, "Request") and hasattr(srv_type, "Response")):
         raise RuntimeError(

@@ -1,4 +1,4 @@
-"""The default context, and questions about the middleware."""
+"""The default context, and queries about the middleware."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _lock = threading.Lock()
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """The context of whoever names none; a new one once that was shut down.
+    """Return the context that is used where none is named; a new one once it was shut down.
 
     Args:
-        shutting_down: Whether it is to be shut down: then it stays what it is, and there must be one.
+        shutting_down: Whether it is about to be shut down: then the existing one is returned, and there must be one.
     """
     global _default
     with _lock:
@@ -35,10 +35,10 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """A command line without what is meant for ROS.
+    """Return a command line without its ROS arguments.
 
     Raises:
-        RCLInvalidROSArgsError: What is meant for ROS is wrong.
+        RCLInvalidROSArgsError: A ROS argument is wrong.
     """
     words = list(sys.argv if args is None else args)
     kept: list[str] = []
@@ -58,12 +58,12 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Whether a context has begun and not ended."""
+    """Whether a context is initialized and not shut down."""
     return (get_default_context() if context is None else context).ok()
 
 
 def shutdown(*, context: Context | None = None) -> None:
-    """End a context. Raises RuntimeError if it has ended before."""
+    """Shut a context down. Raises RuntimeError if that was done before."""
     if context is None:
         current = _default
         if current is None or current.life is None:
@@ -75,14 +75,14 @@ def shutdown(*, context: Context | None = None) -> None:
 
 
 def try_shutdown(*, context: Context | None = None) -> None:
-    """End a context if it has not ended."""
+    """Shut a context down if that was not done before."""
     current = _default if context is None else context
     if current is not None and current.try_shutdown() and context is None:
         _replace(current)
 
 
 def _replace(ended: Context) -> None:
-    """Let the default context be another from now on; unless it is already."""
+    """Make another context the default, unless it is already."""
     global _default
     with _lock:
         if _default is ended:
@@ -90,15 +90,15 @@ def _replace(ended: Context) -> None:
 
 
 def get_rmw_implementation_identifier() -> str:
-    """The middleware whose wire protocol is spoken."""
+    """Return the name of the middleware whose wire protocol is used."""
     return "rmw_zenoh_cpp"
 
 
 def get_available_rmw_implementations() -> set[str]:
-    """All there are."""
+    """Return the available middlewares."""
     return {get_rmw_implementation_identifier()}
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Seconds as nanoseconds; -1 for no limit."""
+    """Convert seconds to nanoseconds; -1 for no limit."""
     return -1 if timeout_sec is None or timeout_sec < 0 else int(float(timeout_sec) * S_TO_NS)

@@ -1,4 +1,4 @@
-"""Whether a name is a full one of a topic or a service."""
+"""Validation of full topic and service names."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rclpy.validate_topic_name import raise_fault
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """Whether a name is a full one: True, else InvalidTopicNameException or InvalidServiceNameException is raised."""
+    """Return True for a legal full name; raise InvalidTopicNameException or InvalidServiceNameException otherwise."""
     return raise_fault(name, _fault(name), is_service=is_service)
 
 

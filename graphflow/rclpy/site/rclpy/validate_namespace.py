@@ -1,4 +1,4 @@
-"""Whether a name will do for a namespace."""
+"""Validation of namespaces."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rclpy.exceptions import InvalidNamespaceException
 
 
 def validate_namespace(namespace: str) -> bool:
-    """Whether a full namespace is legal: True, or else InvalidNamespaceException is raised."""
+    """Return True for a legal full namespace; raise InvalidNamespaceException otherwise."""
     fault = _fault(namespace)
     if fault is not None:
         raise InvalidNamespaceException(namespace, *fault)

@@ -1,4 +1,4 @@
-"""Whether a name will do for a node."""
+"""Validation of node names."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rclpy.exceptions import InvalidNodeNameException
 
 
 def validate_node_name(node_name: str) -> bool:
-    """Whether a name will do: True, or else InvalidNodeNameException is raised."""
+    """Return True for a legal name; raise InvalidNodeNameException otherwise."""
     if not node_name:
         raise InvalidNodeNameException(node_name, "node name must not be empty", 0)
     wrong = re.search(r"[^A-Za-z0-9_]", node_name)

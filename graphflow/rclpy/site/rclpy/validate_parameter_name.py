@@ -1,10 +1,10 @@
-"""Whether a name will do for a parameter."""
+"""Validation of parameter names."""
 
 from rclpy.exceptions import InvalidParameterException
 
 
 def validate_parameter_name(name: str) -> bool:
-    """Whether a name will do: True, or else InvalidParameterException is raised."""
+    """Return True for a legal name; raise InvalidParameterException otherwise."""
     if not name:
         raise InvalidParameterException(name)
     return True

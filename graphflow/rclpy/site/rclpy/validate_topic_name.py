@@ -1,4 +1,4 @@
-"""Whether a name will do for a topic or a service, before it is made a full one."""
+"""Validation of topic and service names before expansion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _ALLOWED = re.compile(r"[A-Za-z0-9_/~{}]")
 
 
 def fault_of(name: str) -> tuple[str, int] | None:
-    """What is wrong with a name, and where; None if nothing is."""
+    """Return the fault of a name and its position; None if it is legal."""
     if not name:
         return "topic name must not be empty string", 0
     for index, letter in enumerate(name):
@@ -39,12 +39,12 @@ def fault_of(name: str) -> tuple[str, int] | None:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """Whether a name will do: True, or else InvalidTopicNameException or InvalidServiceNameException is raised."""
+    """Return True for a legal name; raise InvalidTopicNameException or InvalidServiceNameException otherwise."""
     return raise_fault(name, fault_of(name), is_service=is_service)
 
 
 def raise_fault(name: str, fault: tuple[str, int] | None, *, is_service: bool) -> bool:
-    """Raise an error for a fault: what is wrong with a topic's name, and where. True if there is none."""
+    """Raise the error for a topic name's fault and its position; return True if there is none."""
     if fault is None:
         return True
     text, index = fault

@@ -1,4 +1,4 @@
-"""Waiting for one message of a topic."""
+"""A wait for one message of a topic."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class _Waking(NodeBell):
 def wait_for_message(
     msg_type: Any, node: Any, topic: str, *, qos_profile: QoSProfile | int = 1, time_to_wait: float = -1
 ) -> tuple[bool, Any]:
-    """Block until a message comes; nobody has to spin.
+    """Block until a message arrives; no thread has to spin.
 
     Args:
-        time_to_wait: Seconds; -1 for any time.
+        time_to_wait: Seconds; -1 for no limit.
 
     Returns:
-        Whether one came, and the message.
+        Whether one arrived, and the message.
     """
     check_is_valid_msg_type(msg_type)
     life, wake, name = node.context.life, Wake(), node.resolve_topic_name(topic)
@@ -60,7 +60,7 @@ def wait_for_message(
 
 
 def _nothing() -> None:
-    """The waiting thread takes what there is."""
+    """Do nothing: the waiting thread takes the messages."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""Things other than topics, services and timers that an executor looks after."""
+"""Waitables: entities other than topics, services and timers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rclpy.callback_groups import CallbackGroup
 
 
 class NumberOfEntities:
-    """How much room a waitable needs in a wait set of rcl's."""
+    """The number of entries that a waitable needs in an rcl wait set."""
 
     __slots__ = (
         *("num_subscriptions", "num_guard_conditions", "num_timers", "num_clients", "num_services", "num_events"),
@@ -43,9 +43,9 @@ class NumberOfEntities:
 
 
 class Waitable:
-    """Something that becomes ready, has data to be taken, and executes with them. Derive from it.
+    """The base class of objects that become ready, have data to be taken, and execute with it.
 
-    There are no wait sets of rcl's here: `is_ready` is asked whenever the executor looks, with None for one.
+    There are no rcl wait sets here: the executor calls `is_ready(None)` whenever it checks for work.
     """
 
     def __init__(self, callback_group: CallbackGroup) -> None:
@@ -54,37 +54,37 @@ class Waitable:
         self._futures: list[Any] = []
 
     def __enter__(self) -> None:
-        """Nothing has to be held."""
+        """Do nothing."""
 
     def __exit__(self, *_: object) -> None:
-        """Nothing is held."""
+        """Do nothing."""
 
     def add_future(self, future: Any) -> None:
         """Keep a future until it is done."""
         self._futures.append(future)
 
     def remove_future(self, future: Any) -> None:
-        """Keep a future no longer."""
+        """Stop keeping a future."""
         self._futures.remove(future)
 
     def is_ready(self, wait_set: Any) -> bool:
-        """Whether there is something to take."""
+        """Whether there is data to take."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> Any:
-        """Take what is there."""
+        """Take the data."""
         raise NotImplementedError("Must be implemented by subclass")
 
     async def execute(self, taken_data: Any) -> None:
-        """Do the work with what was taken."""
+        """Execute with the taken data."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def get_num_entities(self) -> NumberOfEntities:
-        """The room in a wait set."""
+        """Return the entries needed in a wait set."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def add_to_wait_set(self, wait_set: Any) -> None:
-        """Add what becomes ready to a wait set."""
+        """Add to a wait set whatever becomes ready."""
         raise NotImplementedError("Must be implemented by subclass")
 
     # what executors ask of everything that they look after

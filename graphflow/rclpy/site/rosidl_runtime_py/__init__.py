@@ -1,4 +1,4 @@
-"""Messages as plain data and text, fields set from plain data, and interfaces by their names."""
+"""Messages as plain data and text, and interfaces by name."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Messages as plain data, YAML and comma-separated values.
+"""Conversion of messages to plain data, YAML and comma-separated values.
 
-Source: rosidl_runtime_py.convert, whose forms of what is left out or cut these are.
+Source: rosidl_runtime_py.convert, including its notation for omitted and truncated values.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from graphflow.wire.schema import FieldType
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """A message as mappings, lists and scalars.
+    """Convert a message to mappings, lists and scalars.
 
     Args:
-        truncate_length: Elements and characters that are kept of long arrays and texts.
-        no_arr: Whether arrays are told by type and length alone.
-        no_str: Whether texts are told by length alone.
+        truncate_length: The number of elements or characters to keep of long arrays and texts.
+        no_arr: Whether arrays are shown by type and length alone.
+        no_str: Whether texts are shown by length alone.
     """
 
     def plain(value: Any, type_: FieldType | None = None) -> Any:
@@ -60,7 +60,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """A message as YAML. Arguments as for `message_to_ordereddict`."""
+    """Convert a message to YAML. Arguments as for `message_to_ordereddict`."""
     data = message_to_ordereddict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
     return yaml.dump(
         data, Dumper=_Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style, sort_keys=False
@@ -76,7 +76,7 @@ _Dumper.add_representer(OrderedDict, lambda dumper, data: dumper.represent_dict(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """The values of a message between commas. Arguments as for `message_to_ordereddict`."""
+    """Convert a message to comma-separated values. Arguments as for `message_to_ordereddict`."""
 
     def words(value: Any, type_: FieldType | None = None) -> str:
         if isinstance(value, (list, tuple, array, np.ndarray)):

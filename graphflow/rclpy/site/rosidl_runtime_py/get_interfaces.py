@@ -1,4 +1,4 @@
-"""Which interfaces there are: those that come with graphflow, and those of the workspace."""
+"""The available interfaces: those bundled with graphflow, and those of the workspace."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from graphflow.rclpy.messages import finder
 
 
 def get_interface_packages() -> dict[str, str]:
-    """The packages that have interfaces, and their folders."""
+    """Return the packages that have interfaces, with their folders."""
     _take_workspace()
     return {package: str(registry.package_folders(package)[0]) for package in registry.packages()}
 
 
 def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The interfaces of packages, as `msg/String`; of all where none is named. Raises LookupError."""
+    """Return the interfaces of packages, as `msg/String`; of all if none is named. Raises LookupError."""
     return _of_kinds(package_names, registry.KINDS)
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The messages. Arguments and errors as for `get_interfaces`."""
+    """Return the messages. Arguments and errors as for `get_interfaces`."""
     return _of_kinds(package_names, ("msg",))
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The services. Arguments and errors as for `get_interfaces`."""
+    """Return the services. Arguments and errors as for `get_interfaces`."""
     return _of_kinds(package_names, ("srv",))
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The actions. Arguments and errors as for `get_interfaces`."""
+    """Return the actions. Arguments and errors as for `get_interfaces`."""
     return _of_kinds(package_names, ("action",))
 
 
 def get_interface_path(interface_name: str) -> str:
-    """The file of a definition, such as `std_msgs/msg/String`, with or without its ending.
+    """Return the file of a definition such as `std_msgs/msg/String`, given with or without its suffix.
 
     Raises:
-        ValueError: That is no name of an interface.
-        LookupError: There is none of that name.
+        ValueError: Not the name of an interface.
+        LookupError: No interface has that name.
     """
     package, _, rest = interface_name.partition("/")
     kind, _, name = rest.partition("/")

@@ -1,4 +1,4 @@
-"""Fields of messages set from plain data, as it is read from YAML."""
+"""Assignment of message fields from plain data, as read from YAML."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from graphflow.rclpy.messages.classes import StrictMessage, message_class
 
 def set_message_fields(
     msg: Any, values: Mapping[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
-) -> list[Callable[[Any], None]]:
-    """Set fields of a message, those of messages in it by mappings.
+) -> list[Callable[..., None]]:
+    """Set fields of a message; nested messages are given as mappings.
 
     Args:
         expand_header_auto: Whether a header may be `auto`.
@@ -28,12 +28,12 @@ def set_message_fields(
         AttributeError: The message has no such field.
         TypeError, ValueError, AssertionError: A value is not of the field's type.
     """
-    stamps: list[Callable[[Any], None]] = []
+    stamps: list[Callable[..., None]] = []
     _set(msg, values, stamps, expand_header_auto, expand_time_now)
     return stamps
 
 
-def _set(msg: Any, values: Any, stamps: list[Callable[[Any], None]], auto: bool, now: bool) -> None:
+def _set(msg: Any, values: object, stamps: list[Callable[..., None]], auto: bool, now: bool) -> None:
     if not isinstance(values, Mapping):
         raise TypeError(f"Value '{values}' is expected to be a dictionary but is a {type(values).__name__}")
     types = {field.name: field.type for field in msg.SCHEMA.fields}
@@ -59,8 +59,8 @@ def _set(msg: Any, values: Any, stamps: list[Callable[[Any], None]], auto: bool,
             setattr(msg, name, _converted(held, given))
 
 
-def _converted(held: Any, given: Any) -> Any:
-    """A value as the type that the field holds."""
+def _converted(held: Any, given: Any) -> object:
+    """Convert a value to the type that the field holds."""
     if isinstance(held, array):
         return array(held.typecode, given)
     if isinstance(held, np.ndarray):

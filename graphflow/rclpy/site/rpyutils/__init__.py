@@ -1,4 +1,4 @@
-"""What ROS's Python packages share: here, what they import before they load libraries of their own."""
+"""The function of rpyutils that ROS packages call before they load shared libraries."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from contextlib import contextmanager
 
 @contextmanager
 def add_dll_directories_from_env(env_name: str) -> Iterator[None]:
-    """Nothing is loaded, so nothing has to be found."""
+    """Do nothing: no library is loaded."""
     yield

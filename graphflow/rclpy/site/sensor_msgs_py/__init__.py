@@ -1,1 +1,1 @@
-"""Messages of sensors as arrays."""
+"""Sensor messages as arrays."""

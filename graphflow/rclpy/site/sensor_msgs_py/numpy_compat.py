@@ -1,4 +1,4 @@
-"""Structured arrays as plain ones; numpy has it."""
+"""Conversion of structured arrays to plain ones, from NumPy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Point clouds as numpy arrays, and back."""
+"""Conversion between point clouds and NumPy arrays."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DUMMY_FIELD_PREFIX = "unnamed_field"
 
 
 def dtype_from_fields(fields: Iterable[PointField], point_step: int | None = None) -> np.dtype[Any]:
-    """The type of one point of a cloud.
+    """Return the dtype of one point of a cloud.
 
     Args:
         point_step: Bytes from one point to the next; None for as many as the fields need.
@@ -49,19 +49,19 @@ def read_points(
     cloud: PointCloud2,
     field_names: Sequence[str] | None = None,
     skip_nans: bool = False,
-    uvs: Iterable[Any] | None = None,
+    uvs: Iterable[object] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """The points of a cloud, as a structured array with a field for each of its own.
+    """Read the points of a cloud into a structured array, one field for each of the cloud's.
 
     Args:
-        field_names: Those that are wanted; None for all.
-        skip_nans: Whether points with a number that is none are left out.
-        uvs: The indices, or the columns and rows, of the points that are wanted; None for all.
+        field_names: The fields to read; None for all.
+        skip_nans: Whether to leave out points with a NaN.
+        uvs: The indices, or the columns and rows, of the points to read; None for all.
         reshape_organized_cloud: Whether an organized cloud has the shape (width, height).
 
     Raises:
-        ValueError: The cloud has no such field, or fewer bytes than it says.
+        ValueError: The cloud has no such field, or fewer bytes than its dimensions need.
     """
     dtype = dtype_from_fields(cloud.fields, cloud.point_step)
     points = _points(cloud, dtype)
@@ -86,7 +86,7 @@ def read_points(
 
 
 def _points(cloud: PointCloud2, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """All points, without the bytes that fill up rows."""
+    """Return all points without the padding of rows."""
     data = np.frombuffer(memoryview(cloud.data), dtype=np.uint8)
     row = cloud.point_step * cloud.width
     step = cloud.row_step or row
@@ -101,10 +101,10 @@ def read_points_numpy(
     cloud: PointCloud2,
     field_names: Sequence[str] | None = None,
     skip_nans: bool = False,
-    uvs: Iterable[Any] | None = None,
+    uvs: Iterable[object] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """The same as a plain array of shape (points, fields).
+    """Read the points into a plain array of shape (points, fields).
 
     Raises:
         ValueError: As for `read_points`; or the fields are of several types.
@@ -119,9 +119,9 @@ def read_points_list(
     cloud: PointCloud2,
     field_names: Sequence[str] | None = None,
     skip_nans: bool = False,
-    uvs: Iterable[Any] | None = None,
+    uvs: Iterable[object] | None = None,
 ) -> list[Any]:
-    """The same as a list of named tuples."""
+    """Read the points into a list of named tuples."""
     points = read_points(cloud, field_names, skip_nans, uvs)
     make = NamedTuple("Point", [(name, Any) for name in points.dtype.names or ()])  # type: ignore[misc]
     return [make(*values) for values in points.tolist()]
@@ -130,15 +130,15 @@ def read_points_list(
 def create_cloud(
     header: Header, fields: Iterable[PointField], points: Any, step: int | None = None, point_step: int | None = None
 ) -> PointCloud2:
-    """A cloud of points.
+    """Create a cloud of points.
 
     Args:
         points: A structured array; or rows of numbers, in the order of the fields. Of two dimensions (of three, for
             rows) it is an organized cloud; the first is its width, as ROS 2 has it.
-        step: Bytes from one point to the next; None for as many as the fields need. `point_step` means the same.
+        step: Bytes from one point to the next; None for as many as the fields need. `point_step` is a synonym.
 
     Raises:
-        ValueError: The rows have not as many numbers as there are fields.
+        ValueError: The length of the rows differs from the number of fields.
     """
     fields = list(fields)
     dtype = dtype_from_fields(fields, step if step is not None else point_step)
@@ -165,7 +165,7 @@ def create_cloud(
     )
 
 
-def create_cloud_xyz32(header: Header, points: Any, step: int | None = None) -> PointCloud2:
-    """A cloud of points with x, y and z, each 32 bits."""
+def create_cloud_xyz32(header: Header, points: object, step: int | None = None) -> PointCloud2:
+    """Create a cloud of points with x, y and z, each a 32-bit float."""
     fields = [PointField(name=n, offset=4 * i, datatype=PointField.FLOAT32, count=1) for i, n in enumerate("xyz")]
     return create_cloud(header, fields, np.asarray(points, dtype=np.float32), step)

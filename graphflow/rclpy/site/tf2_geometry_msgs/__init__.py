@@ -1,4 +1,4 @@
-"""Transforms of the messages of geometry_msgs; `Buffer.transform` knows them once this is imported."""
+"""Transforms of geometry_msgs messages; importing this registers them with `Buffer.transform`."""
 
 from __future__ import annotations
 

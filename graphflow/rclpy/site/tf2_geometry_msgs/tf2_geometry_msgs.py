@@ -1,4 +1,4 @@
-"""Coordinates of messages in another frame."""
+"""Transforms of geometry_msgs messages to another frame."""
 
 from __future__ import annotations
 
@@ -43,23 +43,23 @@ __all__ = [
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """A message as a message."""
+    """Return the message unchanged."""
     return msg
 
 
 def from_msg_msg(msg: Any) -> Any:
-    """A message as a message."""
+    """Return the message unchanged."""
     return msg
 
 
 def _pose(transform: TransformStamped) -> poses.Pose:
-    """The pose that a transform is, with a rotation that is one."""
+    """Return the pose of a transform, with its rotation normalized."""
     found = pose_of(transform.transform)
     return found._replace(rotation=_unit(found.rotation))
 
 
 def _unit(q: poses.Quaternion) -> poses.Quaternion:
-    """A quaternion of length 1, and of those that mean the same the one with w >= 0; that of no rotation for none."""
+    """Normalize a quaternion, with the sign that makes w >= 0; zero becomes the identity."""
     length = math.copysign(math.hypot(*q), q[3])
     return (q[0] / length, q[1] / length, q[2] / length, q[3] / length) if length else poses.IDENTITY.rotation
 
@@ -73,14 +73,14 @@ def _set(vector: Any, values: poses.Vector) -> None:
 
 
 def do_transform_point(point: PointStamped, transform: TransformStamped) -> PointStamped:
-    """A point with its coordinates in the frame of the transform's header."""
+    """Transform a point to the frame of the transform's header."""
     out = PointStamped(header=transform.header)
     _set(out.point, _pose(transform).point(_xyz(point.point)))
     return out
 
 
 def do_transform_polygon_stamped(polygon: PolygonStamped, transform: TransformStamped) -> PolygonStamped:
-    """A polygon with the coordinates of its points in the frame of the transform's header."""
+    """Transform a polygon's points to the frame of the transform's header."""
     out, pose = PolygonStamped(header=transform.header), _pose(transform)
     for point in polygon.polygon.points:
         x, y, z = pose.point(_xyz(point))
@@ -89,7 +89,7 @@ def do_transform_polygon_stamped(polygon: PolygonStamped, transform: TransformSt
 
 
 def do_transform_vector3(vector3: Vector3Stamped, transform: TransformStamped) -> Vector3Stamped:
-    """A vector, which is rotated only."""
+    """Transform a vector, which is only rotated."""
     out = Vector3Stamped(header=transform.header)
     _set(out.vector, _rotated(vector3.vector, transform))
     return out
@@ -100,7 +100,7 @@ def _rotated(vector: Vector3, transform: TransformStamped) -> poses.Vector:
 
 
 def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
-    """A pose without a header."""
+    """Transform a pose without a header."""
     q = pose.orientation
     moved = _pose(transform).of(poses.Pose(_xyz(pose.position), _unit((q.x, q.y, q.z, q.w))))
     out = Pose()
@@ -111,12 +111,12 @@ def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
 
 
 def do_transform_pose_stamped(pose: PoseStamped, transform: TransformStamped) -> PoseStamped:
-    """A pose with its coordinates in the frame of the transform's header."""
+    """Transform a pose to the frame of the transform's header."""
     return PoseStamped(header=transform.header, pose=do_transform_pose(pose.pose, transform))
 
 
 def transform_covariance(cov_in: Any, transform: TransformStamped) -> Any:
-    """A covariance of a pose, 6 by 6 in 36 numbers, with its axes rotated; translation does not change it."""
+    """Rotate the axes of a pose's covariance, 6 by 6 as 36 numbers; translation does not change it."""
     rotation = _pose(transform).rotation
     turn = np.array([poses.rotate(rotation, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
     both = np.kron(np.eye(2), turn)
@@ -126,7 +126,7 @@ def transform_covariance(cov_in: Any, transform: TransformStamped) -> Any:
 def do_transform_pose_with_covariance_stamped(
     pose: PoseWithCovarianceStamped, transform: TransformStamped
 ) -> PoseWithCovarianceStamped:
-    """A pose and how sure it is, in the frame of the transform's header."""
+    """Transform a pose and its covariance to the frame of the transform's header."""
     out = PoseWithCovarianceStamped(header=transform.header)
     out.pose.pose = do_transform_pose(pose.pose.pose, transform)
     out.pose.covariance = transform_covariance(pose.pose.covariance, transform)
@@ -134,7 +134,7 @@ def do_transform_pose_with_covariance_stamped(
 
 
 def do_transform_wrench(wrench: WrenchStamped, transform: TransformStamped) -> WrenchStamped:
-    """A force and a torque, which are rotated only."""
+    """Transform a force and a torque, which are only rotated."""
     out = WrenchStamped(header=transform.header)
     _set(out.wrench.force, _rotated(wrench.wrench.force, transform))
     _set(out.wrench.torque, _rotated(wrench.wrench.torque, transform))

@@ -1,4 +1,4 @@
-"""The buffer of transforms, by messages."""
+"""The transform buffer with messages as its interface."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from tf2_py.frames import Frames
 from tf2_py.poses import Pose
 
 TOLERANCE = 0.01
-"""How far the squared length of a quaternion may be from 1."""
+"""The greatest deviation of a quaternion's squared length from 1."""
 NAME_BOUND = 1000
-"""Characters of a frame's name."""
+"""The length of a frame's name in characters, at most."""
 
 
 def pose_of(transform: Any) -> Pose:
-    """A `geometry_msgs/Transform` as a pose."""
+    """Convert a `geometry_msgs/Transform` to a pose."""
     t, r = transform.translation, transform.rotation
     return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
 
 
 def nanoseconds(time: Any) -> int:
-    """A time of rclpy's, or of a message."""
+    """Convert an rclpy time, or a message's, to nanoseconds."""
     return time.nanoseconds if isinstance(time, Time) else time.sec * 10**9 + time.nanosec
 
 
 def message(pose: Pose, target: str, source: str, stamp: int) -> TransformStamped:
-    """The pose of a frame, as a message."""
+    """Convert the pose of a frame to a message."""
     out = TransformStamped()
     out.header.stamp.sec, out.header.stamp.nanosec = divmod(stamp, 10**9)
     out.header.frame_id, out.child_frame_id = target, source
@@ -48,15 +48,15 @@ def message(pose: Pose, target: str, source: str, stamp: int) -> TransformStampe
 
 @lru_cache(100)
 def _logger(about: str) -> RcutilsLogger:
-    """One for each thing to be said, that is kept: it knows when it has said it last."""
+    """Return the logger for one kind of warning; cached, since it throttles its lines."""
     return get_logger("tf2")
 
 
 class BufferCore:
-    """Transforms between frames over time. May be used by several threads.
+    """A buffer of transforms between frames over time. Thread-safe.
 
     Args:
-        cache_time: How long they are kept; 10 seconds where nothing is said.
+        cache_time: The duration for which they are kept; 10 seconds by default.
     """
 
     def __init__(self, cache_time: Duration | None = None) -> None:
@@ -66,11 +66,11 @@ class BufferCore:
         self._graphflow_lock = threading.Lock()
 
     def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
-        """Put in where a frame is; what makes no sense is left out, and told in the log."""
+        """Add a transform; an invalid one is dropped and logged."""
         self._graphflow_put(transform, authority, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
-        """Put in where a frame is for ever."""
+        """Add a transform that holds for all times."""
         self._graphflow_put(transform, authority, is_static=True)
 
     def _graphflow_put(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
@@ -91,14 +91,14 @@ class BufferCore:
             )
             _logger(frame).warning(text, throttle_duration_sec=1.0)
 
-    def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:
-        """The transform that takes coordinates in `source_frame` to those in `target_frame`.
+    def lookup_transform_core(self, target_frame: str, source_frame: str, time: object) -> TransformStamped:
+        """Return the transform that takes coordinates in `source_frame` to those in `target_frame`.
 
         Args:
             time: 0 for the latest.
 
         Raises:
-            TransformException: One of its kinds says why there is none.
+            TransformException: There is none; the subclass gives the reason.
         """
         if target_frame != source_frame:
             _check(target_frame, "target_frame")
@@ -108,9 +108,9 @@ class BufferCore:
         return message(pose, target_frame, source_frame, stamp)
 
     def lookup_transform_full_core(
-        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+        self, target_frame: str, target_time: object, source_frame: str, source_time: object, fixed_frame: str
     ) -> TransformStamped:
-        """The same between two times; `fixed_frame` is what has not moved between them."""
+        """Return the transform between two times; `fixed_frame` does not move between them."""
         for name, role in ((target_frame, "target"), (source_frame, "source"), (fixed_frame, "fixed")):
             _check(name, f"{role}_frame")
         with self._graphflow_lock:
@@ -118,37 +118,37 @@ class BufferCore:
             second, stamp = self._graphflow_frames.find(target_frame, fixed_frame, nanoseconds(target_time))
         return message(second.of(first), target_frame, source_frame, stamp)
 
-    def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
-        """Whether there is that transform, and why not."""
+    def can_transform_core(self, target_frame: str, source_frame: str, time: object) -> tuple[bool, str]:
+        """Whether a transform is available, and the reason if not."""
         return _can(lambda: self.lookup_transform_core(target_frame, source_frame, time))
 
     def can_transform_full_core(
-        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+        self, target_frame: str, target_time: object, source_frame: str, source_time: object, fixed_frame: str
     ) -> tuple[bool, str]:
-        """Whether there is that transform between two times, and why not."""
+        """Whether a transform between two times is available, and the reason if not."""
         return _can(
             lambda: self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
         )
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """The latest time of which all on the way between two frames is known. Raises TransformException."""
+        """Return the latest time at which the whole chain between two frames is known. Raises TransformException."""
         with self._graphflow_lock:
             return Time(nanoseconds=self._graphflow_frames.latest_common(target_frame, source_frame))
 
     def clear(self) -> None:
-        """Forget all."""
+        """Forget all transforms."""
         with self._graphflow_lock:
             self._graphflow_frames.clear()
             self._graphflow_authorities.clear()
 
     def all_frames_as_string(self) -> str:
-        """A line for each frame that has a parent."""
+        """Return a line for each frame that has a parent."""
         with self._graphflow_lock:
             known = [(f, h.parents[-1]) for f, h in sorted(self._graphflow_frames.histories.items())]
         return "".join(f"Frame {frame} exists with parent {parent}.\n" for frame, parent in known)
 
     def all_frames_as_yaml(self) -> str:
-        """For each frame that has a parent: that, who says so, how often, and over what times."""
+        """Return, for each frame with a parent: the parent, the publisher, the rate and the time span."""
         with self._graphflow_lock:
             known = sorted(self._graphflow_frames.histories.items())
             lines = []
@@ -162,12 +162,12 @@ class BufferCore:
         return "".join(f"{line}\n" for line in lines) or "{}"
 
     def _frameExists(self, frame_id: str) -> bool:  # noqa: N802 - tf2's name
-        """Whether a frame has been heard of."""
+        """Whether a frame is known."""
         with self._graphflow_lock:
             return self._graphflow_frames.has(frame_id)
 
     def _getFrameStrings(self) -> list[str]:  # noqa: N802 - tf2's name
-        """All frames that have been heard of."""
+        """Return all known frames."""
         with self._graphflow_lock:
             return self._graphflow_frames.names()
 
@@ -189,7 +189,7 @@ def _check(frame: str, role: str) -> None:
 
 
 def _fault(frame: str, parent: str, pose: Pose) -> str | None:
-    """What is wrong with a transform."""
+    """Describe the fault of a transform."""
     if not frame or not parent:
         return "frame_id and child_frame_id must not be empty"
     if frame == parent:

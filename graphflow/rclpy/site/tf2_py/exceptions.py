@@ -1,27 +1,27 @@
-"""Why a transform cannot be had."""
+"""Reasons for which a transform is unavailable."""
 
 from __future__ import annotations
 
 
 class TransformException(Exception):
-    """There is no such transform; the others say why."""
+    """A transform is unavailable; the subclasses give the reason."""
 
 
 class ConnectivityException(TransformException):
-    """The two frames are in trees of their own."""
+    """The two frames are in separate trees."""
 
 
 class LookupException(TransformException):
-    """Nobody has said anything about the frame."""
+    """A frame is unknown."""
 
 
 class ExtrapolationException(TransformException):
-    """What is known begins after the time that was asked for, or ends before it."""
+    """The requested time is before or after the known transforms."""
 
 
 class InvalidArgumentException(TransformException):
-    """The name of a frame is wrong."""
+    """A frame's name is illegal."""
 
 
 class TimeoutException(TransformException):
-    """It has taken too long."""
+    """The wait took too long."""

@@ -1,4 +1,4 @@
-"""Frames in their parents over time, and the way from one frame to another."""
+"""The poses of frames in their parents over time, and the chains between frames."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from tf2_py.exceptions import ConnectivityException, ExtrapolationException, Loo
 from tf2_py.poses import IDENTITY, Pose
 
 FRAMES_BOUND = 10_000
-"""Frames and parents that are kept; more come from a mistake, or an attack."""
+"""The number of frames and parents kept, at most; more come from a mistake, or an attack."""
 SAMPLES_BOUND = 20_000
-"""Poses that are kept of one frame, whatever their times."""
+"""The number of poses kept per frame, at most, whatever their times."""
 TOTAL_BOUND = 1_000_000
-"""Poses that are kept of all."""
+"""The number of poses kept in total, at most."""
 SHOWN = 5
-"""Frames that an error names."""
+"""The number of frames that an error names."""
 
 
 @dataclass(slots=True)
 class History:
-    """The poses of one frame, each in what was its parent then."""
+    """The poses of one frame, each in its parent at that time."""
 
     is_static: bool = False
     stamps: list[int] = field(default_factory=list)
-    """In nanoseconds, ascending."""
+    """Ascending, in nanoseconds."""
     poses: list[Pose] = field(default_factory=list)
     parents: list[str] = field(default_factory=list)
 
     def put(self, stamp: int, pose: Pose, parent: str, kept: int) -> bool:
-        """Add a pose, and drop those more than `kept` nanoseconds older than the latest; False if it is too old."""
+        """Add a pose and drop those more than `kept` nanoseconds older than the latest; return False if too old."""
         if self.is_static:
             self.stamps, self.poses, self.parents = [stamp], [pose], [parent]
             return True
@@ -46,7 +46,7 @@ class History:
         return True
 
     def at(self, stamp: int) -> tuple[Pose, str] | str:
-        """The pose and the parent at a time, 0 for the latest; or why there is none."""
+        """Return the pose and parent at a time, 0 for the latest, or the reason why there is none."""
         if self.is_static or stamp == 0:
             return self.poses[-1], self.parents[-1]
         at = bisect_left(self.stamps, stamp)
@@ -70,22 +70,22 @@ class History:
 
 
 class Frames:
-    """All frames that have been heard of. Not for several threads at once.
+    """All known frames. Not thread-safe.
 
     Args:
-        kept: Nanoseconds of each frame's history.
+        kept: The length of each frame's history in nanoseconds.
     """
 
     def __init__(self, kept: int) -> None:
         self.kept = kept
         self.histories: dict[str, History] = {}
         self.refused = 0
-        """Poses that were too old, or too many."""
+        """The number of poses dropped because they were too old, or too many."""
         self._count = 0
         self._parents: set[str] = set()
 
     def put(self, frame: str, parent: str, stamp: int, pose: Pose, *, is_static: bool) -> bool:
-        """Say where a frame is in its parent, in nanoseconds; whether that was accepted."""
+        """Add a frame's pose in its parent, in nanoseconds; return whether it was accepted."""
         history = self.histories.get(frame)
         is_full = len(self.histories) + len(self._parents) >= FRAMES_BOUND
         if (is_full and not (history and parent in self._parents)) or self._count >= TOTAL_BOUND:
@@ -101,21 +101,21 @@ class Frames:
         return is_kept
 
     def clear(self) -> None:
-        """Forget all."""
+        """Forget all frames."""
         self.histories.clear()
         self._parents.clear()
         self._count = 0
 
     def has(self, frame: str) -> bool:
-        """Whether a frame has been heard of, be it as a parent."""
+        """Whether a frame is known, if only as a parent."""
         return frame in self.histories or frame in self._parents
 
     def names(self) -> list[str]:
-        """All of them."""
+        """Return the names of all frames."""
         return sorted({*self.histories, *self._parents})
 
     def _unknown(self, frame: str, role: str) -> LookupException:
-        """The error for a frame that nobody has heard of, with those that there are."""
+        """Return the error for an unknown frame, with the known ones."""
         error = LookupException(f'"{frame}" passed to lookupTransform argument {role} does not exist. ')
         names = self.names()
         known = f"the frames known so far are {', '.join(names[:SHOWN])}" if names else "no frame is known so far"
@@ -126,10 +126,10 @@ class Frames:
         return error
 
     def find(self, target: str, source: str, stamp: int) -> tuple[Pose, int]:
-        """The pose of `source` in `target`, and its time.
+        """Return the pose of `source` in `target`, and its time.
 
         Args:
-            stamp: Nanoseconds; 0 for the latest that all on the way have.
+            stamp: Nanoseconds; 0 for the latest time common to the chain.
 
         Raises:
             LookupException, ConnectivityException, ExtrapolationException: There is none.
@@ -157,16 +157,16 @@ class Frames:
         return downs[common].inverse().of(ups[common]), stamp
 
     def chain(self, frame: str) -> list[str]:
-        """A frame and all above it, as of now."""
+        """Return a frame and its current ancestors."""
         above: dict[str, Pose] = {frame: IDENTITY}
         self._climb(frame, 0, above, stop=())
         return list(above)
 
     def latest_common(self, target: str, source: str) -> int:
-        """The latest time of which all frames on the way between two have poses; 0 if none of them moves.
+        """Return the latest time common to the chain between two frames; 0 if none of them moves.
 
         Raises:
-            ConnectivityException: There is no way.
+            ConnectivityException: The frames are not connected.
         """
         ups, downs = self.chain(source), self.chain(target)
         common = next((frame for frame in ups if frame in downs), None)
@@ -179,7 +179,7 @@ class Frames:
     def _climb(
         self, frame: str, stamp: int, poses: dict[str, Pose], stop: str | tuple[()] | dict[str, Pose]
     ) -> str | None:
-        """Go up to the root, or to where it is enough, and note the poses of `frame`; says what is not known."""
+        """Climb from `frame` to the root, or to `stop`, recording its poses; return the reason if one is unknown."""
         pose, start = IDENTITY, frame
         ends = (stop,) if isinstance(stop, str) else stop
         while frame in self.histories and frame not in ends:

@@ -1,4 +1,4 @@
-"""Where one frame is in another: a rotation, and then a translation. In plain floats: these are three or four each."""
+"""Poses of one frame in another: a rotation, then a translation, as plain floats, which suit such short vectors."""
 
 from __future__ import annotations
 
@@ -8,44 +8,44 @@ from typing import NamedTuple, TypeAlias
 Vector: TypeAlias = tuple[float, float, float]
 """x, y, z in metres."""
 Quaternion: TypeAlias = tuple[float, float, float, float]
-"""x, y, z, w; its length is 1."""
+"""x, y, z, w; of length 1."""
 
 
 class Pose(NamedTuple):
-    """A frame's pose in its parent, which also takes coordinates in the frame to those in the parent."""
+    """A frame's pose in its parent, which also converts coordinates in the frame to the parent's."""
 
     translation: Vector
     rotation: Quaternion
 
     def of(self, inner: Pose) -> Pose:
-        """The pose, in the parent of this one, of what has the pose `inner` in this one."""
+        """Return the pose in this one's parent of something with the pose `inner` in this one."""
         return Pose(self.point(inner.translation), multiply(self.rotation, inner.rotation))
 
     def point(self, point: Vector) -> Vector:
-        """A point's coordinates in the parent."""
+        """Convert a point's coordinates to the parent's."""
         x, y, z = rotate(self.rotation, point)
         return x + self.translation[0], y + self.translation[1], z + self.translation[2]
 
     def inverse(self) -> Pose:
-        """The parent's pose in the frame."""
+        """Return the parent's pose in the frame."""
         back = conjugate(self.rotation)
         x, y, z = rotate(back, self.translation)
         return Pose((-x, -y, -z), back)
 
     def towards(self, other: Pose, share: float) -> Pose:
-        """The pose on the way to another, at a share of 0 to 1 of it: straight, and turning evenly."""
+        """Interpolate towards another pose, at a share of 0 to 1: linearly, with an even rotation."""
         (x, y, z), (u, v, w) = self.translation, other.translation
         moved = (x + (u - x) * share, y + (v - y) * share, z + (w - z) * share)
         return Pose(moved, slerp(self.rotation, other.rotation, share))
 
 
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-"""x, y and z."""
+"""The axes x, y and z."""
 IDENTITY = Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The rotation `b`, and then `a`."""
+    """Return the rotation `b` followed by `a`."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (
@@ -57,12 +57,12 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def conjugate(q: Quaternion) -> Quaternion:
-    """The rotation back."""
+    """Return the inverse rotation."""
     return -q[0], -q[1], -q[2], q[3]
 
 
 def rotate(q: Quaternion, vector: Vector) -> Vector:
-    """A vector, rotated."""
+    """Rotate a vector."""
     x, y, z, w = q
     a, b, c = vector
     u, v, t = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
@@ -70,7 +70,7 @@ def rotate(q: Quaternion, vector: Vector) -> Vector:
 
 
 def slerp(a: Quaternion, b: Quaternion, share: float) -> Quaternion:
-    """The rotation at a share of 0 to 1 of the shorter way from `a` to `b`."""
+    """Interpolate the shorter rotation from `a` to `b` at a share of 0 to 1."""
     dot = sum(p * q for p, q in zip(a, b, strict=True))
     sign = -1.0 if dot < 0 else 1.0
     angle = math.acos(min(1.0, abs(dot)))
@@ -84,19 +84,19 @@ def slerp(a: Quaternion, b: Quaternion, share: float) -> Quaternion:
 
 
 def about(axis: Vector, angle: float) -> Quaternion:
-    """The rotation of `angle` radians about an axis of length 1."""
+    """Return the rotation of `angle` radians about an axis of length 1."""
     sine = math.sin(angle / 2)
     return axis[0] * sine, axis[1] * sine, axis[2] * sine, math.cos(angle / 2)
 
 
 def from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """The rotation about the fixed axes x, y and z, one after another, by angles in radians."""
+    """Return the rotation about the fixed axes x, y and z in turn, by angles in radians."""
     about_x, about_y = about((1.0, 0.0, 0.0), roll), about((0.0, 1.0, 0.0), pitch)
     return multiply(about((0.0, 0.0, 1.0), yaw), multiply(about_y, about_x))
 
 
 def to_rpy(q: Quaternion) -> Vector:
-    """The angles in radians that `from_rpy` takes; straight up or down, where there are many, those without yaw."""
+    """Return the angles in radians that `from_rpy` takes; in gimbal lock, those without yaw."""
     (xx, yx, zx), (_, yy, zy), (_, yz, zz) = (rotate(q, axis) for axis in AXES)
     level = math.hypot(xx, yx)
     if level < 1e-9:

@@ -1,4 +1,4 @@
-"""The buffer of transforms that a node fills and asks."""
+"""The transform buffer that a node fills and queries."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
 
 
 class Buffer(BufferCore, BufferInterface):
-    """What is known about frames; ask it where one is in another.
+    """A buffer of transforms between frames; look them up here.
 
     Args:
-        cache_time: How long that is kept; 10 seconds where nothing is said.
-        node: One that answers `tf2_frames`, and ends the waiting of others when it does.
+        cache_time: The duration for which they are kept; 10 seconds by default.
+        node: The node that serves `tf2_frames`, and whose shutdown ends all waits.
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
@@ -36,7 +36,7 @@ class Buffer(BufferCore, BufferInterface):
         if node is not None:
             self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_answer_frames)
 
-    def _graphflow_answer_frames(self, request: Any, response: Any) -> Any:
+    def _graphflow_answer_frames(self, request: object, response: Any) -> object:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
@@ -51,7 +51,7 @@ class Buffer(BufferCore, BufferInterface):
         self._graphflow_tell()
 
     def _graphflow_tell(self) -> None:
-        """Let those who wait look again."""
+        """Wake the waiting threads to check again."""
         with self._graphflow_changed:
             self._graphflow_changed.notify_all()
             ready = [future for future, can in self._graphflow_waiting.items() if can()[0]]
@@ -61,16 +61,16 @@ class Buffer(BufferCore, BufferInterface):
             future.set_result(True)
 
     def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE
+        self, target_frame: str, source_frame: str, time: object, timeout: Duration = AT_ONCE
     ) -> TransformStamped:
-        """The transform that takes coordinates in `source_frame` to those in `target_frame`.
+        """Return the transform that takes coordinates in `source_frame` to those in `target_frame`.
 
         Args:
             time: 0 for the latest.
-            timeout: How long to wait for it. Another thread must spin the listener's node meanwhile.
+            timeout: The duration to wait for it. Another thread must spin the listener's node meanwhile.
 
         Raises:
-            TransformException: One of its kinds says why there is none.
+            TransformException: There is none; the subclass gives the reason.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         try:
@@ -83,13 +83,13 @@ class Buffer(BufferCore, BufferInterface):
     def lookup_transform_full(
         self,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         source_frame: str,
-        source_time: Any,
+        source_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
     ) -> TransformStamped:
-        """The same between two times; `fixed_frame` is what has not moved between them."""
+        """Return the transform between two times; `fixed_frame` does not move between them."""
         self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
@@ -97,25 +97,25 @@ class Buffer(BufferCore, BufferInterface):
         self,
         target_frame: str,
         source_frame: str,
-        time: Any,
+        time: object,
         timeout: Duration = AT_ONCE,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether there is that transform, after waiting for it; with `return_debug_tuple` also why not."""
+        """Whether a transform is available, waiting for it; with `return_debug_tuple` also the reason if not."""
         answer = self._graphflow_wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
         self,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         source_frame: str,
-        source_time: Any,
+        source_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether there is that transform between two times, after waiting for it."""
+        """Whether a transform between two times is available, waiting for it."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         answer = self._graphflow_wait(lambda: self.can_transform_full_core(*asked), timeout)
         return answer if return_debug_tuple else answer[0]
@@ -134,14 +134,14 @@ class Buffer(BufferCore, BufferInterface):
             self._graphflow_unfilled.asked_in_vain(self)
         return answer
 
-    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[bool]:
-        """A future that is done as soon as there is that transform."""
+    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: object) -> Future[bool]:
+        """Return a future that is done as soon as a transform is available."""
         return self._graphflow_when(lambda: self.can_transform_core(target_frame, source_frame, time))
 
     def wait_for_transform_full_async(
-        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+        self, target_frame: str, target_time: object, source_frame: str, source_time: object, fixed_frame: str
     ) -> Future[bool]:
-        """A future that is done as soon as there is that transform between two times."""
+        """Return a future that is done as soon as a transform between two times is available."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._graphflow_when(lambda: self.can_transform_full_core(*asked))
 
@@ -157,15 +157,15 @@ class Buffer(BufferCore, BufferInterface):
             future.add_done_callback(lambda done: self._graphflow_waiting.pop(done, None))
         return future
 
-    async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:
-        """Wait for a transform in a callback that is a coroutine. Raises TransformException."""
+    async def lookup_transform_async(self, target_frame: str, source_frame: str, time: object) -> TransformStamped:
+        """Wait for a transform in a coroutine callback. Raises TransformException."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_full_async(
-        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+        self, target_frame: str, target_time: object, source_frame: str, source_time: object, fixed_frame: str
     ) -> TransformStamped:
-        """The same between two times. Raises TransformException."""
+        """Wait for a transform between two times in a coroutine callback. Raises TransformException."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         await self.wait_for_transform_full_async(*asked)
         return self.lookup_transform_full_core(*asked)

@@ -1,4 +1,4 @@
-"""A buffer that asks another process, which has one and serves it by an action."""
+"""A client of a transform buffer in another process, which serves it by an action."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ _ERRORS = {
 
 
 class BufferClient(BufferInterface):
-    """Asks a buffer server. Another thread must spin the node meanwhile.
+    """A client of a buffer server. Another thread must spin the node meanwhile.
 
     Args:
-        node: The node that asks.
+        node: The node of the client.
         ns: The name of the server's action.
-        check_frequency: For rclpy's callers; answers are not polled for.
-        timeout_padding: How much longer than its own time limit the server may take.
+        check_frequency: Ignored: answers are not polled.
+        timeout_padding: Seconds that the server may take beyond its own time limit.
     """
 
     def __init__(
@@ -59,12 +59,12 @@ class BufferClient(BufferInterface):
         self.timeout_padding = timeout_padding
 
     def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE
+        self, target_frame: str, source_frame: str, time: object, timeout: Duration = AT_ONCE
     ) -> TransformStamped:
-        """As `Buffer.lookup_transform`.
+        """Look up a transform as `Buffer.lookup_transform` does.
 
         Raises:
-            TransformException: One of its kinds says why there is none; TimeoutException if the server is not there.
+            TransformException: There is none; TimeoutException if the server is unavailable.
         """
         goal = LookupTransform.Goal(target_frame=target_frame, source_frame=source_frame, source_time=_message(time))
         return self._graphflow_ask(goal, timeout)
@@ -72,13 +72,13 @@ class BufferClient(BufferInterface):
     def lookup_transform_full(
         self,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         source_frame: str,
-        source_time: Any,
+        source_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
     ) -> TransformStamped:
-        """As `Buffer.lookup_transform_full`. Errors as for `lookup_transform`."""
+        """Look up a transform as `Buffer.lookup_transform_full` does. Errors as for `lookup_transform`."""
         goal = LookupTransform.Goal(
             target_frame=target_frame,
             source_frame=source_frame,
@@ -89,25 +89,25 @@ class BufferClient(BufferInterface):
         )
         return self._graphflow_ask(goal, timeout)
 
-    def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE) -> bool:
-        """Whether `lookup_transform` gives one."""
+    def can_transform(self, target_frame: str, source_frame: str, time: object, timeout: Duration = AT_ONCE) -> bool:
+        """Whether `lookup_transform` would return a transform."""
         return _succeeds(lambda: self.lookup_transform(target_frame, source_frame, time, timeout))
 
     def can_transform_full(
         self,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         source_frame: str,
-        source_time: Any,
+        source_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
     ) -> bool:
-        """Whether `lookup_transform_full` gives one."""
+        """Whether `lookup_transform_full` would return a transform."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return _succeeds(lambda: self.lookup_transform_full(*asked, timeout))
 
     def destroy(self) -> None:
-        """Ask no more."""
+        """Destroy the client."""
         self.action_client.destroy()
 
     def _graphflow_ask(self, goal: Any, timeout: Duration) -> TransformStamped:
@@ -135,7 +135,7 @@ def _succeeds(look_up: Callable[[], TransformStamped]) -> bool:
 
 
 def _waited_for(future: Future[Any], limit: float) -> Any:
-    """What a future brings, within some seconds."""
+    """Return a future's result within some seconds."""
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
     if not done.wait(limit):
@@ -143,5 +143,5 @@ def _waited_for(future: Future[Any], limit: float) -> Any:
     return future.result()
 
 
-def _message(time: Any) -> Any:
+def _message(time: object) -> object:
     return time.to_msg() if isinstance(time, Time) else time

@@ -1,4 +1,4 @@
-"""What all buffers can do with objects that are in a frame."""
+"""The interface of all buffers, which transforms objects with a frame."""
 
 from __future__ import annotations
 
@@ -9,37 +9,37 @@ from rclpy.duration import Duration
 from rclpy.time import Time
 
 AT_ONCE = Duration()
-"""Does not wait."""
+"""The timeout that does not wait."""
 
 
 class NotImplementedException(Exception):
-    """A buffer does not do that."""
+    """A buffer does not implement the method."""
 
     def __init__(self) -> None:
         super().__init__("CanTransform or LookupTransform not implemented")
 
 
 class TypeException(Exception):
-    """Nobody has said how to transform, or to convert, an object of that type."""
+    """No function is registered to transform, or to convert, an object of that type."""
 
 
 class Stamped:
-    """An object, when it was there, and in which frame."""
+    """An object with its time and frame."""
 
-    def __init__(self, obj: Any, stamp: Any, frame_id: str) -> None:
+    def __init__(self, obj: object, stamp: Any, frame_id: str) -> None:
         self.obj, self.stamp, self.frame_id = obj, stamp, frame_id
 
 
 class TransformRegistration:
-    """How objects are transformed, by type: `fn(object, transform_stamped)` each."""
+    """The functions that transform objects, by type: `fn(object, transform_stamped)` each."""
 
-    _known: ClassVar[dict[type, Callable[[Any, Any], Any]]] = {}
+    _known: ClassVar[dict[type, Callable[..., object]]] = {}
 
     def add(self, key: type, callback: Callable[[Any, Any], Any]) -> None:
         self._known[key] = callback
 
-    def get(self, key: type) -> Callable[[Any, Any], Any]:
-        """Raises TypeException: There is none."""
+    def get(self, key: type) -> Callable[..., Any]:
+        """Return the function for a type. Raises TypeException if there is none."""
         try:
             return self._known[key]
         except KeyError:
@@ -49,11 +49,11 @@ class TransformRegistration:
 
 
 class ConvertRegistration:
-    """How objects become messages and back, and one message another; by type."""
+    """The functions that convert objects to messages and back, and between messages; by type."""
 
-    _to: ClassVar[dict[type, Callable[[Any], Any]]] = {}
-    _from: ClassVar[dict[type, Callable[[Any], Any]]] = {}
-    _between: ClassVar[dict[tuple[type, type], Callable[[Any], Any]]] = {}
+    _to: ClassVar[dict[type, Callable[..., Any]]] = {}
+    _from: ClassVar[dict[type, Callable[..., Any]]] = {}
+    _between: ClassVar[dict[tuple[type, type], Callable[..., Any]]] = {}
 
     def add_to_msg(self, key: type, callback: Callable[[Any], Any]) -> None:
         self._to[key] = callback
@@ -74,7 +74,7 @@ class ConvertRegistration:
         return _found(self._between, key)
 
 
-def _found(known: dict[Any, Callable[[Any], Any]], key: Any) -> Callable[[Any], Any]:
+def _found(known: dict[Any, Callable[..., object]], key: Any) -> Callable[[Any], Any]:
     try:
         return known[key]
     except KeyError:
@@ -82,7 +82,7 @@ def _found(known: dict[Any, Callable[[Any], Any]], key: Any) -> Callable[[Any], 
 
 
 def convert(a: Any, b_type: type) -> Any:
-    """An object as one of another type, by way of a message. Raises TypeException."""
+    """Convert an object to another type, via a message. Raises TypeException."""
     registration = ConvertRegistration()
     try:
         return registration.get_convert((type(a), b_type))(a)
@@ -93,7 +93,7 @@ def convert(a: Any, b_type: type) -> Any:
 
 
 class BufferInterface:
-    """A buffer whose look-ups another class has."""
+    """The base class of buffers; subclasses implement the lookups."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -101,10 +101,10 @@ class BufferInterface:
     def transform(
         self, object_stamped: Any, target_frame: str, timeout: Duration = AT_ONCE, new_type: type | None = None
     ) -> Any:
-        """An object with its coordinates in another frame, at the time of its own stamp.
+        """Transform an object to another frame, at the time of its own stamp.
 
         Raises:
-            TransformException, TypeException: As they say.
+            TransformException, TypeException: As their names say.
         """
         header = object_stamped.header
         found = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)
@@ -114,44 +114,44 @@ class BufferInterface:
         self,
         object_stamped: Any,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
         new_type: type | None = None,
     ) -> Any:
-        """The same at another time. Raises TransformException, TypeException."""
+        """Transform an object to another frame at another time. Raises TransformException, TypeException."""
         header = object_stamped.header
         stamp = Time.from_msg(header.stamp)
         found = self.lookup_transform_full(target_frame, target_time, header.frame_id, stamp, fixed_frame, timeout)
         return self._graphflow_apply(object_stamped, found, new_type)
 
-    def _graphflow_apply(self, object_stamped: Any, found: Any, new_type: type | None) -> Any:
+    def _graphflow_apply(self, object_stamped: object, found: Any, new_type: type | None) -> object:
         moved = self.registration.get(type(object_stamped))(object_stamped, found)
         return moved if new_type is None else convert(moved, new_type)
 
-    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE) -> Any:
+    def lookup_transform(self, target_frame: str, source_frame: str, time: object, timeout: Duration = AT_ONCE) -> Any:
         raise NotImplementedException
 
     def lookup_transform_full(
         self,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         source_frame: str,
-        source_time: Any,
+        source_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
     ) -> Any:
         raise NotImplementedException
 
-    def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE) -> Any:
+    def can_transform(self, target_frame: str, source_frame: str, time: object, timeout: Duration = AT_ONCE) -> Any:
         raise NotImplementedException
 
     def can_transform_full(
         self,
         target_frame: str,
-        target_time: Any,
+        target_time: object,
         source_frame: str,
-        source_time: Any,
+        source_time: object,
         fixed_frame: str,
         timeout: Duration = AT_ONCE,
     ) -> Any:

@@ -1,4 +1,4 @@
-"""Saying where frames are that do not move."""
+"""Broadcasting of transforms that do not change."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tf2_ros.transform_broadcaster import as_list
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms on `/tf_static`, for those too who join later."""
+    """Publishes transforms on `/tf_static`, also for late subscribers."""
 
     def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
         if qos is None:
@@ -24,7 +24,7 @@ class StaticTransformBroadcaster:
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
-        """Publish one transform, or several, with all that were published before: only the last message is kept."""
+        """Publish one transform, or several, with all those published before: only the last message is kept."""
         transforms = as_list(transform)
         for one in transforms:
             check(one)

@@ -1,4 +1,4 @@
-"""Saying where frames are that move."""
+"""Broadcasting of transforms that change."""
 
 from __future__ import annotations
 
@@ -27,5 +27,5 @@ class TransformBroadcaster:
 
 
 def as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
-    """One transform, or several, as a list."""
+    """Return one transform, or several, as a list."""
     return list(transform) if hasattr(transform, "__iter__") else [transform]

@@ -1,4 +1,4 @@
-"""What fills a buffer with transforms."""
+"""The listener that fills a buffer with transforms."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ DEPTH = 100
 
 
 class TransformListener:
-    """Puts what is said on `/tf` and `/tf_static` into a buffer, while its node is spun.
+    """Adds transforms from `/tf` and `/tf_static` to a buffer while its node is spun.
 
     Args:
-        spin_thread: Whether it spins the node itself, in a thread.
-        static_only: Whether it leaves out `/tf`.
+        spin_thread: Whether to spin the node in a thread of its own.
+        static_only: Whether to ignore `/tf`.
     """
 
     def __init__(
@@ -68,17 +68,17 @@ class TransformListener:
             return  # its context has ended, or `unregister` was called
 
     def callback(self, data: TFMessage) -> None:
-        """Take what is said on `/tf`."""
+        """Add the transforms of a `/tf` message."""
         for transform in data.transforms:
             self.buffer.set_transform(transform)
 
     def static_callback(self, data: TFMessage) -> None:
-        """Take what is said on `/tf_static`."""
+        """Add the transforms of a `/tf_static` message."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform)
 
     def unregister(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         if self.executor is not None:
             self.executor.shutdown()
             self.executor = None

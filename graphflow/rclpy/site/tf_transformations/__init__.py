@@ -1,6 +1,6 @@
-"""Rotations as quaternions, Euler angles and matrices, by the library transforms3d; quaternions are x, y, z, w.
+"""Rotations as quaternions (x, y, z, w), Euler angles and matrices, computed by the library transforms3d.
 
-As in ROS 2, transforms3d is installed by users of this package: nothing else needs it.
+As in ROS 2, users of this package install transforms3d themselves: nothing else needs it.
 """
 
 from __future__ import annotations
@@ -64,22 +64,22 @@ def _affine(rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> Ar
 
 
 def identity_matrix() -> Array:
-    """No transform, 4 by 4."""
+    """Return the identity, 4 by 4."""
     return np.eye(4)
 
 
 def translation_matrix(direction: ArrayLike) -> Array:
-    """A translation, 4 by 4."""
+    """Return a translation, 4 by 4."""
     return _affine(np.eye(3), np.asarray(direction)[:3])
 
 
 def translation_from_matrix(matrix: ArrayLike) -> Array:
-    """The translation of a 4 by 4 matrix."""
+    """Return the translation of a 4 by 4 matrix."""
     return np.array(matrix, dtype=float)[:3, 3]
 
 
 def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None = None) -> Array:
-    """A rotation of `angle` radians about an axis, through a point or the origin, 4 by 4."""
+    """Return a rotation of `angle` radians about an axis, through a point or the origin, 4 by 4."""
     turn = quaternions.quat2mat(quaternions.axangle2quat(np.asarray(direction)[:3], angle))
     if point is None:
         return _affine(turn)
@@ -88,10 +88,10 @@ def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None 
 
 
 def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Array, Array]:
-    """The angle in radians, the axis, and a point on it, of a rotation.
+    """Return a rotation's angle in radians, its axis, and a point on the axis.
 
     Raises:
-        ValueError: It does more than rotate.
+        ValueError: The matrix is not a pure rotation.
     """
     whole = np.asarray(matrix, dtype=float)
     axis, angle = quaternions.quat2axangle(quaternions.mat2quat(whole[:3, :3]))
@@ -102,13 +102,13 @@ def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Array, Array]:
 
 
 def scale_matrix(factor: float, origin: ArrayLike | None = None) -> Array:
-    """A matrix that scales, about a point or the origin, 4 by 4."""
+    """Return a matrix that scales, about a point or the origin, 4 by 4."""
     fixed = np.zeros(3) if origin is None else np.asarray(origin, dtype=float)[:3]
     return _affine(np.eye(3) * factor, fixed * (1 - factor))
 
 
 def concatenate_matrices(*matrices: ArrayLike) -> Array:
-    """The product of matrices."""
+    """Return the product of matrices."""
     out = np.eye(4)
     for matrix in matrices:
         out = out @ np.asarray(matrix, dtype=float)
@@ -116,12 +116,12 @@ def concatenate_matrices(*matrices: ArrayLike) -> Array:
 
 
 def inverse_matrix(matrix: ArrayLike) -> Array:
-    """The inverse of a matrix. Raises numpy.linalg.LinAlgError where there is none."""
+    """Return the inverse of a matrix. Raises numpy.linalg.LinAlgError if there is none."""
     return np.linalg.inv(np.asarray(matrix, dtype=float))
 
 
 def is_same_transform(matrix0: ArrayLike, matrix1: ArrayLike) -> bool:
-    """Whether two matrices do the same with homogeneous coordinates."""
+    """Whether two matrices are the same transform of homogeneous coordinates."""
     one, other = np.array(matrix0, dtype=float), np.array(matrix1, dtype=float)
     return bool(np.allclose(one / one[3, 3], other / other[3, 3]))
 
@@ -133,7 +133,7 @@ def compose_matrix(
     translate: ArrayLike | None = None,
     perspective: ArrayLike | None = None,
 ) -> Array:
-    """The 4 by 4 matrix of what is given: scale, shear, Euler angles about x, y and z, translation, perspective."""
+    """Return the 4 by 4 matrix of scale, shear, Euler angles about x, y and z, translation and perspective."""
     turn = np.eye(3) if angles is None else euler.euler2mat(*np.asarray(angles, dtype=float), "sxyz")
     out: Array = affines.compose(
         np.zeros(3) if translate is None else np.asarray(translate, dtype=float)[:3],
@@ -149,7 +149,7 @@ def compose_matrix(
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Array, Array, tuple[float, float, float], Array, Array]:
-    """Scale, shear, Euler angles about x, y and z, translation and perspective of a matrix. Raises ValueError."""
+    """Return a matrix's scale, shear, Euler angles about x, y, z, translation and perspective. Raises ValueError."""
     whole = np.array(matrix, dtype=float)
     perspective = whole[3].copy()
     whole[3] = 0.0, 0.0, 0.0, 1.0
@@ -158,65 +158,65 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Array, Array, tuple[float, floa
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Array:
-    """A rotation by three angles in radians, 4 by 4."""
+    """Return a rotation by three angles in radians, 4 by 4."""
     return _affine(euler.euler2mat(ai, aj, ak, axes))
 
 
 def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The three angles of a rotation, in radians."""
+    """Return the three angles of a rotation, in radians."""
     ai, aj, ak = euler.mat2euler(np.asarray(matrix, dtype=float)[:3, :3], axes)
     return ai, aj, ak
 
 
 def euler_from_quaternion(quaternion: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The three angles of a rotation, in radians: roll, pitch and yaw where nothing else is said."""
+    """Return the three angles of a rotation in radians, by default roll, pitch and yaw."""
     ai, aj, ak = euler.quat2euler(_w_first(quaternion), axes)
     return ai, aj, ak
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Array:
-    """The rotation by three angles in radians: roll, pitch and yaw where nothing else is said."""
+    """Return the rotation by three angles in radians, by default roll, pitch and yaw."""
     return _w_last(euler.euler2quat(ai, aj, ak, axes))
 
 
 def quaternion_about_axis(angle: float, axis: ArrayLike) -> Array:
-    """The rotation of `angle` radians about an axis."""
+    """Return the rotation of `angle` radians about an axis."""
     return _w_last(quaternions.axangle2quat(np.asarray(axis)[:3], angle))
 
 
 def quaternion_matrix(quaternion: ArrayLike) -> Array:
-    """A rotation, 4 by 4."""
+    """Return a rotation, 4 by 4."""
     return _affine(quaternions.quat2mat(_w_first(quaternion)))
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Array:
-    """The rotation of a matrix."""
+    """Return the rotation of a matrix."""
     return _w_last(quaternions.mat2quat(np.asarray(matrix, dtype=float)[:3, :3]))
 
 
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Array:
-    """The rotation `quaternion0`, and then `quaternion1`."""
+    """Return the rotation `quaternion0` followed by `quaternion1`."""
     return _w_last(quaternions.qmult(_w_first(quaternion1), _w_first(quaternion0)))
 
 
 def quaternion_conjugate(quaternion: ArrayLike) -> Array:
-    """The rotation back, for a quaternion of length 1."""
+    """Return the inverse rotation, for a quaternion of length 1."""
     return _w_last(quaternions.qconjugate(_w_first(quaternion)))
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Array:
-    """The rotation back."""
+    """Return the inverse rotation."""
     return _w_last(quaternions.qinverse(_w_first(quaternion)))
 
 
 def quaternion_slerp(
     quat0: ArrayLike, quat1: ArrayLike, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Array:
-    """The rotation at a share of 0 to 1 of the way from one to another.
+    """Interpolate a rotation at a share of 0 to 1.
 
     Args:
-        spin: Whole turns on the way.
-        shortestpath: Whether it takes the shorter way.
+        spin: The number of additional full turns.
+        shortestpath: Whether to take the shorter path.
     """
     start, end = unit_vector(quat0), unit_vector(quat1)
     dot = float(start @ end)
@@ -230,7 +230,7 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: Sequence[float] | None = None) -> Array:
-    """A rotation, each as likely as any other; `rand` are three numbers of 0 to 1."""
+    """Return a uniformly random rotation; `rand` are three numbers of 0 to 1."""
     a, b, c = np.random.default_rng().random(3) if rand is None else rand
     one, other = np.sqrt(1 - a), np.sqrt(a)
     x, y = np.sin(2 * np.pi * b) * one, np.cos(2 * np.pi * b) * one
@@ -238,12 +238,12 @@ def random_quaternion(rand: Sequence[float] | None = None) -> Array:
 
 
 def unit_vector(data: ArrayLike, axis: int | None = None) -> Array:
-    """A vector, or vectors along an axis, with the length 1."""
+    """Normalize a vector, or vectors along an axis."""
     values = np.asarray(data, dtype=float)
     out: Array = values / np.linalg.norm(values, axis=axis, keepdims=axis is not None)
     return out
 
 
 def vector_norm(data: ArrayLike, axis: int | None = None) -> Any:
-    """The length of a vector, or of vectors along an axis."""
+    """Return the length of a vector, or of vectors along an axis."""
     return np.linalg.norm(np.asarray(data, dtype=float), axis=axis)

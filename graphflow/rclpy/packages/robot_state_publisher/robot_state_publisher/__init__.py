@@ -1,1 +1,1 @@
-"""A robot's links as frames of tf2: where they are follows from its description and the positions of its joints."""
+"""Publish a robot's links as tf2 frames, computed from its description and the positions of its joints."""

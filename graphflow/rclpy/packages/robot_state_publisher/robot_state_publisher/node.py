@@ -24,10 +24,10 @@ from robot_state_publisher.urdf import MOVES, Joint, Robot, URDFError, parse
 
 
 class RobotStatePublisher(Node):
-    """Publish where a robot's links are: those that move whenever `joint_states` tells, the others once.
+    """Publishes the poses of a robot's links: moving links on each `joint_states` message, fixed ones once.
 
     Args:
-        description: The robot in URDF, if the parameter `robot_description` has none.
+        description: The robot in URDF, used if the parameter `robot_description` is empty.
     """
 
     def __init__(self, description: str = "") -> None:
@@ -51,7 +51,7 @@ class RobotStatePublisher(Node):
         self._moving, self._fixed = TransformBroadcaster(self), StaticTransformBroadcaster(self)
         self._robot = parse(self._text("robot_description"))
         self._published: dict[str, int] = {}
-        """When each joint was published last, in nanoseconds, as its states have it."""
+        """The stamp of each joint's last published state, in nanoseconds."""
         self._heard = 0
         self._begin()
         self.create_subscription(JointState, "joint_states", self.on_joint_state, qos_profile_sensor_data)
@@ -63,7 +63,7 @@ class RobotStatePublisher(Node):
         return str(self.get_parameter(name).value)
 
     def _begin(self) -> None:
-        """Say what the robot is, and where those of its links are that do not move."""
+        """Publish the description and the poses of the fixed links."""
         self._description.publish(String(data=self._text("robot_description")))
         now = self.get_clock().now().nanoseconds
         fixed = [self._transform(joint, 0.0, now) for joint in self._robot.joints.values() if joint.type not in MOVES]
@@ -87,7 +87,7 @@ class RobotStatePublisher(Node):
             self._begin()
 
     def on_joint_state(self, state: JointState) -> None:
-        """Publish where the links are, unless that was done less than a period ago."""
+        """Publish the poses of the moving links, unless that was done less than a period ago."""
         if len(state.position) != len(state.name):
             named = ", ".join(state.name)
             if not state.position:
@@ -118,7 +118,7 @@ class RobotStatePublisher(Node):
 
 
 def moved_joints(robot: Robot, known: dict[str, float]) -> list[tuple[Joint, float]]:
-    """The joints that move, with their positions: those that are told, and those that mimic them."""
+    """Yield the moving joints with their positions: those reported, and those that mimic them."""
     found = []
     for joint in robot.joints.values():
         position = known.get(joint.name)
@@ -130,7 +130,7 @@ def moved_joints(robot: Robot, known: dict[str, float]) -> list[tuple[Joint, flo
 
 
 def main() -> None:
-    """Run it: with the parameter `robot_description`, or with the name of a file as its argument."""
+    """Run the node with the parameter `robot_description`, or with a file name as its argument."""
     rclpy.init()
     _, *files = remove_ros_args(sys.argv)
     try:

@@ -1,4 +1,4 @@
-"""What a robot's description, in URDF, says of its joints. Source: the URDF reference, `joint`."""
+"""The joints of a robot's URDF description. Source: the URDF reference, `joint`."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from xml.etree import ElementTree
 from tf2_py.poses import Pose, Vector, about, from_rpy
 
 MOVES = {"revolute", "continuous", "prismatic"}
-"""The types of joints whose positions are told; all others stay where they are."""
+"""The joint types that move; all others are fixed."""
 
 
 class URDFError(ValueError):
-    """A text is not the description of a robot; it says why."""
+    """A text is not a robot description; the message gives the reason."""
 
 
 class Mimic(NamedTuple):
@@ -25,7 +25,7 @@ class Mimic(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """A joint: the frame `child` moves in the frame `parent`.
+    """A joint: it moves the frame `child` in the frame `parent`.
 
     Attributes:
         origin: The pose of the child where the joint's position is 0.
@@ -41,7 +41,7 @@ class Joint(NamedTuple):
     mimic: Mimic | None
 
     def pose(self, position: float) -> Pose:
-        """The pose of the child in the parent; the position is in radians or metres."""
+        """Return the pose of the child in the parent; the position is in radians or metres."""
         if self.type == "prismatic":
             x, y, z = self.axis
             return self.origin.of(Pose((x * position, y * position, z * position), (0.0, 0.0, 0.0, 1.0)))
@@ -58,10 +58,10 @@ class Robot(NamedTuple):
 
 
 def parse(text: str) -> Robot:
-    """Read a description.
+    """Parse a description.
 
     Raises:
-        URDFError: It is not one.
+        URDFError: The text is not a robot description.
     """
     try:
         top = ElementTree.fromstring(text)  # noqa: S314 - a robot's description is its user's own

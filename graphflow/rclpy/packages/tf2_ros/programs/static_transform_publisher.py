@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Say on `/tf_static` where one frame is in another, which does not change.
+"""Publish a constant transform between two frames on `/tf_static`.
 
 Source: tf2_ros static_transform_publisher, its arguments and parameters.
 """
@@ -24,11 +24,11 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 METRES, TURNS, PARTS = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qx", "qy", "qz", "qw")
-"""The options that are numbers: a translation, and a rotation in radians or as a quaternion."""
+"""The numeric options: a translation, and a rotation in radians or as a quaternion."""
 
 
 class StaticTransformPublisher(Node):
-    """Publish one transform for as long as it runs; its parameters say which, and cannot be changed."""
+    """Publishes one transform for as long as it runs; its parameters define it, and are read-only."""
 
     def __init__(self, pose: Pose, parent: str, child: str) -> None:
         super().__init__(f"static_transform_publisher_{uuid4().hex[:16]}")
@@ -64,7 +64,7 @@ def _normalized(q: Quaternion) -> Quaternion:
 
 
 def _number(word: str) -> float:
-    """The number that a word says. Raises ArgumentTypeError if there is none, or it is not finite."""
+    """Parse a number. Raises ArgumentTypeError if it is not a finite number."""
     try:
         number = float(word)
     except ValueError:
@@ -75,10 +75,10 @@ def _number(word: str) -> float:
 
 
 def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
-    """The pose, the parent frame and the child frame that a command line means.
+    """Return the pose, parent frame and child frame that a command line specifies.
 
     Raises:
-        SystemExit: It means none.
+        SystemExit: The command line is wrong.
     """
     parser = argparse.ArgumentParser(
         "static_transform_publisher",
@@ -112,7 +112,7 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
 
 
 def _with_values(words: Sequence[str]) -> list[str]:
-    """The words with each option and its value as one: argparse takes `-1e-3` for an option."""
+    """Join each option with its value: argparse takes `-1e-3` for an option."""
     joined: list[str] = []
     rest = iter(words)
     for word in rest:
@@ -123,7 +123,7 @@ def _with_values(words: Sequence[str]) -> list[str]:
 
 
 def main() -> None:
-    """Run it."""
+    """Run the program."""
     rclpy.init()
     pose, parent, child = parsed(remove_ros_args(sys.argv)[1:])
     try:

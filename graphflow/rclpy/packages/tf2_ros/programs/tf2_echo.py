@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Show where one frame is in another, again and again. Source: tf2_ros tf2_echo, its arguments and output."""
+"""Print the transform between two frames periodically. Source: tf2_ros tf2_echo, its arguments and output."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from rclpy.utilities import remove_ros_args
 
 
 class Echo(Node):
-    """Print a transform once in a period, or why there is none.
+    """Prints a transform once per period, or the reason why there is none.
 
     Args:
-        target: The frame that coordinates are told in.
-        source: The frame whose pose is told.
-        once: Whether one is enough.
+        target: The frame in which coordinates are given.
+        source: The frame whose pose is given.
+        once: Whether to exit after the first.
     """
 
     def __init__(self, target: str, source: str, period: float, *, once: bool) -> None:
@@ -52,7 +52,7 @@ class Echo(Node):
 
 
 def described(found: TransformStamped) -> str:
-    """A transform as lines."""
+    """Format a transform as lines."""
     t, r = found.transform.translation, found.transform.rotation
     rotation = (r.x, r.y, r.z, r.w)
     turns = to_rpy(rotation)
@@ -82,7 +82,7 @@ def _show(text: str) -> None:
 
 
 def main() -> None:
-    """Run it."""
+    """Run the program."""
     rclpy.init()
     parser = argparse.ArgumentParser("tf2_echo", description="Show where one frame is in another.")
     parser.add_argument("source_frame", help="the frame that the other is told in")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw the tree of frames: in the terminal, and into a file of Graphviz's. Source: tf2_tools view_frames."""
+"""Draw the tree of frames in the terminal, and into a Graphviz file. Source: tf2_tools view_frames."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rclpy.utilities import remove_ros_args
 
 
 class Frame(NamedTuple):
-    """A frame, and what has been heard of where it is."""
+    """A frame, and the statistics of its transforms."""
 
     name: str
     parent: str
@@ -29,7 +29,7 @@ class Frame(NamedTuple):
 
 
 def frames(text: str) -> list[Frame]:
-    """The frames that `Buffer.all_frames_as_yaml` tells."""
+    """Read the frames from the text of `Buffer.all_frames_as_yaml`."""
     found = []
     for name, said in yaml.load(text, yaml.BaseLoader).items():  # noqa: S506 - it makes texts of everything: `on`, `007`
         rate, seconds = float(said["rate"]), float(said["buffer_length"])
@@ -40,7 +40,7 @@ def frames(text: str) -> list[Frame]:
 
 
 def drawn(known: list[Frame]) -> str:
-    """The tree, or the trees, as lines."""
+    """Draw the tree, or the trees, as lines."""
     lines: list[str] = []
 
     def draw(parent: str, before: str) -> None:
@@ -57,7 +57,7 @@ def drawn(known: list[Frame]) -> str:
 
 
 def graphviz(known: list[Frame]) -> str:
-    """The same for Graphviz."""
+    """Convert the frames to Graphviz."""
 
     def quoted(text: str) -> str:
         return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
@@ -67,7 +67,7 @@ def graphviz(known: list[Frame]) -> str:
 
 
 def main() -> None:
-    """Run it."""
+    """Run the program."""
     rclpy.init()
     parser = argparse.ArgumentParser("view_frames", description="Draw the tree of frames.")
     parser.add_argument("--wait-time", "-t", type=float, default=5.0, help="seconds to listen (default 5)")

@@ -1,4 +1,4 @@
-"""launch.event_handlers, as `launch` says; a file, so that editors find it."""
+"""launch.event_handlers, see `launch`; a file of its own so that editors find it."""
 
 from graphflow.launchfiles.python.stand_ins import stand_in
 

@@ -1,4 +1,4 @@
-"""launch.events, as `launch` says; a file, so that editors find it."""
+"""launch.events, see `launch`; a file of its own so that editors find it."""
 
 from graphflow.launchfiles.python.stand_ins import stand_in
 

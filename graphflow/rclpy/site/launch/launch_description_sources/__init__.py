@@ -1,4 +1,4 @@
-"""launch.launch_description_sources, as `launch` says; a file, so that editors find it."""
+"""launch.launch_description_sources, see `launch`; a file of its own so that editors find it."""
 
 from graphflow.launchfiles.python.stand_ins import stand_in
 

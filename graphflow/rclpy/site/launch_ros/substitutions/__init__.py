@@ -1,4 +1,4 @@
-"""launch_ros.substitutions, as `launch_ros` says; a file, so that editors find it."""
+"""launch_ros.substitutions, see `launch_ros`; a file of its own so that editors find it."""
 
 from graphflow.launchfiles.python.stand_ins import stand_in
 

@@ -1,4 +1,4 @@
-"""Actions: servers, clients, and what the graph has of them."""
+"""Action servers and clients, and the graph's actions."""
 
 from rclpy.action.client import ActionClient
 from rclpy.action.graph import (

@@ -1,4 +1,4 @@
-"""Clients of actions."""
+"""Action clients."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ logger = logging.getLogger("graphflow")
 
 
 class ClientGoalHandle:
-    """A goal that was sent, and answered."""
+    """The client's handle of a goal that the server has answered."""
 
     def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
         self._action_client, self._goal_id, self._goal_response = action_client, goal_id, goal_response
@@ -54,38 +54,38 @@ class ClientGoalHandle:
 
     @property
     def goal_id(self) -> Any:
-        """Its id, a unique_identifier_msgs/msg/UUID."""
+        """The goal's id, a unique_identifier_msgs/msg/UUID."""
         return self._goal_id
 
     @property
     def stamp(self) -> Any:
-        """When it was taken on."""
+        """The time of the server's answer."""
         return self._goal_response.stamp
 
     @property
     def accepted(self) -> bool:
-        """Whether it was taken on."""
+        """Whether the goal was accepted."""
         return bool(self._goal_response.accepted)
 
     @property
     def status(self) -> int:
-        """A status of action_msgs/msg/GoalStatus."""
+        """The last known status, a value of action_msgs/msg/GoalStatus."""
         return self._status
 
     def cancel_goal(self) -> Any:
-        """Ask for its cancellation, and block until that is answered: some other thread must be spinning."""
+        """Request cancellation and block until the answer; another thread must be spinning."""
         return self._action_client._graphflow_block_on(self.cancel_goal_async())
 
     def cancel_goal_async(self) -> Future[Any]:
-        """Ask for its cancellation; the future has the answer, a CancelGoal.Response."""
+        """Request cancellation; the future yields a CancelGoal.Response."""
         return self._action_client._graphflow_cancel(self)
 
     def get_result(self) -> Any:
-        """Block until it has ended, and return the result: some other thread must be spinning."""
+        """Block until the goal ends and return its result; another thread must be spinning."""
         return self._action_client._graphflow_block_on(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
-        """The future has `status` and `result` when it has ended; both are empty for a goal that was rejected."""
+        """Return a future of `status` and `result`; for a rejected goal both are empty."""
         if not self.accepted and (asked := caller(1)) is not None:
             text = (
                 "%s: the goal was rejected, and has no result: look at goal_handle.accepted before get_result_async()"
@@ -115,10 +115,10 @@ class ActionClient(Waitable):
         check_for_type_support(action_type)
         self._node, self._action_type, self._action_name = node, action_type, action_name
         self._graphflow_lock = threading.RLock()
-        self._graphflow_waiting: dict[tuple[Any, int], tuple[Future[Any], Callable[[Any], Any]]] = {}
-        """Calls that were sent: their futures, and what makes a result of the response."""
+        self._graphflow_waiting: dict[tuple[object, int], tuple[Future[Any], Callable[..., object]]] = {}
+        """Pending calls by client and number: the future, and the conversion of the response."""
         self._goal_handles: dict[bytes, ClientGoalHandle] = {}
-        self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        self._feedback_callbacks: dict[bytes, Callable[..., Any]] = {}
         self._graphflow_changed: dict[Wake, None] = {}
         self._graphflow_is_open = False  # another thread may be spinning the node
         name = node.resolve_service_name(action_name)
@@ -156,13 +156,13 @@ class ActionClient(Waitable):
         node.add_waitable(self)
 
     def _graphflow_look(self) -> None:
-        """Something of the server's came or went."""
+        """React to a server that has appeared or left."""
         for wake in list(self._graphflow_changed):
             wake.set()
 
     # what executors ask
 
-    def is_ready(self, wait_set: Any) -> bool:
+    def is_ready(self, wait_set: object) -> bool:
         if not self._graphflow_is_open:
             return False
         clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
@@ -172,8 +172,8 @@ class ActionClient(Waitable):
             or self._graphflow_status.waiting > 0
         )
 
-    def take_data(self) -> list[Callable[[], Any]]:
-        work: list[Callable[[], Any]] = []
+    def take_data(self) -> list[Callable[[], object]]:
+        work: list[Callable[[], object]] = []
         status = self._graphflow_status.take()
         if status is not None:
             work.append(partial(self._graphflow_heard_status, status.payload))
@@ -197,8 +197,8 @@ class ActionClient(Waitable):
     def get_num_entities(self) -> NumberOfEntities:
         return NumberOfEntities(num_subs=2, num_clients=3)
 
-    def add_to_wait_set(self, wait_set: Any) -> None:
-        """There are no wait sets."""
+    def add_to_wait_set(self, wait_set: object) -> None:
+        """Do nothing: there are no wait sets."""
 
     def _graphflow_settle(self, client: Any, answered: Any) -> None:
         with self._graphflow_lock:
@@ -239,7 +239,7 @@ class ActionClient(Waitable):
         return future
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
-        """Send a goal, and block until it has ended: some other thread must be spinning.
+        """Send a goal and block until it ends; another thread must be spinning.
 
         Args:
             kwargs: As for `send_goal_async`.
@@ -248,7 +248,7 @@ class ActionClient(Waitable):
             `status` and `result`; None if it was rejected.
 
         Raises:
-            TypeError: That is no goal of the action's.
+            TypeError: Not a goal of the action's type.
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
@@ -256,7 +256,7 @@ class ActionClient(Waitable):
         return handle.get_result() if handle is not None and handle.accepted else None
 
     def _graphflow_block_on(self, future: Future[Any]) -> Any:
-        """Block until a future is done, or the context was shut down."""
+        """Block until a future is done or the context is shut down."""
         life, wake = self._node.context.life, Wake()
         future._when_done(wake.set)
         life.on_end(wake)
@@ -269,14 +269,14 @@ class ActionClient(Waitable):
     def send_goal_async(
         self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
     ) -> Future[Any]:
-        """Send a goal; the future has a `ClientGoalHandle` when it is answered.
+        """Send a goal; the future yields a `ClientGoalHandle` when the server answers.
 
         Args:
-            feedback_callback: Called with each message of feedback on it.
-            goal_uuid: Its id; None for a new one.
+            feedback_callback: Called with each feedback message.
+            goal_uuid: The goal's id; None for a new one.
 
         Raises:
-            TypeError: That is no goal of the action's.
+            TypeError: Not a goal of the action's type.
         """
         from unique_identifier_msgs.msg import UUID
 
@@ -300,7 +300,7 @@ class ActionClient(Waitable):
         return self._graphflow_send(self._graphflow_goals, carrier.Request(goal_id=goal_id, goal=goal), made)
 
     def _graphflow_cancel(self, goal_handle: ClientGoalHandle) -> Future[Any]:
-        """Ask for the cancellation of a goal. Raises TypeError for no goal."""
+        """Request the cancellation of a goal. Raises TypeError if it is not a goal handle."""
         from action_msgs.srv import CancelGoal
 
         if not isinstance(goal_handle, ClientGoalHandle):
@@ -312,7 +312,7 @@ class ActionClient(Waitable):
         )
 
     def _graphflow_result_of(self, goal_handle: ClientGoalHandle) -> Future[Any]:
-        """Ask for the result of a goal. Raises TypeError for no goal."""
+        """Request the result of a goal. Raises TypeError if it is not a goal handle."""
         if not isinstance(goal_handle, ClientGoalHandle):
             raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
         carrier, key = self._action_type.Impl.GetResultService, bytes(goal_handle.goal_id.uuid)
@@ -329,7 +329,7 @@ class ActionClient(Waitable):
     # servers
 
     def server_is_ready(self) -> bool:
-        """Whether there is a server, with all its parts. Raises RCLError where the context was shut down."""
+        """Whether a server with all its parts is available. Raises RCLError if the context was shut down."""
         if not self._node.context.life.is_ok:
             raise RCLError("Failed to check if action server is available: rcl node's context is invalid")
         clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
@@ -340,7 +340,7 @@ class ActionClient(Waitable):
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Block until there is a server, at most `timeout_sec` seconds; whether there is one."""
+        """Block until a server is available, at most `timeout_sec` seconds; return whether one is."""
         life, wake = self._node.context.life, Wake()
         self._graphflow_changed[wake] = None
         life.on_end(wake)
@@ -352,7 +352,7 @@ class ActionClient(Waitable):
             self._graphflow_changed.pop(wake, None)
 
     def destroy(self) -> None:
-        """Withdraw it. Goals go on."""
+        """Withdraw the client. Goals continue."""
         if not self._graphflow_is_open:
             return
         self._graphflow_is_open = False

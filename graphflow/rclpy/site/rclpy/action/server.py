@@ -1,6 +1,6 @@
-"""Servers of actions.
+"""Action servers.
 
-An action is three services and two topics. One waitable looks after them, in the server's callback group; the bodies of
+An action is three services and two topics. One waitable serves them, in the server's callback group; the bodies of
 goals run as tasks of the executor, outside groups.
 """
 
@@ -39,14 +39,14 @@ __all__ = ["ActionServer", "CancelResponse", "GoalEvent", "GoalResponse", "RCLEr
 
 
 class GoalResponse(Enum):
-    """Whether a goal is taken on."""
+    """The answer to a goal request."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """Whether a goal is cancelled."""
+    """The answer to a cancellation request."""
 
     REJECT = 1
     ACCEPT = 2
@@ -66,40 +66,40 @@ _STEPS = {
 
 
 class ServerGoalHandle:
-    """A goal, as the server's callbacks get it."""
+    """The server's handle of a goal, passed to its callbacks."""
 
-    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: object) -> None:
         self._action_server, self._goal_request = action_server, goal_request
         self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
         self._status = Status.ACCEPTED
         self._lock = threading.Lock()
         self._result: Future[Any] = Future()
         self._graphflow_asked: list[Asked] = []
-        """Who waits for the result."""
+        """The requests that wait for the result."""
 
     @property
     def request(self) -> Any:
-        """The goal."""
+        """The goal message."""
         return self._goal_request
 
     @property
     def goal_id(self) -> Any:
-        """Its id, a unique_identifier_msgs/msg/UUID."""
+        """The goal's id, a unique_identifier_msgs/msg/UUID."""
         return self._goal_id
 
     @property
     def is_active(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the goal has not ended."""
         return not self._status.is_terminal
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether it is to end early: call `canceled` then, and return."""
+        """Whether cancellation was accepted: call `canceled` then, and return."""
         return self._status is Status.CANCELING
 
     @property
     def status(self) -> int:
-        """A status of action_msgs/msg/GoalStatus."""
+        """The status, a value of action_msgs/msg/GoalStatus."""
         return int(self._status)
 
     def _update_state(self, event: GoalEvent) -> None:
@@ -114,57 +114,57 @@ class ServerGoalHandle:
         if following.is_terminal:
             self._action_server.notify_goal_done()
 
-    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Have it executed, by another callback than the server's if one is given."""
+    def execute(self, execute_callback: Callable[[ServerGoalHandle], object] | None = None) -> None:
+        """Start the execution, by `execute_callback` or else by the server's."""
         if not self.is_cancel_requested:
             self._update_state(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
 
-    def publish_feedback(self, feedback: Any) -> None:
-        """Tell the client how it is going. Raises TypeError if that is no feedback of the action's."""
+    def publish_feedback(self, feedback: object) -> None:
+        """Publish feedback to the client. Raises TypeError if it is not of the action's feedback type."""
         self._action_server._graphflow_publish_feedback(self, feedback)
 
     def succeed(self) -> None:
-        """It has reached its end. Raises RCLError if it had ended before."""
+        """Mark the goal as succeeded. Raises RCLError if it has ended already."""
         self._update_state(GoalEvent.SUCCEED)
 
     def abort(self) -> None:
-        """It has failed. Raises RCLError if it had ended before."""
+        """Mark the goal as aborted. Raises RCLError if it has ended already."""
         self._update_state(GoalEvent.ABORT)
 
     def canceled(self) -> None:
-        """It has been cancelled. Raises RCLError if nobody has asked for that, or it had ended before."""
+        """Mark the goal as cancelled. Raises RCLError if no cancellation was requested, or it has ended already."""
         self._update_state(GoalEvent.CANCELED)
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Forget the goal."""
         self._action_server._graphflow_forget(self)
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Execute it."""
+    """Execute the goal."""
     goal_handle.execute()
 
 
-def default_goal_callback(goal_request: Any) -> GoalResponse:
-    """Take on every goal."""
+def default_goal_callback(goal_request: object) -> GoalResponse:
+    """Accept every goal."""
     return GoalResponse.ACCEPT
 
 
-def default_cancel_callback(cancel_request: Any) -> CancelResponse:
-    """Cancel no goal."""
+def default_cancel_callback(cancel_request: object) -> CancelResponse:
+    """Reject every cancellation."""
     return CancelResponse.REJECT
 
 
 class ActionServer(Waitable):
-    """A server of an action.
+    """An action server.
 
     Args:
         execute_callback: Called with each goal's handle; it returns the result, after `succeed`, `abort` or `canceled`.
-        goal_callback: Called with each goal's message; says whether it is taken on.
-        handle_accepted_callback: Called with the handle of each goal that is taken on; executes it, now or later.
-        cancel_callback: Called with the handle of a goal that somebody wants cancelled; says whether it is.
-        result_timeout: Seconds for which results are kept.
+        goal_callback: Called with each goal message; returns whether to accept it.
+        handle_accepted_callback: Called with each accepted goal's handle; executes it, now or later.
+        cancel_callback: Called with the handle of a goal whose cancellation is requested; returns whether to accept.
+        result_timeout: Seconds for which results are kept after the goal ends.
 
     Raises:
         TypeError: `execute_callback` cannot be called.
@@ -176,12 +176,12 @@ class ActionServer(Waitable):
         node: Any,
         action_type: Any,
         action_name: str,
-        execute_callback: Callable[[ServerGoalHandle], Any],
+        execute_callback: Callable[[ServerGoalHandle], object],
         *,
         callback_group: CallbackGroup | None = None,
-        goal_callback: Callable[[Any], Any] = default_goal_callback,
-        handle_accepted_callback: Callable[[ServerGoalHandle], Any] = default_handle_accepted_callback,
-        cancel_callback: Callable[[Any], Any] = default_cancel_callback,
+        goal_callback: Callable[..., object] = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], object] = default_handle_accepted_callback,
+        cancel_callback: Callable[..., object] = default_cancel_callback,
         goal_service_qos_profile: QoSProfile = qos_profile_services_default,
         result_service_qos_profile: QoSProfile = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
@@ -234,12 +234,12 @@ class ActionServer(Waitable):
 
     # what executors ask
 
-    def is_ready(self, wait_set: Any) -> bool:
+    def is_ready(self, wait_set: object) -> bool:
         return self._graphflow_is_open and any(
             s.inbox.items for s in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
         )
 
-    def take_data(self) -> list[tuple[Callable[[Asked], Any], Asked]]:
+    def take_data(self) -> list[tuple[Callable[[Asked], object], Asked]]:
         services = (
             (self._graphflow_goals, self._graphflow_goal),
             (self._graphflow_cancels, self._graphflow_cancel),
@@ -255,8 +255,8 @@ class ActionServer(Waitable):
     def get_num_entities(self) -> NumberOfEntities:
         return NumberOfEntities(num_timers=1, num_services=3)
 
-    def add_to_wait_set(self, wait_set: Any) -> None:
-        """There are no wait sets."""
+    def add_to_wait_set(self, wait_set: object) -> None:
+        """Do nothing: there are no wait sets."""
 
     # goals
 
@@ -299,7 +299,7 @@ class ActionServer(Waitable):
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have a goal executed by the node's executor."""
+        """Schedule a goal's execution on the node's executor."""
         callback = execute_callback or self._execute_callback
         executor = self._node.executor
         if executor is None:
@@ -335,7 +335,7 @@ class ActionServer(Waitable):
         LOOP.start().call_later(self._graphflow_result_timeout, self._graphflow_forget, goal_handle)
 
     def _graphflow_forget(self, goal_handle: ServerGoalHandle) -> None:
-        """Keep a goal, and its result, no longer."""
+        """Drop a goal and its result."""
         with self._lock:
             self._goal_handles.pop(bytes(goal_handle.goal_id.uuid), None)
 
@@ -361,7 +361,7 @@ class ActionServer(Waitable):
             self._graphflow_cancels.answer(asked, classes.encode(response))
 
     def _graphflow_to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
-        """The goals that a request means: one by its id, those up to a time, or all. Source: CancelGoal.srv."""
+        """Return the goals that a request matches: one by id, those up to a time, or all. Source: CancelGoal.srv."""
         key, until_ns = bytes(info.goal_id.uuid), Time.from_msg(info.stamp).nanoseconds
         with self._lock:
             goals = dict(self._goal_handles)
@@ -397,12 +397,12 @@ class ActionServer(Waitable):
                 self._graphflow_results.answer(asked, classes.encode(result.result()))
 
     def notify_goal_done(self) -> None:
-        """A goal has ended: results are kept from then on for their time."""
+        """Start the time for which an ended goal's result is kept."""
 
     # topics
 
     def _graphflow_publish_status(self) -> None:
-        """Publish the states of all goals that are known."""
+        """Publish the statuses of all known goals."""
         from action_msgs.msg import GoalInfo
         from action_msgs.msg import GoalStatus as StatusMessage
 
@@ -418,7 +418,7 @@ class ActionServer(Waitable):
                 self._graphflow_status.put(classes.encode(message))
 
     def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
-        """Publish feedback on a goal. Raises TypeError if it is none of the action's."""
+        """Publish feedback on a goal. Raises TypeError if it is not of the action's feedback type."""
         if not isinstance(feedback, self._action_type.Feedback):
             way = f"write publish_feedback({self._action_type.__name__}.Feedback(...))"
             raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}: {way}")
@@ -430,23 +430,23 @@ class ActionServer(Waitable):
     # callbacks
 
     def register_handle_accepted_callback(
-        self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
+        self, handle_accepted_callback: Callable[[ServerGoalHandle], object] | None
     ) -> None:
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
-    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+    def register_goal_callback(self, goal_callback: Callable[..., object] | None) -> None:
         self._goal_callback = goal_callback or default_goal_callback
 
-    def register_cancel_callback(self, cancel_callback: Callable[[Any], Any] | None) -> None:
+    def register_cancel_callback(self, cancel_callback: Callable[..., object] | None) -> None:
         self._cancel_callback = cancel_callback or default_cancel_callback
 
-    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
+    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], object]) -> None:
         if not callable(execute_callback):
             raise TypeError(f"Failed to register goal execution callback: not callable: {execute_callback!r}")
         self._execute_callback = execute_callback
 
     def destroy(self) -> None:
-        """Withdraw it. Goals that run go on, and their results are lost."""
+        """Withdraw the server. Running goals continue, but their results are lost."""
         if not self._graphflow_is_open:
             return
         self._graphflow_is_open = False

@@ -1,4 +1,4 @@
-"""What ROS 2 tries out."""
+"""ROS 2's experimental features."""
 
 from __future__ import annotations
 

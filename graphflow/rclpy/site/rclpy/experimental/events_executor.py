@@ -1,4 +1,4 @@
-"""An executor of one thread that is told what has something to do; in ROS 2 others look for it, here none does."""
+"""ROS 2's event-driven executor; here every executor is driven by events."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class EventsExecutor(SingleThreadedExecutor):
-    """Runs callbacks one after the other, in the thread that spins."""
+    """An executor that runs callbacks one at a time in the spinning thread."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context=context)

@@ -1,1 +1,1 @@
-"""What code finds under this name in rclpy."""
+"""The names that programs import from `rclpy.impl`, and the implementation behind the public classes."""

@@ -1,4 +1,4 @@
-"""The line of the user's own code that has called something, and what it does with what that returns."""
+"""The line of user code that made a call, and its use of the call's result."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from graphflow.errors import Place
 
 
 class Caller(NamedTuple):
-    """A line of the user's own code."""
+    """A line of user code."""
 
     frame: FrameType
     line: int
-    """Its number; the frame goes on."""
+    """The line's number at the time of the call; the frame moves on."""
 
     @property
     def place(self) -> Place:
-        """The line, with the name of its file alone."""
+        """The line as `file.py:12`."""
         return short_place(self.frame.f_code.co_filename, self.line)
 
     @property
     def drops_result(self) -> bool:
-        """Whether the code does nothing with what the call returns that it is in."""
+        """Whether the code discards the result of the call it is in."""
         later = (step for step in dis.get_instructions(self.frame.f_code) if step.offset > self.frame.f_lasti)
         return next((step.opname for step in later), "") == "POP_TOP"
 
     @property
     def is_chained(self) -> bool:
-        """Whether the call that it is in is of a method of what another call has returned, as in `ask().result()`."""
+        """Whether the code calls a method on the result of the call it is in, as in `ask().result()`."""
         steps = [s for s in dis.get_instructions(self.frame.f_code) if s.offset <= self.frame.f_lasti]
         before = [s.opname for s in steps if s.opname not in _FILLERS]
         return len(before) > 2 and before[-2] in ("LOAD_METHOD", "LOAD_ATTR") and before[-3].startswith("CALL")
 
     @property
     def reads(self) -> set[str]:
-        """The attributes that the code reads of what the call returns that it is in, at once or from its variable."""
+        """The attributes that the code reads of the call's result, directly or through its variable."""
         steps = [s for s in dis.get_instructions(self.frame.f_code) if s.opname not in _FILLERS]
         later = [s for s in steps if s.offset > self.frame.f_lasti]
         if not later or later[0].opname in _READS:
@@ -56,7 +56,7 @@ class Caller(NamedTuple):
 
 
 def _names(step: dis.Instruction) -> tuple[str, ...]:
-    """The variables of an instruction; some store one and load another."""
+    """Return the variables of an instruction; some instructions store one and load another."""
     return step.argval if isinstance(step.argval, tuple) else (step.argval,)
 
 
@@ -64,17 +64,17 @@ _READS = ("LOAD_ATTR", "LOAD_METHOD")
 _LOADS = ("LOAD_FAST", "LOAD_NAME", "LOAD_GLOBAL", "LOAD_DEREF")
 _STORES = ("STORE_FAST", "STORE_NAME", "STORE_GLOBAL", "STORE_DEREF")
 _FILLERS = ("CACHE", "PRECALL", "PUSH_NULL", "EXTENDED_ARG")
-"""Instructions that stand between others in some versions of Python."""
+"""Instructions that some versions of Python insert between others."""
 
 
 def caller(depth: int) -> Caller | None:
-    """The code that is so many frames above; None where that is graphflow's or Python's."""
+    """Return the code `depth` frames above; None if it is graphflow's or Python's own."""
     frame = sys._getframe(depth + 1)
     return Caller(frame, frame.f_lineno) if is_users(frame.f_code.co_filename) else None
 
 
 def stack_level() -> int:
-    """The `stacklevel` by which a function that warns names the user's line; 1 where there is none."""
+    """Return the `stacklevel` with which a warning names the user's line; 1 if there is none."""
     frame: FrameType | None = sys._getframe(1)
     level = 1
     while frame is not None:

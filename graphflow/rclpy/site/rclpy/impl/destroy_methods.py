@@ -1,4 +1,4 @@
-"""The part of a node that destroys what it has."""
+"""The part of a node that destroys its entities."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from rclpy.timer import Rate, Timer
 
 
 class DestroyMethods:
-    """A node's methods that destroy; for `Node` to derive from. Each returns whether the thing was the node's."""
+    """The node's methods that destroy; a base class of `Node`. Each returns whether the entity was the node's."""
 
     _graphflow: Internals
 
     def _graphflow_look_again(self) -> None:
-        """Have the executor see what there is."""
+        """Make the executor recheck the node's entities."""
         executor = self._graphflow.executor()
         if executor is not None:
             executor.wake()
 
     def add_waitable(self, waitable: Any) -> None:
-        """Have the executor look after it."""
+        """Add a waitable to the node's entities."""
         self._graphflow.waitables.append(waitable)
         self._graphflow_look_again()
 
     def remove_waitable(self, waitable: Any) -> None:
-        """Have the executor look after it no longer."""
+        """Remove a waitable from the node's entities."""
         self._graphflow.waitables.remove(waitable)
         self._graphflow.bell.ready.pop(waitable, None)
         self._graphflow_look_again()

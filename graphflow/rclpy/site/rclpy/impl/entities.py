@@ -1,4 +1,4 @@
-"""What the entities of nodes are, what has arrived for them, and what runs of their callbacks are for."""
+"""The roles of nodes' entities, their pending arrivals, and the calls or goals that running callbacks serve."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from rclpy.timer import Rate, Timer
 
 
 class Role(NamedTuple):
-    """What an entity is: `timer tick`."""
+    """The role of an entity: `timer tick`."""
 
     kind: str
     handler: str
-    """The name of its callback; of a client, that of its service or action."""
+    """The name of its callback; for a client, of its service or action."""
     is_inner: bool = False
-    """Whether it is graphflow's own, not something that users made."""
+    """Whether it is graphflow's own and not user-defined."""
 
     @property
     def label(self) -> str:
@@ -41,7 +41,7 @@ _KINDS = {Timer: "timer", Subscription: "subscription", Service: "service", Guar
 
 
 def role_of(entity: Any) -> Role:
-    """What an entity is."""
+    """Return the role of an entity."""
     if isinstance(entity, Client):
         return Role("reply", entity._endpoint.name)
     if isinstance(entity, ActionClient):
@@ -61,25 +61,25 @@ def role_of(entity: Any) -> Role:
 
 
 def name_of(callback: Any) -> str:
-    """What a function is called; empty for other things that can be called."""
+    """Return a function's name; empty for other callables."""
     while isinstance(callback, partial):
         callback = callback.func
     return str(getattr(callback, "__name__", ""))
 
 
 def full_name(node: Any) -> str:
-    """A node's name with its namespace; empty for no node."""
+    """Return a node's name with its namespace; empty for no node."""
     return "" if node is None else str(node._graphflow.node.full_name)
 
 
 def entities_of(node: Any) -> Iterator[Any]:
-    """What has callbacks."""
+    """Return the node's entities that have callbacks."""
     for kind in ("subscriptions", "clients", "services", "timers", "guards", "waitables"):
         yield from list(getattr(node, kind))
 
 
 def arrived(entity: Any) -> tuple[tuple[str, ...], int]:
-    """The calls that have arrived for an entity, or whose answers have, and how much has in all."""
+    """Return the calls that have arrived for an entity, or whose answers have, and the number of all arrivals."""
     if isinstance(entity, Service):
         return _requests(entity._endpoint)
     if isinstance(entity, ActionServer):
@@ -115,7 +115,7 @@ def _answers(endpoint: Any) -> tuple[tuple[str, ...], int]:
 
 
 def after_answers(entity: Any, node: Any) -> Iterator[str]:
-    """The methods of a node that are called when answers have been taken for which a client waits."""
+    """Return the node's methods that run after an answer for which a client waits."""
     futures: list[Any] = []
     if isinstance(entity, Client):
         futures = list(entity._pending.values())
@@ -129,8 +129,8 @@ def after_answers(entity: Any, node: Any) -> Iterator[str]:
                 yield ANSWERED
 
 
-def _content(cell: CellType) -> Any:
-    """What a function inside another knows by a name; None before that is bound."""
+def _content(cell: CellType) -> object:
+    """Return the value of a closure's variable; None before it is bound."""
     try:
         return cell.cell_contents
     except ValueError:
@@ -138,7 +138,7 @@ def _content(cell: CellType) -> Any:
 
 
 def results_asked(entity: Any) -> Iterator[tuple[str, str]]:
-    """The calls to an action server that ask for a result, each with the goal for whose end it waits."""
+    """Return the calls that request results from an action server, each with its goal."""
     if isinstance(entity, ActionServer):
         for goal in list(entity._goal_handles.values()):
             if not goal._result.done():
@@ -146,12 +146,12 @@ def results_asked(entity: Any) -> Iterator[tuple[str, str]]:
 
 
 def goal_of(run: Run) -> ServerGoalHandle | None:
-    """The goal whose body a run is."""
+    """Return the goal whose body a run executes."""
     return next((a for a in run._args if isinstance(a, ServerGoalHandle)), None)
 
 
 def served(run: Run) -> str:
-    """The call or goal that a run answers."""
+    """Return the call or goal that a run answers."""
     goal = goal_of(run)
     if goal is not None:
         return goal_id(bytes(goal.goal_id.uuid))
@@ -161,5 +161,5 @@ def served(run: Run) -> str:
 
 
 def frames_of(run: Run) -> list[Frame]:
-    """The frames of a suspended run, the outermost first."""
+    """Return the frames of a suspended run, outermost first."""
     return [frame for frame in map(suspended, awaited(run._coroutine)) if frame is not None]

@@ -1,4 +1,4 @@
-"""The part of a node that looks at the graph."""
+"""The part of a node that reads the graph."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from rclpy.validate_node_name import validate_node_name
 
 
 class GraphMethods:
-    """A node's methods for the graph; for `Node` to derive from."""
+    """The node's methods for the graph; a base class of `Node`."""
 
     _graphflow: Internals
     _graphflow_handle_of_node: Handle
 
-    def _graphflow_graph(self, look: Callable[[GraphCache], Any]) -> Any:
+    def _graphflow_graph(self, look: Callable[[GraphCache], object]) -> Any:
         with self._graphflow_handle_of_node:
             return LOOP.call(look, self._graphflow.core.context.cache)
 
@@ -52,7 +52,7 @@ class GraphMethods:
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> list[tuple[str, list[str]]]:
-        """The topics that a node publishes, with their types. Raises NodeNameNonExistentError."""
+        """Return the topics that a node publishes, with their types. Raises NodeNameNonExistentError."""
         return self._graphflow_of_node(node_name, node_namespace, Kind.PUBLISHER)
 
     def get_subscriber_names_and_types_by_node(
@@ -67,17 +67,17 @@ class GraphMethods:
         return self._graphflow_of_node(node_name, node_namespace, Kind.CLIENT)
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> list[tuple[str, list[str]]]:
-        """All topics, with their types."""
+        """Return all topics with their types."""
         rows: dict[str, list[str]] = self._graphflow_graph(lambda cache: cache.topics(hidden=True))
         return list(rows.items())
 
     def get_service_names_and_types(self) -> list[tuple[str, list[str]]]:
-        """All services, with their types."""
+        """Return all services with their types."""
         rows: dict[str, list[str]] = self._graphflow_graph(lambda cache: cache.services(hidden=True))
         return list(rows.items())
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """All nodes."""
+        """Return all nodes."""
         names: list[str] = self._graphflow_graph(lambda cache: cache.nodes())
         return [(name.rpartition("/")[2], name.rpartition("/")[0] or "/") for name in names]
 
@@ -127,15 +127,15 @@ class GraphMethods:
         return inner.core.names.resolve(full)
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
-        """What is known of a topic's publishers."""
+        """Return information on a topic's publishers."""
         return self._graphflow_info(topic_name, Kind.PUBLISHER, no_mangle)
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
-        """What is known of a topic's subscriptions."""
+        """Return information on a topic's subscriptions."""
         return self._graphflow_info(topic_name, Kind.SUBSCRIPTION, no_mangle)
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Block until a node is there, at most `timeout` seconds; whether it is."""
+        """Block until a node exists, at most `timeout` seconds; return whether it does."""
         if not fully_qualified_node_name.startswith("/"):
             fully_qualified_node_name = f"/{fully_qualified_node_name}"
         context = self._graphflow.core.context

@@ -1,4 +1,4 @@
-"""Where code finds rclpy's extension module."""
+"""The access path to rclpy's extension module."""
 
 import rclpy._rclpy_pybind11 as rclpy_implementation
 

@@ -1,4 +1,4 @@
-"""What a node of rclpy's has, under one name that no subclass writes."""
+"""The internals of an rclpy node, under one name that no subclass uses."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Internals:
-    """What a node has, under one name that no subclass writes."""
+    """The internals of a node, under one name that no subclass uses."""
 
     def __init__(self, context: Context, life: ContextState, node: HeldNode, bell: NodeBell) -> None:
         self.context, self.life, self.node, self.bell = context, life, node, bell
@@ -43,7 +43,7 @@ class Internals:
         self.executor: Callable[[], Any] = none
         self.begun = time.monotonic()
         self.times_added = 0
-        """How often it was added to an executor."""
+        """The number of times that the node was added to an executor."""
         self.group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.rate_group: CallbackGroup | None = None
         self.logger = get_logger(node.full_name[1:].replace("/", "."))
@@ -54,9 +54,9 @@ class Internals:
 
 
 class Known:
-    """An attribute of a node that code reads which knows rclpy from within; a node may have its own of that name."""
+    """An internal attribute of rclpy's nodes that programs read; a subclass may define its own of that name."""
 
-    def __init__(self, get: Callable[[Any], Any]) -> None:
+    def __init__(self, get: Callable[..., object]) -> None:
         self._get = get
 
     def __get__(self, node: Any, owner: type) -> Any:
@@ -64,11 +64,11 @@ class Known:
 
 
 def none() -> None:
-    """No executor."""
+    """Return no executor."""
 
 
 class Holdings:
-    """What a node has, to be looked at; for `Node` to derive from."""
+    """The node's entities for inspection; a base class of `Node`."""
 
     _graphflow: Internals = Unmade()  # type: ignore[assignment]
 

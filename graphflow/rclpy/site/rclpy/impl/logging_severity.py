@@ -1,10 +1,10 @@
-"""Levels of log lines."""
+"""Severities of log lines."""
 
 from enum import IntEnum
 
 
 class LoggingSeverity(IntEnum):
-    """How much a line matters."""
+    """The severity of a log line."""
 
     UNSET = 0
     DEBUG = 10

@@ -1,4 +1,4 @@
-"""Values that parameters get from the command line and from files, and how they are written for a parameter's type."""
+"""Parameter values from the command line and from files, and their notation for a parameter's type."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _SINGLE = {
 _TRUTHS = {"1": "true", "true": "true", "0": "false", "false": "false"}
 
 
-def as_parameters(values: Mapping[str, tuple[Any, str]]) -> dict[str, Parameter[Any]]:
-    """Parameters of values that each come with where they are written.
+def as_parameters(values: Mapping[str, tuple[object, str]]) -> dict[str, Parameter[Any]]:
+    """Convert values, each with its source, to parameters.
 
     Raises:
-        TypeError: No parameter has such a value; a note says where it is written.
+        TypeError: No parameter can have such a value; a note gives its source.
     """
     found: dict[str, Parameter[Any]] = {}
     for name, (value, source) in values.items():
@@ -37,7 +37,7 @@ def as_parameters(values: Mapping[str, tuple[Any, str]]) -> dict[str, Parameter[
 
 
 def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
-    """Where a value is written, and how to write it for a parameter of some type."""
+    """Describe the source of a value, and its notation for a parameter of some type."""
     written = _written(value, kind)
     if source == "command line":
         way = f'-p "{name}:={written}"' if set(written) & set(" '[") else f"-p {name}:={written}"
@@ -48,7 +48,7 @@ def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
 
 
 def _written(value: Any, kind: Parameter.Type) -> str:
-    """A value as YAML has it for a type; empty if it cannot be of that type."""
+    """Return a value in YAML notation for a type; empty if it cannot be of that type."""
     if kind in _SINGLE:
         items = value if isinstance(value, list) else str(value).strip("()").replace(";", ",").split(",")
         parts = [_written(item.strip() if isinstance(item, str) else item, _SINGLE[kind]) for item in items]

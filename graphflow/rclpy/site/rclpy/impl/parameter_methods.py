@@ -1,4 +1,4 @@
-"""The part of a node that is about its parameters."""
+"""The part of a node that manages its parameters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ logger = logging.getLogger("graphflow")
 
 
 class ParameterMethods:
-    """A node's methods for its parameters; for `Node` to derive from."""
+    """The node's methods for its parameters; a base class of `Node`."""
 
     PARAM_REL_TOL = RELATIVE_TOLERANCE
     _parameters = Known(lambda node: node._graphflow.parameters.with_prefix(""))
@@ -75,12 +75,12 @@ class ParameterMethods:
         """Declare a parameter.
 
         Args:
-            value: Its default, or its type; a value from outside comes before a default.
-            ignore_override: Whether values from outside do not count.
+            value: The default, or the type; an override takes precedence over a default.
+            ignore_override: Whether to ignore overrides.
 
         Raises:
             ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException,
-            InvalidParameterValueException: As they say.
+            InvalidParameterValueException: As their names say.
         """
         given: tuple[Any, ...] = (name, value) if descriptor is None else (name, value, descriptor)
         given = (name,) if value is None and descriptor is None else given
@@ -89,7 +89,7 @@ class ParameterMethods:
     def declare_parameters(
         self, namespace: str, parameters: Sequence[Any], ignore_override: bool = False
     ) -> list[Parameter[Any]]:
-        """Declare several, each given as (name,), (name, value or type) or (name, value or type, descriptor)."""
+        """Declare several parameters: (name,), (name, value or type) or (name, value or type, descriptor) each."""
         return self._graphflow.parameters.declare(namespace, parameters, ignore_override=ignore_override)
 
     def undeclare_parameter(self, name: str) -> None:
@@ -105,7 +105,7 @@ class ParameterMethods:
         return [self.get_parameter_type(name) for name in names]
 
     def get_parameter_type(self, name: str) -> Parameter.Type:
-        """The type of a parameter. Raises ParameterNotDeclaredException."""
+        """Return the type of a parameter. Raises ParameterNotDeclaredException."""
         parameters = self._graphflow.parameters
         if name in parameters.values:
             return parameters.values[name].type_
@@ -117,34 +117,34 @@ class ParameterMethods:
         return [self.get_parameter(name) for name in names]
 
     def get_parameter(self, name: str) -> Parameter[Any]:
-        """A parameter. Raises ParameterNotDeclaredException, ParameterUninitializedException."""
+        """Return a parameter. Raises ParameterNotDeclaredException, ParameterUninitializedException."""
         return self._graphflow.parameters.get(name)
 
     def get_parameter_or(self, name: str, alternative_value: Parameter[Any] | None = None) -> Parameter[Any]:
-        """A parameter, or the alternative if it was not declared or has no value."""
+        """Return a parameter, or the alternative if it was not declared or has no value."""
         if alternative_value is None:
             alternative_value = Parameter(name, Parameter.Type.NOT_SET)
         found = self._graphflow.parameters.values.get(name)
         return alternative_value if found is None or found.type_ is Parameter.Type.NOT_SET else found
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
-        """The parameters below a prefix, by the rest of their names."""
+        """Return the parameters below a prefix, by the rest of their names."""
         return self._graphflow.parameters.with_prefix(prefix)
 
     @explained
     def set_parameters(self, parameter_list: list[Parameter[Any]]) -> list[SetParametersResult]:
-        """Set parameters one after the other. Raises ParameterNotDeclaredException; nothing was set then."""
+        """Set parameters one after the other. Raises ParameterNotDeclaredException before setting any."""
         return self._graphflow_told(self._graphflow.parameters.set_each(parameter_list), parameter_list)
 
     @explained
     def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
-        """Set parameters, all or none. Raises ParameterNotDeclaredException."""
+        """Set all parameters or none. Raises ParameterNotDeclaredException."""
         return self._graphflow_told([self._graphflow.parameters.set_all(parameter_list)], parameter_list)[0]
 
     def _graphflow_told(
         self, results: list[SetParametersResult], given: Sequence[Parameter[Any]]
     ) -> list[SetParametersResult]:
-        """Tell what was not set, if the code that has asked for it does not look."""
+        """Log the parameters that were not set, if the calling code drops the result."""
         faults = [result.reason or "(the callback gave no reason)" for result in results if not result.successful]
         asked = caller(3) if faults else None
         if asked is not None and asked.drops_result:
@@ -153,35 +153,35 @@ class ParameterMethods:
             logger.warning(text, asked.place, names, "; ".join(faults))
         return results
 
-    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
-        """The names below prefixes, at most `depth` levels; 0 for any."""
+    def list_parameters(self, prefixes: list[str], depth: int) -> object:
+        """List the names below prefixes, at most `depth` levels; 0 for any."""
         return self._graphflow.parameters.listed(prefixes, depth)
 
     @explained
     def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], list[Parameter[Any]]]) -> None:
-        """Before parameters are set, let `callback` say which are."""
+        """Register `callback`, which may change the list of parameters before they are set."""
         self._graphflow.parameters.before.insert(0, callback)
 
     @explained
     def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], SetParametersResult]) -> None:
-        """Before parameters are set, ask `callback` whether they may be."""
+        """Register `callback`, which decides whether parameters may be set."""
         self._graphflow.parameters.checks.insert(0, callback)
 
     @explained
     def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], None]) -> None:
-        """After parameters were set, tell `callback`."""
+        """Register `callback`, which is notified after parameters were set."""
         self._graphflow.parameters.after.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
-        """Raises ValueError if it was not added."""
+        """Remove such a callback. Raises ValueError if it was not added."""
         self._graphflow.parameters.before.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
-        """Raises ValueError if it was not added."""
+        """Remove such a callback. Raises ValueError if it was not added."""
         self._graphflow.parameters.checks.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
-        """Raises ValueError if it was not added."""
+        """Remove such a callback. Raises ValueError if it was not added."""
         self._graphflow.parameters.after.remove(callback)
 
     # The lists of callbacks, under the names that rclpy has for them.
@@ -199,7 +199,7 @@ class ParameterMethods:
         return self._graphflow.parameters.after
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
-        """How a parameter was described. Raises ParameterNotDeclaredException."""
+        """Return a parameter's descriptor. Raises ParameterNotDeclaredException."""
         return self._graphflow.parameters.describe(name)
 
     def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
@@ -208,7 +208,7 @@ class ParameterMethods:
     def set_descriptor(
         self, name: str, descriptor: ParameterDescriptor, alternative_value: ParameterValue | None = None
     ) -> ParameterValue:
-        """Describe a parameter anew; returns its value, which is `alternative_value` then, if that is given."""
+        """Replace a parameter's descriptor, and set `alternative_value` if given; return the value."""
         found: ParameterValue = self._graphflow.parameters.set_descriptor(name, descriptor, alternative_value)
         return found
 

@@ -1,4 +1,4 @@
-"""A node's parameters by rclpy's rules, and in its words.
+"""A node's parameters by rclpy's rules, with its error texts.
 
 Source: the documentation of `rclpy.node.Node`.
 """
@@ -30,40 +30,40 @@ if TYPE_CHECKING:
 
 Kind = Parameter.Type
 TRUTHS = {"on": True, "yes": True, "y": True, "off": False, "no": False, "n": False}
-"""Words that ROS 2 takes for truth values in parameter files, and YAML 1.2 does not."""
+"""Words that ROS 2 reads as booleans in parameter files, and YAML 1.2 does not."""
 RELATIVE_TOLERANCE = 1e-6
-"""How far a value may be from a step, in relation to it."""
+"""The greatest relative distance of a value from a step."""
 
 Told = Callable[[list[Parameter[Any]], Mapping[str, Parameter[Any]]], None]
-"""Called with parameters after they were set, and what was there before, by name."""
+"""Called after parameters were set, with them and with their former values by name."""
 
 
 class NodeParameters:
     """The parameters of one node.
 
     Args:
-        overrides: Values from outside, by name.
-        allows_undeclared: Whether parameters may be set and got that were not declared.
+        overrides: Values from the command line, files or the constructor, by name.
+        allows_undeclared: Whether undeclared parameters may be set and read.
         told: Called after each change.
     """
 
     def __init__(self, overrides: Mapping[str, Parameter[Any]], told: Told, *, allows_undeclared: bool) -> None:
         self.overrides = dict(overrides)
         self.sources: dict[str, str] = {}
-        """The sources of the overrides that come from the command line or a file."""
+        """The sources of the overrides from the command line or a file."""
         self.allows_undeclared = allows_undeclared
         self.values: dict[str, Parameter[Any]] = {}
         self.descriptors: dict[str, ParameterDescriptor] = {}
         self.names: set[str] = set()
-        """All that have ever been declared, or were refused when they were."""
-        self.before: list[Callable[[list[Parameter[Any]]], Any]] = []
+        """All names that were ever declared, successfully or not."""
+        self.before: list[Callable[[list[Parameter[Any]]], Iterable[Parameter[Any]]]] = []
         self.checks: list[Callable[[list[Parameter[Any]]], Any]] = []
-        self.after: list[Callable[[list[Parameter[Any]]], Any]] = []
+        self.after: list[Callable[[list[Parameter[Any]]], object]] = []
         self._told = told
         self.lock = threading.RLock()
 
     def _undeclared(self, names: Iterable[str] | str) -> ParameterNotDeclaredException:
-        """The error for parameters that were not declared, with the nearest that was."""
+        """Return the error for undeclared parameters, with the nearest declared name."""
         error = ParameterNotDeclaredException(names)
         name = names if isinstance(names, str) else next(iter(names))
         near = nearest(name, self.values)
@@ -112,7 +112,7 @@ class NodeParameters:
         return [self.values[p.name] for p in wanted]
 
     @staticmethod
-    def _read(given: Any, index: int) -> tuple[str, Any, Any]:
+    def _read(given: Any, index: int) -> tuple[str, object, Any]:
         from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
         if not 1 <= len(given) <= 3:
@@ -229,7 +229,7 @@ class NodeParameters:
         return [self.set_all([parameter]) for parameter in parameters]
 
     def set_all(self, parameters: Sequence[Parameter[Any]]) -> SetParametersResult:
-        """Set all or none."""
+        """Set all parameters or none."""
         from rcl_interfaces.msg import SetParametersResult
 
         for parameter in parameters:
@@ -282,8 +282,8 @@ class NodeParameters:
             hook(parameters)
         return SetParametersResult(successful=True)
 
-    def set_descriptor(self, name: str, descriptor: Any, alternative: Any) -> Any:
-        """Change how a parameter is described; its value becomes `alternative`, if that is given."""
+    def set_descriptor(self, name: str, descriptor: Any, alternative: object) -> object:
+        """Change a parameter's descriptor, and its value to `alternative` if given."""
         if name not in self.values:
             if not self.allows_undeclared:
                 raise self._undeclared(name)
@@ -329,7 +329,7 @@ def _is_listed(name: str, prefixes: Sequence[str], depth: int) -> bool:
 
 
 def _fault(parameter: Parameter[Any], descriptor: Any, *, is_new: bool, allows_not_set: bool = False) -> str:
-    """Why a value does not fit its descriptor; empty if it does."""
+    """Describe the mismatch of a value and its descriptor; empty if there is none."""
     name = parameter.name
     if descriptor.read_only and not is_new:
         return f"Trying to set a read-only parameter: {name}."

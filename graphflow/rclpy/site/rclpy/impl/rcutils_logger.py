@@ -1,4 +1,4 @@
-"""A node's logger: lines go to the terminal, to the log files and to /rosout, as those of graphflow's own nodes."""
+"""A node's logger: lines go to the terminal, the log files and /rosout, as for graphflow's own nodes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rclpy.impl.logging_severity import LoggingSeverity
 
 
 class _WallClock:
-    """The time of day, where a call names no clock."""
+    """Wall time, for calls that name no clock."""
 
     @staticmethod
     def now() -> SimpleNamespace:
@@ -22,40 +22,40 @@ class _WallClock:
 
 
 _WALL_CLOCK = _WallClock()
-_FILTERS: dict[str, dict[str, Any]] = {
+_FILTERS: dict[str, dict[str, object]] = {
     "throttle": {"throttle_duration_sec": None, "throttle_time_source_type": _WALL_CLOCK},
     "skip_first": {"skip_first": None},
     "once": {"once": None},
 }
-"""What may be said of a call, and what else then: None for what must be. They are asked in this order."""
+"""The options of a call that filter its lines, with their defaults: None if required. In order of evaluation."""
 
 
 class LoggingFilter:
-    """What decides, by what a call says of itself, whether its line is logged."""
+    """A filter that decides, by the options of a call, whether its line is logged."""
 
-    params: dict[str, Any] = {}  # noqa: RUF012 - as rclpy has it
+    params: dict[str, object] = {}  # noqa: RUF012 - as rclpy has it
 
 
 class Once(LoggingFilter):
-    """The first line only."""
+    """Logs the first line only."""
 
     params = _FILTERS["once"]
 
 
 class Throttle(LoggingFilter):
-    """One line in so many seconds."""
+    """Logs at most one line per duration."""
 
     params = _FILTERS["throttle"]
 
 
 class SkipFirst(LoggingFilter):
-    """All lines but the first."""
+    """Logs all lines but the first."""
 
     params = _FILTERS["skip_first"]
 
 
 class _Site:
-    """One call in the code."""
+    """One logging call in the code."""
 
     def __init__(self, name: str, severity: int, options: dict[str, Any]) -> None:
         self.name, self.severity, self.options = name, severity, options
@@ -64,7 +64,7 @@ class _Site:
         self.last_ns: int | None = None
 
     def compare(self, name: str, severity: int, options: dict[str, Any]) -> None:
-        """Raises ValueError if the call is not what it was."""
+        """Raise ValueError if the call's options have changed."""
         if name != self.name:
             raise ValueError("Logger name cannot be changed between calls.")
         if severity != self.severity:
@@ -95,8 +95,8 @@ class _Site:
         return False
 
 
-def _options(given: dict[str, Any]) -> dict[str, Any]:
-    """What a call says of itself; without what is false. Raises TypeError for what is no such word."""
+def _options(given: dict[str, object]) -> dict[str, object]:
+    """Return the options of a call that are not false. Raises TypeError for an unknown one."""
     found: dict[str, Any] = {}
     for name, words in _FILTERS.items():
         needed = [word for word, default in words.items() if default is None]
@@ -112,10 +112,10 @@ def _options(given: dict[str, Any]) -> dict[str, Any]:
 
 
 class RcutilsLogger:
-    """A logger. Those whose name begins with that of another and a dot are its children, and have its level."""
+    """A logger. Loggers whose names continue its own after a dot are its children and inherit its level."""
 
     _has_root_level = False
-    """Whether the root's was set; before, it is INFO."""
+    """Whether the root's level was set; until then it is INFO."""
 
     def __init__(self, name: str = "") -> None:
         self.name = name
@@ -126,19 +126,19 @@ class RcutilsLogger:
         return node_logger(f"/{self.name.replace('.', '/')}") if self.name else python_logging.getLogger(ROOT)
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """The logger `name` below this one. Raises ValueError for an empty name."""
+        """Return the logger `name` below this one. Raises ValueError for an empty name."""
         if not name:
             raise ValueError("Child logger name must not be empty.")
         return RcutilsLogger(f"{self.name}.{name}" if self.name else name)
 
     def set_level(self, level: LoggingSeverity | int) -> None:
-        """Log only what matters this much."""
+        """Log only lines of at least this severity."""
         self._logger.setLevel(int(LoggingSeverity(level)))
         if not self.name:
             RcutilsLogger._has_root_level = True
 
     def get_effective_level(self) -> LoggingSeverity:
-        """How much must a line matter: its own level, or that of the nearest above that has one."""
+        """Return the effective level: the logger's own, or that of its nearest ancestor that has one."""
         logger: python_logging.Logger | None = self._logger
         if not self.name:
             return _severity(self._logger.level) if self._has_root_level else LoggingSeverity.INFO
@@ -149,19 +149,19 @@ class RcutilsLogger:
         return LoggingSeverity.INFO
 
     def is_enabled_for(self, severity: LoggingSeverity | int) -> bool:
-        """Whether a line that matters this much is logged."""
+        """Whether a line of this severity is logged."""
         return (self.get_effective_level() or LoggingSeverity.INFO) <= LoggingSeverity(severity)
 
     def log(self, message: object, severity: LoggingSeverity | int, **kwargs: Any) -> bool:
-        """Log a line; whether it was logged.
+        """Log a line; return whether it was logged.
 
         Args:
-            kwargs: `throttle_duration_sec=1.0` at most once in that time, with `throttle_time_source_type` by another
+            kwargs: `throttle_duration_sec=1.0` for at most once in that time, by another clock with
                 clock; `once=True`; `skip_first=True`; `name` of another logger.
 
         Raises:
-            TypeError: A word is unknown.
-            ValueError: What a call in the code says of itself has changed since it was first made.
+            TypeError: An option is unknown.
+            ValueError: The options of a call in the code have changed since it first ran.
         """
         severity = LoggingSeverity(severity)
         name = kwargs.pop("name", None) or self.name
@@ -185,26 +185,26 @@ class RcutilsLogger:
         logger.handle(record)
         return True
 
-    def debug(self, message: object, **kwargs: Any) -> bool:
-        """As `log` with DEBUG."""
+    def debug(self, message: object, **kwargs: object) -> bool:
+        """Log with severity DEBUG; see `log`."""
         return self.log(message, LoggingSeverity.DEBUG, **kwargs)
 
-    def info(self, message: object, **kwargs: Any) -> bool:
-        """As `log` with INFO."""
+    def info(self, message: object, **kwargs: object) -> bool:
+        """Log with severity INFO; see `log`."""
         return self.log(message, LoggingSeverity.INFO, **kwargs)
 
-    def warning(self, message: object, **kwargs: Any) -> bool:
-        """As `log` with WARN."""
+    def warning(self, message: object, **kwargs: object) -> bool:
+        """Log with severity WARN; see `log`."""
         return self.log(message, LoggingSeverity.WARN, **kwargs)
 
     warn = warning
 
-    def error(self, message: object, **kwargs: Any) -> bool:
-        """As `log` with ERROR."""
+    def error(self, message: object, **kwargs: object) -> bool:
+        """Log with severity ERROR; see `log`."""
         return self.log(message, LoggingSeverity.ERROR, **kwargs)
 
-    def fatal(self, message: object, **kwargs: Any) -> bool:
-        """As `log` with FATAL."""
+    def fatal(self, message: object, **kwargs: object) -> bool:
+        """Log with severity FATAL; see `log`."""
         return self.log(message, LoggingSeverity.FATAL, **kwargs)
 
 
@@ -213,7 +213,7 @@ def _severity(level: int) -> LoggingSeverity:
 
 
 def _caller() -> FrameType:
-    """The frame of the code that logs: the first that is not rclpy's."""
+    """Return the frame of the code that logs: the first that is not rclpy's."""
     frame: FrameType | None = sys._getframe(2)
     while frame is not None and frame.f_code.co_filename == __file__ and frame.f_back is not None:
         frame = frame.f_back

@@ -1,4 +1,4 @@
-"""Names that modules of rclpy have only because they import them, and that programs import from there.
+"""Names that rclpy's modules merely import, and that programs import from there.
 
 Source: the import statements of rclpy's modules, as of Jazzy.
 """
@@ -6,7 +6,6 @@ Source: the import statements of rclpy's modules, as of Jazzy.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any
 
 _EXCEPTIONS = (
     *("InvalidHandle", "InvalidParameterTypeException", "InvalidParameterValueException", "InvalidTopicNameException"),
@@ -93,12 +92,12 @@ PASSED: dict[str, dict[str, tuple[str, ...]]] = {
     "timer": {"rclpy.clock": ("ClockType",), "rclpy.context": ("Context",)},
     "wait_for_message": _NODE,
 }
-"""What each module passes on, by the module that it is from."""
+"""The names that each module re-exports, by their original modules."""
 _RENAMED = {("node", "ParameterMsg"), ("parameter", "ParameterMsg"), ("parameter_client", "ParameterMsg")}
 
 
-def passed_on(module: str, name: str) -> Any:
-    """A name that a module has from another. Raises AttributeError if it has none of that name."""
+def passed_on(module: str, name: str) -> object:
+    """Return a re-exported name of a module. Raises AttributeError if it has none of that name."""
     key = module.removeprefix("rclpy.")
     if (key, name) in _RENAMED:
         return import_module("rcl_interfaces.msg").Parameter

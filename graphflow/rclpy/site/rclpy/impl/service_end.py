@@ -1,4 +1,4 @@
-"""What clients and servers of services have in common."""
+"""The common base of service clients and servers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ServiceEnd:
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Publish its calls on `<service>/_service_event`: nothing, their metadata, or their contents too."""
+        """Publish the service's calls on `<service>/_service_event`: nothing, metadata, or contents too."""
         level, qos = introspection_state.name.lower(), to_graphflow(service_event_qos_profile)
         self._life.on_loop(partial(self._endpoint.configure_introspection, level, qos))
 
@@ -41,7 +41,7 @@ class ServiceEnd:
             return name
 
     def destroy(self) -> None:
-        """Withdraw it. `Node.destroy_client` and `Node.destroy_service` are what to call."""
+        """Withdraw the entity. Call `Node.destroy_client` or `Node.destroy_service` instead."""
         self._handle.destroy_when_not_in_use()
 
     def __enter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""What an executor has to do and what it does: tasks, and the callbacks of its nodes' entities."""
+"""The work of an executor: its tasks, and the callbacks of its nodes' entities."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from rclpy.context import Context
 
 POLL = 0.001
-"""Seconds between two steps of a coroutine that suspends without saying what it waits for."""
+"""Seconds between two steps of a coroutine that yields without naming a future."""
 
 
 class TimeoutException(Exception):
-    """Nothing was ready in time."""
+    """Nothing became ready in time."""
 
 
 class ShutdownException(Exception):
@@ -34,7 +34,7 @@ class ExternalShutdownException(Exception):
 
 
 class ConditionReachedException(Exception):
-    """What was waited for has come about."""
+    """The awaited condition has become true."""
 
 
 for _kind in (TimeoutException, ShutdownException, ExternalShutdownException, ConditionReachedException):
@@ -42,15 +42,15 @@ for _kind in (TimeoutException, ShutdownException, ExternalShutdownException, Co
 
 
 class Entity(Protocol):
-    """What has callbacks: a timer, a subscription, and the like."""
+    """An object with callbacks, such as a timer or subscription."""
 
     callback_group: Any
 
     def has_work(self) -> bool:
-        """Whether there is something to take."""
+        """Whether there is work to take."""
 
-    def take_work(self) -> Callable[[], Any] | None:
-        """Take one piece: a function or coroutine function that does it."""
+    def take_work(self) -> Callable[[], object] | None:
+        """Take one piece of work: a function or coroutine function."""
 
 
 class SpunNode(Protocol):
@@ -67,7 +67,7 @@ class SpunNode(Protocol):
 
 
 class Spins(Protocol):
-    """An executor, as its own workings see it."""
+    """An executor, as its own implementation sees it."""
 
     @property
     def spinning(self) -> Spinning: ...
@@ -78,16 +78,16 @@ class Spins(Protocol):
 
 
 class Run(Task[Any]):
-    """A task of an executor, or one run of a callback, for which a place in its group is held until it has ended.
+    """A task, or one run of a callback, which holds a place in its group until it has ended.
 
     Attributes:
-        called: What it runs.
-        entity, node: Whose callback it is; None for tasks.
-        thread: The number of the thread that runs it right now; 0 while none does.
+        called: The function that it runs.
+        entity, node: The owners of the callback; None for tasks.
+        thread: The identity of the thread that runs it; 0 while none does.
     """
 
     def __init__(
-        self, executor: Spins, handler: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None
+        self, executor: Spins, handler: Any, args: tuple[Any, ...] = (), kwargs: dict[str, object] | None = None
     ) -> None:
         super().__init__(handler, args, kwargs, executor=executor)
         self.executor, self.called = executor, handler
@@ -96,8 +96,8 @@ class Run(Task[Any]):
         self.group: CallbackGroup | None = None
         self.thread = 0
         self.stepped_ns = 0
-        self.work: Any = None
-        """What was taken from the entity."""
+        self.work: object = None
+        """The work taken from the entity."""
 
     def _step(self) -> None:
         self.thread = threading.get_ident()
@@ -119,14 +119,14 @@ class Run(Task[Any]):
         return self.done() or self.cancelled()
 
     def release(self) -> None:
-        """Give back the place in the group. Twice is harmless."""
+        """Release the place in the group. Idempotent."""
         group, self.group = self.group, None
         if group is not None:
             group.ending_execution(self.entity)
 
 
 class Spinning:
-    """What an executor has to do, and what it does: the part of it that no subclass sees."""
+    """The scheduling behind an executor, hidden from subclasses."""
 
     def __init__(self, executor: Spins, context: Context) -> None:
         self._executor, self.context = weakref.ref(executor), context
@@ -134,47 +134,47 @@ class Spinning:
         self.nodes: dict[Any, None] = {}
         self.is_shutdown = False
         self.running: dict[Run, None] = {}
-        """Tasks, and runs of callbacks, that have not ended; suspended ones too."""
+        """Tasks and runs of callbacks that have not ended, including suspended ones."""
         self._runnable: deque[Run] = deque()
         self._polled: deque[Run] = deque()
         self._round: deque[tuple[Any, Any]] = deque()
-        """What was found to have something to do, with its node; tasks have none."""
+        """Entities found to have work, with their nodes; tasks have none."""
         self._tasks_were_last = False
         self._asking: list[tuple[Any, Any, Any]] = []
-        """With what each thread that waits has asked for the next thing to do."""
+        """The arguments with which each waiting thread requested its next work."""
         self.turns = 0
-        """How often the next thing to do was asked for."""
+        """The number of requests for work."""
         self._looking = threading.Lock()
         self.has_room: Callable[[], bool] = lambda: True
         self.has_failed: Callable[[], bool] = lambda: False
 
     @property
     def executor(self) -> Spins:
-        """Whose workings these are; it must not be kept by them, since programs ask whether it is still there."""
+        """The executor that this belongs to; a weak reference, since programs check whether it still exists."""
         executor = self._executor()
         assert executor is not None
         return executor
 
     @property
     def is_spun(self) -> bool:
-        """Whether some thread waits for something to do, or does something."""
+        """Whether a thread waits for work, or does some."""
         return bool(self._asking) or any(run.thread for run in list(self.running))
 
     @property
     def waits_forever(self) -> bool:
-        """Whether some thread waits for something to do without a limit."""
+        """Whether a thread waits for work without a limit."""
         return any(timeout is None or timeout < 0 for timeout, _, _ in list(self._asking))
 
     # tasks
 
     def start(self, run: Run) -> None:
-        """Have a task begun, or gone on with, in the next turn."""
+        """Schedule a task to start or continue in the next turn."""
         self.running[run] = None
         self._runnable.append(run)
         self.wake.set()
 
     def stepped(self, run: Run) -> None:
-        """A run has made a step: it has ended, or waits for something."""
+        """Note that a run has made a step: it has ended, or waits for something."""
         if run.ended():
             self.running.pop(run, None)
             run.release()
@@ -187,11 +187,11 @@ class Spinning:
 
     # what is next
 
-    def next(self, timeout: float | None, nodes: Any, condition: Callable[[], bool]) -> tuple[Run, Any, Any]:
-        """The next thing to do, with whose it is; waits for one if there is none.
+    def next(self, timeout: float | None, nodes: object, condition: Callable[[], bool]) -> tuple[Run, object, object]:
+        """Return the next piece of work with its entity and node, waiting for one if necessary.
 
         Raises:
-            ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: As they say.
+            ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: By name.
             ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
         self.turns += 1
@@ -224,11 +224,11 @@ class Spinning:
         finally:
             self._asking.remove(asked)
 
-    def _find(self, nodes: Any, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
+    def _find(self, nodes: object, *, is_hurried: bool) -> tuple[Run, object, object] | None:
         with self._looking:
             return self._found(nodes, is_hurried=is_hurried) if self.has_room() else None
 
-    def _found(self, nodes: Any, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
+    def _found(self, nodes: object, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
         for _ in range(3):  # what the last look has found, then new ones, for tasks and for the rest
             while self._round:
                 what, node = self._round.popleft()
@@ -239,7 +239,7 @@ class Spinning:
         return None
 
     def _look(self, nodes: Any, *, is_hurried: bool) -> None:
-        """Fill the round: tasks, the newest first, then timers, and what has arrived by kind."""
+        """Fill the round: tasks, newest first, then timers, and arrivals by kind."""
         now_ns = time.monotonic_ns()
         for _ in range(len(self._polled)):
             run = self._polled.popleft()
@@ -268,7 +268,7 @@ class Spinning:
                     del ready[entity]
 
     def _begin(self, entity: Any, node: Any) -> Run | None:
-        """Take a piece of work, and a place in the group for it; None if there is none."""
+        """Take a piece of work, and reserve a place in its group; None if there is none."""
         if node not in self.nodes and self.nodes:
             return None
         group = entity.callback_group
@@ -287,7 +287,7 @@ class Spinning:
         return run
 
     def _next_timer(self, nodes: Any) -> float | None:
-        """Seconds until something is due by the clock of this machine."""
+        """Return the seconds until a timer is due by this machine's clock."""
         soonest: float | None = POLL if self._polled else None
         for node in list(self.nodes) if nodes is None else list(nodes):
             for timer in list(node.timers):
@@ -302,5 +302,5 @@ def _shorter(a: float | None, b: float | None) -> float | None:
 
 
 def _order(entity: Any) -> int:
-    """Where an entity comes in a round: subscriptions, guard conditions, clients, services, and the rest."""
+    """Return an entity's rank in a round: subscriptions, guard conditions, clients, services, then the rest."""
     return getattr(type(entity), "turn", 9)

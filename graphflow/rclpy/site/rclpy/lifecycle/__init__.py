@@ -1,4 +1,4 @@
-"""Nodes that have a life cycle, and what follows it."""
+"""Nodes with a life cycle, and entities that follow it."""
 
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
 from rclpy.lifecycle.managed_entity import ManagedEntity, SimpleManagedEntity

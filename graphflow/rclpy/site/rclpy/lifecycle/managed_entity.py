@@ -1,4 +1,4 @@
-"""What follows the life cycle of a node."""
+"""Entities that follow the life cycle of a node."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCall
 
 
 class ManagedEntity:
-    """Something that is told of its node's transitions. Derive from it."""
+    """The base class of entities that are notified of their node's transitions."""
 
     def on_configure(self, state: Any) -> TransitionCallbackReturn:
         return TransitionCallbackReturn.SUCCESS
@@ -32,7 +32,7 @@ class ManagedEntity:
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """Something that works only while its node is active."""
+    """An entity that works only while its node is active."""
 
     def __init__(self) -> None:
         self._enabled = False
@@ -51,13 +51,13 @@ class SimpleManagedEntity(ManagedEntity):
 
     @staticmethod
     def when_enabled(
-        wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[..., Any] | None = None
+        wrapped: Callable[..., object] | None = None, *, when_not_enabled: Callable[..., object] | None = None
     ) -> Callable[..., Any]:
-        """Have a method do nothing, or call `when_not_enabled`, while the node is not active."""
+        """Decorate a method to do nothing, or call `when_not_enabled`, while the node is not active."""
 
-        def decorated(method: Callable[..., Any]) -> Callable[..., Any]:
+        def decorated(method: Callable[..., object]) -> Callable[..., object]:
             @wraps(method)
-            def guarded(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> Any:
+            def guarded(self: SimpleManagedEntity, *args: Any, **kwargs: object) -> Any:
                 if self._enabled:
                     return method(self, *args, **kwargs)
                 return None if when_not_enabled is None else when_not_enabled(self, *args, **kwargs)

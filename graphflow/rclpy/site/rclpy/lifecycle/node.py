@@ -1,4 +1,4 @@
-"""Nodes that have a life cycle."""
+"""Nodes with a life cycle."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ __all__ = ["LifecycleNode", "LifecycleNodeMixin", "LifecycleState", "TransitionC
 
 
 class LifecycleState(NamedTuple):
-    """A state, as the callbacks get it."""
+    """A state, as callbacks receive it."""
 
     label: str
     state_id: int
 
 
 class _StateMachine:
-    """Where a node is, and whether others can ask."""
+    """The state of a node, and its services for others."""
 
     def __init__(self, *, has_services: bool) -> None:
         self.state = State.UNCONFIGURED
@@ -72,11 +72,11 @@ def _row(t: Transition) -> tuple[int, str, int, str, int, str]:
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """The life cycle, for classes that derive from `Node` too, which must be made first.
+    """The life cycle, for classes that also derive from `Node`, whose `__init__` must run first.
 
     Args:
-        enable_communication_interface: Whether others can ask for the state, and change it.
-        callback_group: That of the services.
+        enable_communication_interface: Whether to offer the services that read and change the state.
+        callback_group: The services' callback group.
     """
 
     def __init__(
@@ -115,23 +115,23 @@ class LifecycleNodeMixin(ManagedEntity):
     # transitions
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        """Configure. Raises RCLError if that cannot be done from here."""
+        """Configure the node. Raises RCLError if its state does not allow it."""
         return self._graphflow_trigger("configure")
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Clean up. Raises RCLError if that cannot be done from here."""
+        """Clean the node up. Raises RCLError if its state does not allow it."""
         return self._graphflow_trigger("cleanup")
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Shut down. Raises RCLError if that cannot be done from here."""
+        """Shut the node down. Raises RCLError if its state does not allow it."""
         return self._graphflow_trigger("shutdown")
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Activate. Raises RCLError if that cannot be done from here."""
+        """Activate the node. Raises RCLError if its state does not allow it."""
         return self._graphflow_trigger("activate")
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Deactivate. Raises RCLError if that cannot be done from here."""
+        """Deactivate the node. Raises RCLError if its state does not allow it."""
         return self._graphflow_trigger("deactivate")
 
     def _graphflow_trigger(self, wanted: int | str) -> TransitionCallbackReturn:
@@ -185,35 +185,35 @@ class LifecycleNodeMixin(ManagedEntity):
         self._graphflow_transition_event.publish(event)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Tell an entity of transitions too, after the node's own callbacks."""
+        """Notify an entity of transitions as well, after the node's own callbacks."""
         self._managed_entities[entity] = None
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """For subclasses: from unconfigured to inactive."""
+        """Handle the transition from unconfigured to inactive; for subclasses."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """For subclasses: from inactive to unconfigured."""
+        """Handle the transition from inactive to unconfigured; for subclasses."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """For subclasses: to finalized."""
+        """Handle the transition to finalized; for subclasses."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """For subclasses: from inactive to active."""
+        """Handle the transition from inactive to active; for subclasses."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """For subclasses: from active to inactive."""
+        """Handle the transition from active to inactive; for subclasses."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """For subclasses: after an error; a success leads to unconfigured, anything else to finalized."""
+        """Handle an error; success leads to unconfigured, anything else to finalized. For subclasses."""
         return TransitionCallbackReturn.SUCCESS
 
     def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher:
-        """A publisher that sends only while the node is active. Arguments as for `create_publisher`."""
+        """Create a publisher that sends only while the node is active. Arguments as for `create_publisher`."""
         if "publisher_class" in kwargs:
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
         node: Any = self
@@ -223,14 +223,14 @@ class LifecycleNodeMixin(ManagedEntity):
         return made
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
-        """Withdraw such a publisher."""
+        """Destroy a lifecycle publisher."""
         node: Any = self
         self._managed_entities.pop(publisher, None)
         return bool(node.destroy_publisher(publisher))
 
     # what others ask
 
-    def _graphflow_asked_to_change(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_to_change(self, request: Any, response: Any) -> object:
         wanted = request.transition
         state = self._state_machine.state
         known = asked(state, wanted.label) if wanted.label else asked(state, wanted.id)
@@ -239,27 +239,27 @@ class LifecycleNodeMixin(ManagedEntity):
             response.success = self._graphflow_trigger(known.id) is TransitionCallbackReturn.SUCCESS
         return response
 
-    def _graphflow_asked_for_state(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_state(self, request: object, response: Any) -> object:
         response.current_state.id, response.current_state.label = self._state_machine.current_state
         return response
 
-    def _graphflow_asked_for_states(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_states(self, request: object, response: Any) -> object:
         from lifecycle_msgs.msg import State as StateMessage
 
         rows = self._state_machine.available_states
         response.available_states = [StateMessage(id=number, label=label) for number, label in rows]
         return response
 
-    def _graphflow_asked_for_transitions(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_transitions(self, request: object, response: Any) -> object:
         response.available_transitions = _described(available(self._state_machine.state))
         return response
 
-    def _graphflow_asked_for_graph(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_graph(self, request: object, response: Any) -> object:
         response.available_transitions = _described(TRANSITIONS)
         return response
 
 
-def _described(transitions: Any) -> list[Any]:
+def _described(transitions: Any) -> list[object]:
     from lifecycle_msgs.msg import TransitionDescription
 
     found = []
@@ -273,7 +273,7 @@ def _described(transitions: Any) -> list[Any]:
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A node that has a life cycle. Arguments as for `Node`."""
+    """A node with a life cycle. Arguments as for `Node`."""
 
     def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:
         Node.__init__(self, node_name, **kwargs)

@@ -1,4 +1,4 @@
-"""Publishers of nodes that have a life cycle."""
+"""Publishers of nodes with a life cycle."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         self._graphflow_is_told = False
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
-        """Send from now on, and tell it again when nothing is sent."""
+        """Send from now on, and warn again after the next deactivation."""
         self._graphflow_is_told = False
         return super().on_activate(state)
 
     def _graphflow_tell(self, msg: Any) -> None:
-        """Warn, in the words of rclcpp, that nothing is sent; the first time that it is so."""
+        """Warn, with rclcpp's text, that a message is not sent; once per deactivation."""
         node = self._graphflow_node()
         if node is None or self._graphflow_is_told:
             return
@@ -43,12 +43,12 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
 
     @SimpleManagedEntity.when_enabled(when_not_enabled=_graphflow_tell)
     def publish(self, msg: Any) -> None:
-        """Send a message, while the node is active."""
+        """Publish a message if the node is active."""
         Publisher.publish(self, msg)
 
 
 def _none() -> None:
-    """No node."""
+    """Return no node."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,1 +1,1 @@
-"""The waits of rclpy programs, as graphflow's deadlock detector reads them. Begin with `waiting`."""
+"""The waits of rclpy programs, as the deadlock detector reads them. Begin with `waiting`."""

@@ -1,4 +1,4 @@
-"""What a callback, or a thread of a program's own, waits for: an answer, a future, an event, a lock."""
+"""What a blocked callback or thread waits for: an answer, a future, an event, or a lock."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _FUTURES = (
     ActionClient._graphflow_block_on.__code__,
     Executor.spin_until_future_complete.__code__,
 )
-"""Functions that block until a future is done, which they call `future`."""
+"""Functions that block on a future in their variable `future`."""
 _SLEEP = Rate.sleep.__code__
 _OPENINGS = (Client.wait_for_service.__code__, ActionClient.wait_for_server.__code__)
 _SEARCHED = (*_FUTURES, _SLEEP, *_OPENINGS)
@@ -39,22 +39,22 @@ _POOL = concurrent.futures.thread.__file__
 
 
 class Blocked(NamedTuple):
-    """What code waits for; one of these, or nothing that is known."""
+    """The object of a wait: one of these fields, or nothing known."""
 
     future: Future[Any] | None = None
     timer: Timer | None = None
     lock: Entering | None = None
     thread: int | None = None
-    """The identity of a thread whose end, or whose work in a pool, is waited for."""
+    """The identity of an awaited thread: for its end, or for its work in a pool."""
     buffer: BufferWait | None = None
     service: str = ""
-    """The full name of a service for whose server it waits; of an action, that of a part of it."""
+    """The full name of an awaited service; for an action, that of one of its services."""
     timeout: float | None = None
-    """Seconds until it gives up, from when it began."""
+    """The time limit of the wait in seconds, from its start."""
 
 
 def blocked(level: Level) -> Blocked:
-    """What the code of a thread waits for."""
+    """Determine what a thread's code waits for."""
     for caller, frame in reversed([*pairwise([None, *level.frames])]):
         assert frame is not None
         if frame.f_code in _SEARCHED:
@@ -87,13 +87,13 @@ def _service_of(client: Client | ActionClient) -> str:
 
 
 def is_private(level: Level) -> bool:
-    """Whether the future that is waited for is known to nobody but rclpy: it is that of a call that blocks."""
+    """Whether only rclpy knows the awaited future: that of a blocking call."""
     codes = {frame.f_code for frame in level.frames}
     return not codes.isdisjoint((Client.call.__code__, ActionClient.send_goal.__code__))
 
 
 def limit_of(level: Level) -> float | None:
-    """The seconds after which a wait for an event, a queue or the like is given up; None for never."""
+    """Return the time limit in seconds of a wait for an event, a queue or similar; None if unlimited."""
     for frame in reversed(level.frames):
         if is_users(frame.f_code.co_filename):
             break
@@ -104,7 +104,7 @@ def limit_of(level: Level) -> float | None:
 
 
 def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
-    """The thread of a pool that works for a future."""
+    """Return the pool thread that works for a future."""
     for thread, innermost in sys._current_frames().items():
         for frame in stack_from(innermost):
             if frame.f_code.co_filename == _POOL and getattr(frame.f_locals.get("self"), "future", None) is future:
@@ -116,7 +116,7 @@ def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
 
 
 def _polled(frame: Frame) -> Future[Any] | None:
-    """The future that the innermost loop around a line asks, if that is all that ends the loop."""
+    """Return the future that the innermost loop around a line polls, if nothing else ends the loop."""
     loop = _loop_around(frame)
     if loop is None:
         return None
@@ -136,7 +136,7 @@ def _polled(frame: Frame) -> Future[Any] | None:
 
 
 def _loop_around(frame: Frame) -> ast.While | None:
-    """The innermost loop around a line."""
+    """Return the innermost loop around a line."""
     try:
         function = function_of(frame)
     except Unknown:
@@ -146,7 +146,7 @@ def _loop_around(frame: Frame) -> ast.While | None:
 
 
 def _asked(test: ast.expr) -> Iterator[ast.expr]:
-    """What a condition asks whether it is done."""
+    """Return the object whose `done()` a condition calls."""
     for node in ast.walk(test):
         match node:
             case ast.Call(func=ast.Attribute(value=owner, attr="done"), args=[]):
@@ -160,7 +160,7 @@ def _asked(test: ast.expr) -> Iterator[ast.expr]:
 
 
 def _asks_alone(loop: ast.While) -> bool:
-    """Whether only the answer that a loop asks for, or the end of the program, ends it: no clock and no counter."""
+    """Whether only the polled answer, or the end of the program, ends a loop: no clock and no counter."""
     is_both = isinstance(loop.test, ast.BoolOp) and isinstance(loop.test.op, ast.And)
     parts = loop.test.values if is_both else [loop.test]  # type: ignore[attr-defined]
     others = [part for part in parts if not ast.unparse(part).endswith("ok()") and not [*_asked(part)]]
@@ -169,7 +169,7 @@ def _asks_alone(loop: ast.While) -> bool:
 
 
 def _leaves(body: list[ast.stmt]) -> bool:
-    """Whether statements may leave the loop that they are in."""
+    """Whether statements may leave their loop."""
     return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
 
 
@@ -178,8 +178,8 @@ def _future(expression: ast.expr, frame: Frame) -> Future[Any] | None:
     return found if isinstance(found, Future) else None
 
 
-def _value(expression: ast.expr, frame: Frame) -> Any:
-    """The value of a name, or of an attribute of one; None where that is not known."""
+def _value(expression: ast.expr, frame: Frame) -> object:
+    """Return the value of a name, or of an attribute of one; None if unknown."""
     match expression:
         case ast.Name(id=name):
             return frame.f_locals.get(name, frame.f_globals.get(name))
@@ -189,7 +189,7 @@ def _value(expression: ast.expr, frame: Frame) -> Any:
 
 
 def _polled_client(frame: Frame) -> Client | ActionClient | None:
-    """The client that the innermost loop around a line asks for its server, until that is there."""
+    """Return the client whose server the innermost loop around a line waits for."""
     loop = _loop_around(frame)
     for node in ast.walk(loop.test) if loop is not None and tries_forever(frame) else ():
         match node:

@@ -1,10 +1,10 @@
-"""Buffers that callbacks fill, such as that of transforms, and code that blocks until something is in one."""
+"""Waits for buffers that callbacks fill, such as the transform buffer."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from types import CodeType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.syntax import syntax_of
@@ -13,23 +13,23 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {}
 
 
 class BufferWait(NamedTuple):
-    """A wait until something is in a buffer."""
+    """A wait until a buffer contains something."""
 
-    buffer: Any
+    buffer: object
     what: str
-    """The awaited thing, in words."""
+    """A description of what is awaited."""
     timeout: float
-    """Seconds until it gives up, from when it began."""
+    """The time limit in seconds, from the start of the wait."""
     fillers: tuple[str, ...]
-    """The methods of the buffer that fill it."""
+    """The buffer's methods that fill it."""
 
     def is_filled_by(self, entity: object) -> bool:
-        """Whether an entity's callback is that of a listener, which fills the buffer."""
+        """Whether an entity's callback belongs to a listener that fills the buffer."""
         listener = getattr(getattr(entity, "callback", None), "__self__", None)
         return getattr(listener, "buffer", None) is self.buffer
 
     def may_be_filled_by(self, files: Iterable[str]) -> bool:
-        """Whether the code of some files may fill it, too."""
+        """Whether code in some files may fill the buffer as well."""
         return any(self._is_named_in(file) for file in files)
 
     def _is_named_in(self, file: str) -> bool:
@@ -39,18 +39,18 @@ class BufferWait(NamedTuple):
             return True
 
 
-def know_buffer(wait: Callable[..., Any], *fillers: str) -> None:
-    """Have a method of a buffer taken for one that blocks until something is in it.
+def know_buffer(wait: Callable[..., object], *fillers: str) -> None:
+    """Register a buffer's method that blocks until the buffer contains something.
 
     Args:
-        wait: Has `timeout`, a duration, among its arguments. Its caller's are `target_frame` and `source_frame`.
+        wait: A method with an argument `timeout`, a duration; its caller has `target_frame` and `source_frame`.
         fillers: The methods that fill the buffer.
     """
     _WAITS[wait.__code__] = fillers
 
 
 def buffer_wait(frame: Frame, caller: Frame | None) -> BufferWait | None:
-    """The wait of such a method, if this is the frame of one, and that of its caller."""
+    """Return the wait of a registered method, if this is its frame, and its caller's frame."""
     fillers = _WAITS.get(frame.f_code)
     if fillers is None or caller is None:
         return None

@@ -1,4 +1,4 @@
-"""Whether a program's own code may end the future of an answer: cancel it, or set its result, as watchdogs do."""
+"""Whether the program's own code may complete an answer's future: cancel it, or set its result, as watchdogs do."""
 
 from __future__ import annotations
 
@@ -15,38 +15,38 @@ from rclpy.task import Future
 
 _WAYS = ("cancel", "set_result", "set_exception", "remove_pending_request")
 _OTHERS = ("create_timer", "create_rate", "Timer", "Future")
-"""The ends of names of what makes things that can be cancelled or set, and are not the future of an answer."""
+"""Suffixes of constructors whose objects can be cancelled or set but are not an answer's future."""
 
 
 class _Ending(NamedTuple):
-    """A place in the source that may end a future."""
+    """A place in the source that may complete a future."""
 
     attribute: str = ""
-    """The attribute of `self` that it ends; empty for anything else."""
+    """The attribute of `self` that it completes; empty for anything else."""
     cls: str = ""
-    """The class in which it stands; empty for none."""
+    """The enclosing class; empty for none."""
 
 
 def programs_files() -> list[str]:
-    """The files of the program's own modules: those that are not installed."""
+    """Return the files of the program's own modules, those that are not installed."""
     files = [str(file) for module in list(sys.modules.values()) if (file := getattr(module, "__file__", None))]
     return [file for file in files if is_users(file) and file.endswith(".py") and not is_installed(file)]
 
 
-def may_be_ended(future: Future[Any], nodes: Iterable[Any], files: Iterable[str]) -> bool:
-    """Whether some code may end a future that is waited for, as far as its files show.
+def may_be_ended(future: Future[Any], nodes: Iterable[object], files: Iterable[str]) -> bool:
+    """Whether some code may complete an awaited future, according to its source.
 
     Args:
-        nodes: Nodes, of whose attributes it is known what they are.
-        files: Where that code would be.
+        nodes: The nodes, whose attributes are known.
+        files: The files to search.
     """
     nodes = list(nodes)
     classes = _classes_of_nodes(nodes)
     return any(_may_end(ending, future, nodes, classes) for file in files for ending in _endings(file))
 
 
-def _classes_of_nodes(nodes: list[Any]) -> set[str]:
-    """The names of all classes of nodes that there are."""
+def _classes_of_nodes(nodes: list[object]) -> set[str]:
+    """Return the names of all existing node classes."""
     todo = [cls for node in nodes[:1] for cls in type(node).__mro__ if cls.__module__ == "rclpy.node"]
     names = set[str]()
     while todo:
@@ -56,7 +56,7 @@ def _classes_of_nodes(nodes: list[Any]) -> set[str]:
     return names
 
 
-def _may_end(ending: _Ending, future: Future[Any], nodes: list[Any], classes: set[str]) -> bool:
+def _may_end(ending: _Ending, future: Future[Any], nodes: list[object], classes: set[str]) -> bool:
     of_class = [node for node in nodes if any(cls.__name__ == ending.cls for cls in type(node).__mro__)]
     if ending.cls in classes and not of_class:
         return False  # there is no such node
@@ -89,7 +89,7 @@ def _endings_in(syntax: Syntax) -> Iterator[_Ending]:
 
 
 def _is_another(owner: ast.Name | ast.Attribute, scopes: Iterable[ast.AST]) -> bool:
-    """Whether a name or an attribute is no answer's future: by what makes it, or else by what it is called."""
+    """Whether a name or attribute is not an answer's future, judged by its constructor or else by its name."""
     word = ast.unparse(owner)
     made = (n for scope in scopes for n in ast.walk(scope) if isinstance(n, ast.Assign | ast.AnnAssign) and n.value)
     values = [

@@ -1,4 +1,4 @@
-"""Callback groups and executors as plain data, for people to look at."""
+"""Callback groups and executors as plain data for display."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from rclpy.impl.spinning import Run
 def group_rows(
     nodes: Iterable[Any], roles: Mapping[Any, Role], runs: Collection[Run], spun: Collection[Executor]
 ) -> dict[str, list[dict[str, Any]]]:
-    """The callback groups of each node, with their callbacks.
+    """Return the callback groups of each node, with their callbacks.
 
     Args:
-        runs: The callbacks under way.
-        spun: The executors that some thread spins.
+        runs: The running callbacks.
+        spun: The executors that a thread is spinning.
     """
     found: dict[str, list[dict[str, Any]]] = {}
     for node in nodes:
@@ -43,6 +43,6 @@ def group_rows(
 
 
 def _row(group: Any, node: Any) -> dict[str, Any]:
-    """A callback group as plain data, with nothing in it yet."""
+    """Return a callback group as plain data, without callbacks."""
     about = {"name": called(group, node), "limit": 1 if is_exclusive(group) else None, "when_full": "wait"}
     return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}

@@ -1,4 +1,4 @@
-"""What callback groups and executors are to the search for deadlocks: how they are called, and how much they let in."""
+"""Callback groups and executors as the deadlock detector sees them: their names and capacities."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
 
 ATTEMPTS = 5
-"""How often things are looked at that other threads change meanwhile."""
+"""Attempts to read a collection that other threads change meanwhile."""
 
 
 def executors() -> list[Executor]:
-    """Those of this process; more may be made meanwhile."""
+    """Return the executors of this process; others may be created meanwhile."""
     for _ in range(ATTEMPTS):
         try:
             return list(all_executors)
@@ -22,7 +22,7 @@ def executors() -> list[Executor]:
 
 
 def called(group: Any, node: Any) -> str:
-    """What a callback group is called: by the attribute of its node."""
+    """Return a callback group's name: the node's attribute that holds it."""
     if node is not None and group is node.default_callback_group:
         return "default callback group"
     attribute = next((a for a, value in list(vars(node).items()) if value is group), "") if node is not None else ""
@@ -31,13 +31,13 @@ def called(group: Any, node: Any) -> str:
 
 
 def is_exclusive(group: Any) -> bool:
-    """Whether one callback of a group runs at a time: for groups whose ways are their own that is not known."""
+    """Whether a group runs one callback at a time; unknown for groups with a `can_execute` of their own."""
     kind = MutuallyExclusiveCallbackGroup
     return isinstance(group, kind) and type(group).beginning_execution is kind.beginning_execution
 
 
 def threads_of(executor: Executor) -> int | None:
-    """The threads of an executor; None for one whose ways are its own."""
+    """Return the number of an executor's threads; None for a user-defined one."""
     way = type(executor).spin_once
     if isinstance(executor, SingleThreadedExecutor) and way is SingleThreadedExecutor.spin_once:
         return 1

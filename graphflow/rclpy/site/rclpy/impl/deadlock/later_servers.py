@@ -1,4 +1,4 @@
-"""Servers that a program makes only later: what would make the one that is waited for, as far as the source shows."""
+"""Servers that a program creates only later: the code that would create an awaited one, according to the source."""
 
 from __future__ import annotations
 
@@ -16,45 +16,45 @@ from graphflow.deadlock.closed_world.wakers import handlers_above
 from graphflow.deadlock.protocols import Subject
 
 _MAKERS = {"create_service": 1, "ActionServer": 2}
-"""Calls that make servers, and the position of the name among their arguments."""
+"""Calls that create servers, with the position of the name among their arguments."""
 _NAMES = {"srv_name", "action_name"}
 _ACTION = "/_action/"
 _ASKS = re.compile(r"\.(wait_for_s|service_is_ready|server_is_ready)")
-"""How code asks a client for its server."""
+"""Methods that check, or wait for, a client's server."""
 
 
 class Opening(NamedTuple):
-    """The code that makes an awaited server."""
+    """The code that creates an awaited server."""
 
     handlers: frozenset[str]
-    """Methods that are called as callbacks."""
+    """Methods that run as callbacks."""
     is_own: bool
-    """Whether the code that waits does so itself, further on."""
+    """Whether the waiting code creates the server itself, further on."""
 
 
 class _Offer(NamedTuple):
-    """A place in the source in which a server is made."""
+    """A place in the source that creates a server."""
 
     file: str
     call: ast.Call
     parents: Sequence[ast.AST]
     name: str | None
-    """None for one that is not written there."""
+    """The server's name; None if it is not a literal."""
 
     @property
     def function(self) -> FunctionNode | None:
-        """The function that makes it; None outside of functions, and in lambdas."""
+        """The function that creates it; None outside functions, and in lambdas."""
         inner = next((p for p in reversed(self.parents) if isinstance(p, (FunctionNode, ast.Lambda))), None)
         return inner if isinstance(inner, FunctionNode) else None
 
     @property
     def cls(self) -> str:
-        """The class that makes it; empty for none."""
+        """The class that creates it; empty for none."""
         return next((parent.name for parent in self.parents if isinstance(parent, ast.ClassDef)), "")
 
     @property
     def owner(self) -> ast.expr | None:
-        """The node whose server it is, as it is written."""
+        """The expression of the node that owns the server."""
         if isinstance(self.call.func, ast.Attribute) and self.call.func.attr == "create_service":
             return self.call.func.value
         given = [k.value for k in self.call.keywords if k.arg == "node"]
@@ -64,13 +64,13 @@ class _Offer(NamedTuple):
 def opening_of(
     service: str, frames: list[Frame], node: Subject, others: Iterable[Any], files: Iterable[str]
 ) -> Opening | None:
-    """The code that makes the server for which other code waits; None where that is not known.
+    """Return the code that creates the server for which other code waits; None if unknown.
 
     Args:
-        frames: Those of the code that waits, the outermost first.
-        node: The node that waits.
+        frames: The frames of the waiting code, outermost first.
+        node: The waiting node.
         others: The other nodes of the process.
-        files: Where the program's code is.
+        files: The program's files.
     """
     name, _, part = service.partition(_ACTION)
     maker = "ActionServer" if part else "create_service"
@@ -97,7 +97,7 @@ def opening_of(
 
 
 def comes_after(frames: Iterable[Frame]) -> str:
-    """Say that an `__init__` which waits makes servers only after the wait, as the end of a sentence; or nothing."""
+    """Note that a waiting `__init__` creates servers only after the wait; the end of a sentence, or empty."""
     for frame in frames:
         is_init = frame.f_code.co_name == "__init__" and is_users(frame.f_code.co_filename)
         offers = _offers(frame.f_code.co_filename) if is_init else []
@@ -114,7 +114,7 @@ def comes_after(frames: Iterable[Frame]) -> str:
 
 
 def tries_forever(frame: Frame) -> bool:
-    """Whether the line of a frame is in a loop that ends only when something is there, or the program ends."""
+    """Whether a frame's line is in a loop that ends only when something is available, or with the program."""
     loops = [
         node
         for syntax in _syntaxes(frame.f_code.co_filename)
@@ -154,7 +154,7 @@ def _offers(file: str) -> list[_Offer]:
 
 
 def _syntaxes(file: str) -> Iterator[Any]:
-    """The syntax of a file; nothing where it cannot be read."""
+    """Yield the syntax tree of a file; nothing if it cannot be read."""
     try:
         yield syntax_of(file)
     except (OSError, SyntaxError, ValueError):
@@ -162,7 +162,7 @@ def _syntaxes(file: str) -> Iterator[Any]:
 
 
 def _is_of(frame: Frame, offer: _Offer) -> bool:
-    """Whether a frame runs the function that makes a server, or the module that does."""
+    """Whether a frame runs the function, or module, that creates a server."""
     return frame.f_code.co_filename == offer.file and frame.f_code.co_firstlineno == _code_line(offer.function)
 
 
@@ -171,7 +171,7 @@ def _code_line(function: ast.AST | None) -> int:
 
 
 def _follows(offer: _Offer, line: int) -> bool:
-    """Whether what makes a server comes after a line, and on the same way through the code."""
+    """Whether the creation of a server follows a line on the same path through the code."""
     for parent, child in zip(offer.parents, [*offer.parents[1:], offer.call], strict=True):
         for block in (getattr(parent, field, None) for field in ("body", "orelse", "finalbody")):
             statements = block if isinstance(block, list) else []
@@ -184,7 +184,7 @@ def _follows(offer: _Offer, line: int) -> bool:
 
 
 def _resolved(offer: _Offer, frame: Frame) -> str:
-    """The full name of a service or action that a function will offer; empty where its node is not known."""
+    """Return the full name of the service or action that a function will offer; empty if its node is unknown."""
     match offer.owner:
         case ast.Name(id=name):
             resolve = getattr(frame.f_locals.get(name), "resolve_service_name", None)
@@ -193,7 +193,7 @@ def _resolved(offer: _Offer, frame: Frame) -> str:
 
 
 def _method_of(offer: _Offer, node: Subject) -> str:
-    """The node's own method that makes a server of the node's; empty for anything else."""
+    """Return the node's own method that creates one of its servers; empty for anything else."""
     match offer.owner, offer.function:
         case ast.Name(id="self"), (ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name)) as function:
             return name if function in source_of(node.instance).methods.get(name, []) else ""

@@ -1,11 +1,11 @@
-"""Locks that code waits for, and who is inside of them: read from frames, and from the source of their functions."""
+"""Locks that code waits for, and their holders, read from frames and from the source of their functions."""
 
 from __future__ import annotations
 
 import ast
 import threading
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.analysis.class_source import Unknown
 from graphflow.analysis.frames import Frame
@@ -18,13 +18,13 @@ _LOCKS = (type(threading.Lock()), type(threading.RLock()))
 class Entering(NamedTuple):
     """A lock that a line waits to acquire."""
 
-    lock: Any
+    lock: object
     text: str
-    """As it is written: `self.account.lock`."""
+    """The expression in the source: `self.account.lock`."""
 
 
 def entered_at(frame: Frame) -> Entering | None:
-    """The lock that the line of a frame enters by `with`, or acquires without a limit; None for none, or several."""
+    """Return the lock that a frame's line enters by `with`, or acquires without a limit; None for none or several."""
     try:
         function = function_of(frame)
     except Unknown:
@@ -61,26 +61,26 @@ def is_inside(frame: Frame, lock: object) -> bool:
 
 
 def holds(frames: Iterable[Frame], lock: object) -> bool:
-    """Whether some code of a stack holds a lock."""
+    """Whether any frame of a stack holds a lock."""
     return any(is_inside(frame, lock) for frame in frames)
 
 
 def only_holder(
     entering: Entering, frames: Iterable[Frame], others: Iterable[tuple[str, Sequence[Frame]]]
 ) -> str | None:
-    """The one of some stacks, by name, that holds a lock which code waits for; None for none, several, or no knowing.
+    """Return the name of the only stack that holds an awaited lock; None for none, several, or unknown.
 
     Args:
-        frames: Those of the code that waits.
+        frames: The frames of the waiting code.
     """
     inside = [(name, stack) for name, stack in others if holds(stack, entering.lock)]
     return inside[0][0] if len(inside) == 1 and is_kept(entering, [*frames, *inside[0][1]]) else None
 
 
 def is_kept(entering: Entering, frames: Iterable[Frame]) -> bool:
-    """Whether whoever acquires a lock releases it, as far as the files of some frames show.
+    """Whether each acquirer of a lock also releases it, as far as the files of some frames show.
 
-    One that is released elsewhere, or given to other code, such as a `Condition`, may be free all the same.
+    A lock that is released elsewhere, or passed to other code such as a `Condition`, may be free all the same.
     """
     name = entering.text.rpartition(".")[2]
     try:
@@ -91,7 +91,7 @@ def is_kept(entering: Entering, frames: Iterable[Frame]) -> bool:
 
 
 def _is_let_go(syntax: Syntax, name: str) -> bool:
-    """Whether something of that name is released without having been acquired there, or is more than used in place."""
+    """Whether a lock of that name is released without having been acquired there, or used in any other way."""
     for function in syntax.functions:
         called = [call.func for call in ast.walk(function) if isinstance(call, ast.Call)]
         ways = [(way.attr, ast.unparse(way.value)) for way in called if isinstance(way, ast.Attribute)]
@@ -107,14 +107,14 @@ def _is_let_go(syntax: Syntax, name: str) -> bool:
 
 
 def _entries(function: ast.AST) -> Iterator[tuple[ast.With, ast.expr]]:
-    """What is entered by `with`."""
+    """Yield what is entered with `with`."""
     for block in ast.walk(function):
         if isinstance(block, ast.With):
             yield from ((block, item.context_expr) for item in block.items)
 
 
 def _calls(function: ast.AST, way: str) -> Iterator[tuple[ast.expr, ast.Call]]:
-    """What `acquire()` or `release()` is called on, as a statement and without arguments."""
+    """Yield the objects whose `acquire()` or `release()` is called, as a statement and without arguments."""
     for statement in ast.walk(function):
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=attr), args=[], keywords=[]) as call):
@@ -127,8 +127,8 @@ def _last(expression: ast.expr) -> str:
     return ast.unparse(expression).rpartition(".")[2] if isinstance(expression, (ast.Name, ast.Attribute)) else ""
 
 
-def _value(expression: ast.expr, frame: Frame) -> Any:
-    """What an expression is in a frame: a name, or an attribute that is stored; None for anything else."""
+def _value(expression: ast.expr, frame: Frame) -> object:
+    """Return the value of an expression in a frame: a name, or a stored attribute; None for anything else."""
     match expression:
         case ast.Name(id=name):
             return frame.f_locals.get(name, frame.f_globals.get(name))
@@ -140,7 +140,7 @@ def _value(expression: ast.expr, frame: Frame) -> Any:
 
 
 def function_of(frame: Frame) -> ast.AST:
-    """The source of the function, or module, of a frame. Raises Unknown if there is none."""
+    """Return the syntax of a frame's function or module. Raises Unknown if there is none."""
     try:
         syntax = syntax_of(frame.f_code.co_filename)
     except (OSError, SyntaxError, ValueError):

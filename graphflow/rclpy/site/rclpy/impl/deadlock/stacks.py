@@ -1,4 +1,4 @@
-"""What the threads of this process are doing, read from their stacks: whose callbacks they run, and who spins."""
+"""The threads of this process, read from their stacks: the callbacks they run, and the executors they spin."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from types import FrameType
-from typing import Any
 
 from graphflow.analysis.frames import Frame, stack_from
 from graphflow.analysis.user_code import is_ours, is_users
@@ -22,55 +21,55 @@ _SPINS = (
     Executor.spin_until_future_complete.__code__,
 )
 _OURS = ("graphflow-", "executor-")
-"""How the names of threads begin that run no code of users', or only an executor's."""
+"""Prefixes of the names of threads that run no user code, or only an executor's."""
 
 
 @dataclass
 class Level:
-    """A part of a thread's stack: a run of a callback and what it has called, or what comes before the first."""
+    """A section of a thread's stack: a callback's run and its calls, or the part before the first run."""
 
     run: Run | None
     frames: list[Frame] = field(default_factory=list)
-    """The outermost first."""
-    waiting: Any = None
-    """The executor that waits for something to do in it."""
+    """The frames, outermost first."""
+    waiting: object = None
+    """The executor that waits for work in this section."""
 
     @property
     def innermost(self) -> Frame | None:
-        """The last frame of the user's own code."""
+        """The innermost frame of user code."""
         return next((f for f in reversed(self.frames) if is_users(f.f_code.co_filename)), None)
 
 
 @dataclass
 class Stack:
-    """What a thread is doing."""
+    """The stack of a thread."""
 
     thread: threading.Thread
     levels: list[Level]
-    """The outermost first; each but the first is one run of a callback."""
+    """The sections, outermost first; each but the first is one run of a callback."""
     spins: list[Executor]
-    """The executors that it spins."""
+    """The executors that the thread spins."""
     is_given: bool
     """Whether it spins for as long as the context lasts."""
 
     @property
     def is_idle(self) -> bool:
-        """Whether it waits for something to do, and for nothing else."""
+        """Whether it waits only for work."""
         return self.levels[-1].waiting is not None and self.levels[-1].run is None
 
     @property
     def is_users(self) -> bool:
-        """Whether it is a thread of the program's own: none of a pool."""
+        """Whether it is one of the program's own threads: not a pool's."""
         return not self.thread.name.startswith(_OURS)
 
     @property
     def may_spin(self) -> bool:
-        """Whether the program's own code may yet have it spin what nobody spins."""
+        """Whether the program's own code may still spin what nothing spins yet."""
         return self.is_users and not (self.is_idle and self.is_given)
 
 
 def stacks() -> Iterator[Stack]:
-    """Those of all threads that run code of users', or that spin."""
+    """Return the stacks of all threads that run user code, or that spin."""
     frames = sys._current_frames()
     me = threading.get_ident()
     for thread in threading.enumerate():
@@ -100,9 +99,9 @@ def _read(thread: threading.Thread, innermost: FrameType) -> Stack:
 
 
 def standing() -> dict[int, tuple[int, int]]:
-    """Where threads stand that run code of users': the identity of the innermost frame of it, and the line, by thread.
+    """Return, by thread, the identity and line of the innermost frame of user code.
 
-    It costs a walk along the end of each stack. Threads that only wait for something to do are left out.
+    The cost is a walk along the end of each stack. Threads that only wait for work are omitted.
     """
     found: dict[int, tuple[int, int]] = {}
     for thread, innermost in sys._current_frames().items():
@@ -119,7 +118,7 @@ def standing() -> dict[int, tuple[int, int]]:
 
 
 def is_in_run(frame: FrameType) -> bool:
-    """Whether a callback, not the thread itself, has called what runs in a frame."""
+    """Whether a frame's code was called by a callback, not by the thread itself."""
     above: FrameType | None = frame
     while above is not None:
         if above.f_code is _STEP:

@@ -1,4 +1,4 @@
-"""A node of rclpy's, as the reading of its source sees it, which is made for graphflow's own nodes."""
+"""An adapter for the source analysis of graphflow's own nodes: an rclpy node as its subject."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from rclpy.impl.entities import Role
 
 
 class Runner:
-    """What runs a callback."""
+    """The runner of a callback."""
 
     def __init__(self, role: Role) -> None:
         self.spec = role
 
 
 class Subject:
-    """A node.
+    """A node as the source analysis sees it.
 
     Args:
-        handlers: The names of what its executor calls.
+        handlers: The names of the methods that its executor calls.
     """
 
     def __init__(self, node: Any, handlers: Iterable[str] = ()) -> None:
         self.instance, self.full_name = node, str(node._graphflow.node.full_name)
         self.runners = [Runner(Role("", handler)) for handler in handlers]
-        self.tasks: set[Any] = set()
+        self.tasks: set[object] = set()
         self.starting = None
-        self.unopened: tuple[Any, ...] = ()
+        self.unopened: tuple[object, ...] = ()
         self.hooks: set[str] = set()

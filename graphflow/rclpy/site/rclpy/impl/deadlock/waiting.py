@@ -1,9 +1,9 @@
-"""Who waits for whom among the callbacks and threads of one process, for graphflow's search for deadlocks.
+"""The waits among the callbacks and threads of one process, for the deadlock detector.
 
 An executor is a group with as many slots as it has threads, and a callback group is one with one slot; a callback that
-runs holds slots of both, and one that is suspended only that of its callback group. What has arrived waits in queues,
-one for each entity, that need both. What no executor runs needs a thread that spins: that could be any thread of the
-program's own. Nothing is recorded while callbacks run: all is read from stacks and entities when it is asked for.
+runs holds slots of both, and a suspended one only that of its callback group. Arrivals wait in queues, one for each
+entity, that need both. A node without an executor needs a thread that spins, which may be any of the program's
+own. Nothing is recorded while callbacks run: stacks and entities are read on request.
 """
 
 from __future__ import annotations
@@ -75,49 +75,49 @@ if TYPE_CHECKING:
     from graphflow.runtime.context import Context
 
 LOOK_EVERY = 0.15
-"""Seconds between two looks whether some thread or callback stands still."""
+"""Seconds between two checks whether a thread or callback is stuck."""
 AGAIN_AFTER = 0.5
-"""Seconds after which what stands still is looked into again."""
+"""Seconds after which a stuck one is examined again."""
 
 know_futures(Future)
 know_messages(StrictMessage)
 
 
 class Waiting:
-    """The waits of rclpy's callbacks in one context, read whenever somebody asks."""
+    """The waits of one context's rclpy callbacks, read on request."""
 
     def __init__(self, life: ContextState, context: Context) -> None:
         self._life, self.context = life, context
-        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._count, self._lock = count(1), threading.RLock()
         self._stood: dict[int, tuple[int, float]] = {}
-        """Where each thread stands, and since when."""
+        """The position of each thread, and the time since which it has been there."""
         self._known: dict[tuple[int, int], float] = {}
-        """When what stands still was last looked into: a frame and a line, or a run and its step."""
+        """The time of the last examination of each stuck position: a frame and a line, or a run and its step."""
         self.watches = Watches(life, context, self._is_told)
         LOOP.soon(self._look)
 
-    def number_of(self, thing: Any) -> int:
-        """A number that nothing else ever has."""
+    def number_of(self, thing: object) -> int:
+        """Return a number that no other object ever has."""
         known = self._numbers.get(thing)
         if known is None:
             known = self._numbers[thing] = next(self._count)
         return known
 
     def stands_since(self, thread: int) -> float:
-        """Since when a thread has been in the innermost function of users' that it is in, by the monotonic clock."""
+        """Return the monotonic time since which a thread has been in its innermost user function."""
         return self._stood.get(thread, (0, time.monotonic()))[1]
 
-    def _is_told(self, thing: Any, prefix: str, title: str) -> bool:
-        """Whether a run or thread is in a deadlock that was reported, or waits behind one."""
+    def _is_told(self, thing: object, prefix: str, title: str) -> bool:
+        """Whether a run or thread is part of a reported deadlock, or waits behind one."""
         return self.context.search.has_reported(f"{self.context.session.zid}:{prefix}{self.number_of(thing)}", title)
 
     def stalls(self) -> list[str]:
-        """The callbacks that keep others waiting, and the nodes that nobody spins, as they were told."""
+        """Return the reported callbacks that hold others up, and the nodes that nothing spins."""
         return self.watches.texts
 
     def waits(self) -> WaitGraph:
-        """Who waits for whom. What is seen differently by a second look goes on."""
+        """Return the waits. An activity that a second reading finds changed counts as running."""
         with self._lock:
             first, second = _Look(self).graph(), _Look(self).graph()
         activities = {}
@@ -127,8 +127,8 @@ class Waiting:
             activities[name] = now if is_same else replace(now, wait=FREE)
         return replace(second, activities=activities)
 
-    def groups(self) -> dict[str, list[dict[str, Any]]]:
-        """Its nodes' callback groups and executors, with what is in them, as plain data."""
+    def groups(self) -> dict[str, list[dict[str, object]]]:
+        """Return the context's callback groups and executors, with their content, as plain data."""
         with self._lock:
             for _ in range(ATTEMPTS):
                 with suppress(RuntimeError):  # something changed its size meanwhile
@@ -136,7 +136,7 @@ class Waiting:
         return {}
 
     def _look(self) -> None:
-        """Have deadlocks looked for if something stands still, and look again. On the loop."""
+        """Request a search for deadlocks if something is stuck, and reschedule itself. Runs on the loop."""
         if not self._life.is_ok:
             return
         clock = self.context.clock
@@ -159,21 +159,21 @@ class Waiting:
 
 
 class _Look:
-    """One look at all that is under way."""
+    """One reading of all activities."""
 
     def __init__(self, waiting: Waiting) -> None:
         self._waiting, self._context = waiting, waiting.context
         self._zid, self._now = self._context.session.zid, time.monotonic()
-        self._nodes: list[Any] = list(waiting._life.nodes)
+        self._nodes: list[object] = list(waiting._life.nodes)
         self._owners = {entity: node for node in self._nodes for entity in entities_of(node)}
         self._roles = {entity: role_of(entity) for entity in self._owners}
         self._groups: dict[str, GroupView] = {}
         self._queues: dict[str, QueueView] = {}
         self._activities: dict[str, ActivityView] = {}
         self._pause: Pause | None = None
-        """Where the loop pauses in which the run waits that is looked at."""
-        self._asker: Any = None
-        """The node whose client waits for the answer that what is looked at waits for."""
+        """The point of the event loop at which the examined run is suspended."""
+        self._asker: object = None
+        """The node whose client waits for the answer that the examined activity needs."""
         self._stacks = list(stacks())
         self._spun = {executor for stack in self._stacks for executor in stack.spins}
         self._levels = {level.run: level for stack in self._stacks for level in stack.levels if level.run is not None}
@@ -185,7 +185,7 @@ class _Look:
         locks = [one.lock.lock for one in found if one.lock is not None]
         self._awaited |= {s.thread.ident for s in self._stacks for lock in locks if holds(s.levels[0].frames, lock)}
 
-    def _id(self, thing: Any, prefix: str = "r") -> str:
+    def _id(self, thing: object, prefix: str = "r") -> str:
         return f"{self._zid}:{prefix}{self._waiting.number_of(thing)}"
 
     def graph(self) -> WaitGraph:
@@ -202,13 +202,13 @@ class _Look:
         return WaitGraph(self._activities, self._groups, self._queues)
 
     def rows(self) -> dict[str, list[dict[str, Any]]]:
-        """The callback groups of each node, with their callbacks, for people."""
+        """Return the callback groups of each node, with their callbacks, for display."""
         return group_rows(self._nodes, self._roles, list(self._runs), self._spun)
 
     # groups
 
     def _callback_group(self, group: Any, node: Any) -> tuple[str, ...]:
-        """The id of a callback group, if it keeps anything out."""
+        """Return the id of a callback group, if it excludes anything."""
         if not is_exclusive(group):
             return ()
         name = self._id(group, "g")
@@ -216,14 +216,14 @@ class _Look:
         return (name,)
 
     def _executor(self, executor: Any, node: Any) -> tuple[str, ...]:
-        """The id of an executor, as a group of threads."""
+        """Return the id of an executor as a group of threads."""
         limit = threads_of(executor)
         name = self._id(executor, "e")
         self._groups.setdefault(name, GroupView(name, type(executor).__name__, full_name(node), limit, sort="executor"))
         return (name,)
 
     def _spinner(self, node: Any) -> tuple[str, ...]:
-        """The id of what a node needs that nobody spins: one of the program's own threads."""
+        """Return the id of what a node needs if nothing spins it: one of the program's own threads."""
         threads = [stack for stack in self._stacks if stack.may_spin]
         if not threads:
             return ()
@@ -232,7 +232,7 @@ class _Look:
         return (name,)
 
     def _needs(self, group: Any, node: Any) -> tuple[str, ...]:
-        """What the next callback of a group and node takes."""
+        """Return the slots that the next callback of a group and node takes."""
         own, executor = self._callback_group(group, node), node.executor
         if executor is None or node not in executor.spinning.nodes:
             return (*own, *self._spinner(node))
@@ -253,7 +253,7 @@ class _Look:
         )
 
     def _add_results(self, entity: Any, node: Any) -> None:
-        """Those who have asked for the result of a goal wait until it has ended."""
+        """Add the clients that wait for the result of a goal."""
         for call, goal in results_asked(entity):
             name, label = f"{call}:r", f"service {self._roles[entity].handler} get_result"
             wait = Call(goal, entity._graphflow_goals.name.partition("/_action/")[0])
@@ -265,7 +265,7 @@ class _Look:
     # activities
 
     def _add_stack(self, stack: Stack) -> None:
-        """The runs of a thread, each of which waits for the next; below them, the thread itself if it is a user's."""
+        """Add a thread's runs, each waiting for the next; below them, the thread itself if it is a user's."""
         runs = [level for level in stack.levels if level.run is not None]
         held = (f"{self._zid}:spinner",) if stack.may_spin and f"{self._zid}:spinner" in self._groups else ()
         if not runs:
@@ -341,7 +341,7 @@ class _Look:
         self._activities[name] = ActivityView(name, f"thread {stack.thread.name}", node, holding, process=self._zid)
 
     def _add_suspended(self, run: Run) -> None:
-        """A run that no thread steps just now: it waits for a future, or for a thread."""
+        """Add a suspended run, which waits for a future or for a thread."""
         level = Level(run, frames_of(run))
         self._pause = None
         group = self._callback_group(run.group, run.node) if run.group is not None else ()
@@ -354,8 +354,8 @@ class _Look:
         age = self._now - run.stepped_ns / 1e9 if run.stepped_ns else 0.0
         self._add_run(run, level, group, wait, age, None)
 
-    def _node_of(self, run: Run) -> Any:
-        """The node whose callback a run is; of a task, one of its executor's."""
+    def _node_of(self, run: Run) -> object:
+        """Return the node of a run's callback; for a task, one of its executor's nodes."""
         goal = goal_of(run)
         if goal is not None:
             return goal._action_server._node
@@ -376,7 +376,7 @@ class _Look:
     # conditions
 
     def _wait(self, level: Level, node: Any, run: Run | None) -> tuple[Condition, float | None]:
-        """What code on a thread waits for, and for how many seconds at most from when it began to."""
+        """Return the wait of a thread's code, and its time limit in seconds."""
         self._pause = self._asker = None
         found = blocked(level)
         if found.future is not None:
@@ -428,11 +428,11 @@ class _Look:
 
     @cached_property
     def _servers(self) -> Counter[str]:
-        """How many servers there are, by service."""
+        """Return the number of servers by service."""
         return Counter(entity.name for entity in list(self._context.cache) if entity.kind is Kind.SERVICE)
 
     def _of_lock(self, entering: Entering, level: Level, run: Run | None) -> Condition:
-        """A lock that others are inside of."""
+        """Return the wait for a lock that others hold."""
         others = [(self._id(other), there.frames) for other, there in self._levels.items() if other is not run]
         others += [(self._id(s.thread, "t"), s.levels[0].frames) for s in self._stacks if s.levels[0] is not level]
         if run is not None:
@@ -441,7 +441,7 @@ class _Look:
         return FREE if holder is None else SetBy(entering.text, (), (holder,), True, "releases")
 
     def _of_buffer(self, wait: BufferWait) -> Condition:
-        """A wait for what only listeners bring that cannot run meanwhile."""
+        """Return the wait for a buffer that only blocked listeners would fill."""
         fillers = set(filter(wait.is_filled_by, self._owners))
         if not fillers or wait.may_be_filled_by(programs_files()):
             return FREE
@@ -449,7 +449,7 @@ class _Look:
         return SetBy(wait.what, tuple(sorted(queues)), tuple(sorted(active)), verb="hears", gives_up=True)
 
     def _of_opening(self, service: str, level: Level, node: Any, run: Run | None, *, gives_up: bool) -> Condition:
-        """A wait for a server that, as far as the source code shows, only code makes that cannot run meanwhile."""
+        """Return the wait for a server that, according to the source, only blocked code creates."""
         (own, tasks, subject), others = self._world(node), [other for other in self._nodes if other is not node]
         found = None if self._servers[service] else opening_of(service, level.frames, subject, others, programs_files())
         if found is None or (found.handlers and any(type(other) is type(node) for other in others)):
@@ -462,15 +462,15 @@ class _Look:
         mine = self._id(run) if run is not None else self._id(stack.thread, "t") if stack is not None else ""
         return replace(condition, activities=(*condition.activities, mine))
 
-    def _world(self, node: Any) -> tuple[list[tuple[Any, str]], list[Run], Any]:
-        """A node's callbacks by entity, the tasks that run methods of it, and the node as a subject."""
+    def _world(self, node: Any) -> tuple[list[tuple[object, str]], list[Run], Any]:
+        """Return a node's callbacks by entity, the tasks that run its methods, and the node as a subject."""
         own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
         own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
         tasks = [task for task in self._runs if getattr(task.called, "__self__", None) is node]
         return own, tasks, Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
 
     def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
-        """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
+        """Return the wait for something that, according to the source, only the node's callbacks bring about."""
         own, tasks, subject = self._world(node)
         found = setters(level.frames, future, subject)
         others = [Subject(other) for other in self._nodes if other is not node]
@@ -481,7 +481,7 @@ class _Look:
         return self._set_by(found, own, tasks, node, run)
 
     def _set_by(
-        self, found: Setters, own: list[tuple[Any, str]], tasks: list[Run], node: Any, run: Run | None
+        self, found: Setters, own: list[tuple[object, str]], tasks: list[Run], node: Any, run: Run | None
     ) -> SetBy:
         queues = {self._id(entity, "q") for entity, handler in own if handler in found.handlers}
         others_runs = [r for r in self._runs if r is not run and (r.node is node or r in tasks)]
@@ -490,7 +490,7 @@ class _Look:
 
 
 def attend(life: ContextState) -> None:
-    """Have deadlocks looked for among the callbacks of a context; they are from its first node on."""
+    """Include a context's callbacks in searches for deadlocks, from its first node on."""
     context = life.network()
     if not context.elsewhere:
         context.elsewhere.append(Waiting(life, context))

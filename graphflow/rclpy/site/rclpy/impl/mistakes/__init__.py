@@ -1,1 +1,1 @@
-"""Mistakes in rclpy programs that show in one call or in the source: each module reports one kind."""
+"""Mistakes in rclpy programs that one call or the source reveals: each module reports one kind."""

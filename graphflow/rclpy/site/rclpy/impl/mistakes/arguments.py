@@ -1,6 +1,6 @@
-"""Arguments that do not fit: said in words of the call itself, where ROS 2 tells what it came upon later.
+"""Arguments that do not fit, explained in terms of the call itself; ROS 2 reports a later symptom.
 
-An error stays of the class that ROS 2 raises.
+An error keeps the class that ROS 2 raises.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ _PARAMETERS: dict[str, tuple[str, Callable[[object], bool]]] = {
     **dict.fromkeys(("topic", "srv_name", "action_name"), ("a name", lambda value: isinstance(value, str))),
     **dict.fromkeys(("callback", "execute_callback"), ("a function or method", _is_callback)),
 }
-"""The kinds of values that calls take, by parameter."""
+"""The types of values that calls take, by parameter."""
 _WRITTEN = {"parameter_list": "[Parameter('name', value=...)]"}
-"""Arguments as a call has them, where the name of the parameter does not say it."""
+"""Arguments as they are written in a call, where that differs from the parameter's name."""
 
 
 def explained(call: Callable[P, T]) -> Callable[P, T]:
-    """Have the errors of a call say which of its arguments does not fit, and how it is written."""
+    """Decorate a function so that its errors name the wrong argument and show the right call."""
     signature = inspect.signature(call)
     name = call.__qualname__.partition(".")[0] if call.__name__ == "__init__" else call.__name__
     needed = [p.name for p in list(signature.parameters.values())[1:] if p.default is p.empty]
@@ -80,8 +80,8 @@ def explained(call: Callable[P, T]) -> Callable[P, T]:
     return checked
 
 
-def _fault(name: str, given: Mapping[str, Any], needed: list[str]) -> str:
-    """The fault in the arguments of a call; empty if they are of the right kinds."""
+def _fault(name: str, given: Mapping[str, object], needed: list[str]) -> str:
+    """Describe the fault in a call's arguments; empty if their types are right."""
     for words in combinations(needed, len(given)) if len(given) < len(needed) else ():
         if all(map(_fits, words, given.values())):
             values = dict(zip(words, map(_shown, given.values()), strict=True))
@@ -104,7 +104,7 @@ def _fault(name: str, given: Mapping[str, Any], needed: list[str]) -> str:
 
 
 def _class_meant(word: str, value: object) -> str:
-    """Say how the class of an interface is given, in place of something else; empty if that is not known."""
+    """Show how to pass the class of an interface instead of something else; empty if unknown."""
     if not word.endswith("_type"):
         return ""
     if isinstance(value, str):
@@ -123,7 +123,7 @@ _USES = {
     "Request": ("a service", "create_service or create_client"),
     "SCHEMA": ("a message", "create_publisher or create_subscription"),
 }
-"""Kinds of interface classes, by an attribute that no other kind has, and the calls that take them."""
+"""The kinds of interface classes, by an attribute that only they have, and the calls that take them."""
 
 
 def _no_callback(name: str, value: object) -> str:
@@ -135,7 +135,7 @@ def _no_callback(name: str, value: object) -> str:
 
 
 def _no_group(name: str, value: object) -> str:
-    """The fault of what is given as a callback group; empty if it is one, or none."""
+    """Describe the fault of an argument that is not a callback group; empty if it is one, or None."""
     if value is None or (hasattr(value, "beginning_execution") and not isinstance(value, type)):
         return ""
     if isinstance(value, (int, QoSProfile)):
@@ -151,7 +151,7 @@ def _fits(word: str, value: object) -> bool:
 
 
 def _shown(value: object) -> str:
-    """A value as one would write it."""
+    """Format a value as in source code."""
     if inspect.ismethod(value):
         return f"self.{value.__name__}"
     if isinstance(value, type) or inspect.isfunction(value):
@@ -162,7 +162,7 @@ def _shown(value: object) -> str:
 
 
 def _warn(name: str) -> None:
-    """Tell that a call was given None as its callback, which ROS 2 takes; not where graphflow itself does that."""
+    """Warn that a call was given None as its callback, which ROS 2 accepts; not for graphflow's own calls."""
     asked = caller(2)
     if asked is not None:
         logger.warning("%s (%s)", _no_callback(name, None), asked.place)
@@ -172,7 +172,7 @@ _POLICIES = {DurabilityPolicy: "durability", HistoryPolicy: "history", Reliabili
 
 
 def _check_depth(name: str, qos: object) -> None:
-    """Tell that a policy was given in the place of a depth, as which ROS 2 takes its number."""
+    """Warn that a policy was passed as the depth, where ROS 2 takes its number."""
     asked = caller(2) if isinstance(qos, QoSPolicyEnum) else None
     if asked is not None and isinstance(qos, QoSPolicyEnum):
         policy = f"{type(qos).__name__}.{qos.name}"
@@ -182,7 +182,7 @@ def _check_depth(name: str, qos: object) -> None:
 
 
 class Unmade:
-    """Stands in a node's class for its workings, which `Node.__init__` makes."""
+    """The class-level value of a node's internals, which `Node.__init__` replaces."""
 
     def __get__(self, node: Any, owner: type) -> Any:
         if node is None:
@@ -196,13 +196,13 @@ class Unmade:
 
 
 def must_return(callback: Any, what: str, value: object) -> str:
-    """The sentence for a callback that has returned something else than `what`."""
+    """Return the sentence for a callback that returned something other than `what`."""
     given = "None" if value is None else type(value).__name__
     return f"{described(callback)} must return {what}, and returned {given}"
 
 
 def described(callback: Any) -> str:
-    """A callback with its line: `tick (lamp.py:12)`."""
+    """Format a callback with its line: `tick (lamp.py:12)`."""
     code = getattr(callback, "__code__", None)
     place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
     return f"{getattr(callback, '__name__', type(callback).__name__)}{place}"

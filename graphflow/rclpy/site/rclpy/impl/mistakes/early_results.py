@@ -1,6 +1,6 @@
-"""Results that are asked for in the line that sends the request: `client.call_async(request).result()`.
+"""Results that are read in the line that sends the request: `client.call_async(request).result()`.
 
-They are None, again and again; ROS 2 says nothing of it.
+They are always None; ROS 2 does not report it.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from types import CodeType
 from rclpy.impl.callers import Caller
 
 _seen: set[tuple[CodeType, int]] = set()
-"""The calls that have been looked at."""
+"""The calls that have been checked."""
 SEEN_BOUND = 1000
-"""Calls that are remembered; further ones, as of a program that compiles code again and again, are not looked at."""
+"""The number of calls to remember; further ones, as of a program that keeps compiling code, are not checked."""
 logger = logging.getLogger("graphflow")
 
 
 def check(asked: Caller | None) -> None:
-    """Tell if code has asked a call for the result of a future that it has just made, once for each line.
+    """Warn, once per line, if code reads the result of a future that its own call has just created.
 
     Args:
-        asked: The code that asks a future that is not done.
+        asked: The code that reads the result of a pending future.
     """
     if asked is None or len(_seen) >= SEEN_BOUND or (call := (asked.frame.f_code, asked.frame.f_lasti)) in _seen:
         return

@@ -1,6 +1,6 @@
-"""Callbacks of a class that a subclass hides by one of the same name, which it also gives to an entity of its own.
+"""Callbacks of a class that a subclass overrides by accident, with a method that it gives to an entity of its own.
 
-Python calls the subclass's for both, and the class's own is never called: what it kept is not kept any more.
+Python calls the subclass's method for both entities, so the base class's work is no longer done.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from rclpy.constants import S_TO_NS
 from rclpy.timer import Timer
 
 _told: set[CodeType] = set()
-"""The callbacks of which it has been told."""
+"""The callbacks that have been reported."""
 _STUBS = {"NotImplementedError", "NotImplemented", "ABC"}
-"""All that a callback names which is there to be overridden."""
+"""The names that a callback meant to be overridden uses, at most."""
 logger = logging.getLogger("graphflow")
 
 
 def tell_hidden(node: Any, made: Any, asker: CodeType, others: list[Any]) -> None:
-    """Tell if a method that a class gave to an entity, and its subclass to another, is not the one the class meant.
+    """Warn if a base class and its subclass each gave an entity a method of the same name.
 
     Args:
-        made: The entity that was made, whose callback it is.
-        asker: The function that made it.
-        others: The node's entities, whose `made_at` has the function that made each.
+        made: The new entity, with the callback.
+        asker: The function that created it.
+        others: The node's entities; each one's `made_at` has the function that created it.
     """
     callback = made.callback
     if not isinstance(callback, MethodType) or callback.__self__ is not node:
@@ -51,7 +51,7 @@ def tell_hidden(node: Any, made: Any, asker: CodeType, others: list[Any]) -> Non
 def _hidden(
     cls: type, method: FunctionType, outer: CodeType, inner: CodeType
 ) -> tuple[type, FunctionType, type] | None:
-    """The class that has a method, the one of its parent's that it hides, and the parent; None if it hides none.
+    """Return the class that defines a method, the parent's method it hides, and the parent; None if it hides none.
 
     Args:
         outer: The function that must be of the parent.
@@ -74,14 +74,14 @@ def _hidden(
 
 
 def _owner(cls: type, code: CodeType) -> type | None:
-    """The class that has a function."""
+    """Return the class that defines a function."""
     return next((c for c in cls.__mro__ if any(getattr(v, "__code__", None) is code for v in vars(c).values())), None)
 
 
-def _is_missed(cls: type, method: FunctionType, former: FunctionType, first: Any, made: Any, other: Any) -> bool:
-    """Whether the parent's method was meant to be called, too.
+def _is_missed(cls: type, method: FunctionType, former: FunctionType, first: object, made: Any, other: object) -> bool:
+    """Whether the parent's method was meant to be called as well.
 
-    A method that is a stub, or that the new one calls, is there to be overridden. Where both entities have messages of
+    A method that is a stub, or that the new one calls, is meant to be overridden. Where both entities have messages of
     one type, one method for both may be meant, unless it leaves alone what the parent's sets for other methods.
     """
     if method.__name__ in method.__code__.co_names or set(former.__code__.co_names) <= _STUBS:
@@ -103,11 +103,11 @@ def _codes(cls: type) -> Iterator[CodeType]:
 
 
 def _named(code: CodeType, operation: str) -> set[str]:
-    """The attributes that some code stores or loads."""
+    """Return the attributes that some code stores or loads."""
     return {str(step.argval) for step in dis.get_instructions(code) if step.opname == operation}
 
 
-def _text(method: FunctionType, owner: type, former: FunctionType, parent: type, first: Any, kinds: str) -> str:
+def _text(method: FunctionType, owner: type, former: FunctionType, parent: type, first: object, kinds: str) -> str:
     name = method.__name__
     own, its = (short_place(f.__code__.co_filename, f.__code__.co_firstlineno) for f in (method, former))
     return (
@@ -117,7 +117,7 @@ def _text(method: FunctionType, owner: type, former: FunctionType, parent: type,
 
 
 def _use(entity: Any) -> str:
-    """What an entity does with its callback, to stand after `which`."""
+    """Describe an entity's use of its callback, to follow `which`."""
     if isinstance(entity, Timer):
         return f"is called every {entity.timer_period_ns / S_TO_NS:g} s"
     if hasattr(entity, "topic_name"):
@@ -125,7 +125,7 @@ def _use(entity: Any) -> str:
     return f"answers {entity.service_name}"
 
 
-def _kinds(*entities: Any) -> str:
+def _kinds(*entities: object) -> str:
     words = {
         "timers" if isinstance(e, Timer) else "topics" if hasattr(e, "topic_name") else "services" for e in entities
     }

@@ -1,6 +1,6 @@
-"""Publishers, timers and the like that one line makes again and again, as in each run of a callback.
+"""Publishers, timers and other entities that one line creates again and again, for example in each run of a callback.
 
-ROS 2 keeps them all, without a word, until there is no more memory or time.
+ROS 2 keeps them all silently, until memory or processor time runs out.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from rclpy.impl.mistakes.hidden_callbacks import tell_hidden
 from rclpy.timer import Timer
 
 MANY = 10
-"""So many of one kind and name that are alive, from one line, are told."""
+"""The number of live entities of one kind, name and line that is reported."""
 _KINDS = {
     "create_publisher": "publishers",
     "create_subscription": "subscriptions",
@@ -24,12 +24,12 @@ _KINDS = {
     "create_timer": "timers",
 }
 _told: set[Place] = set()
-"""The lines of which it has been told."""
+"""The lines that have been reported."""
 logger = logging.getLogger("graphflow")
 
 
 def count(node: Any, call: str, made: Any) -> None:
-    """Tell if a node has many that are like what one of its calls has just made.
+    """Warn if a node has many entities like the one that a call has just created.
 
     Args:
         call: The name of the method.
@@ -53,13 +53,13 @@ def count(node: Any, call: str, made: Any) -> None:
         logger.warning(text, node.get_fully_qualified_name(), alike, what, place)
 
 
-def _with_callbacks(node: Any) -> list[Any]:
+def _with_callbacks(node: Any) -> list[object]:
     own = node._graphflow
     return [*own.subscriptions, *own.timers, *own.services]
 
 
 def _tell_twin(node: Any, made: Any, place: Place) -> None:
-    """Tell if a node has a service of that name already: both servers are called, and one answer is taken by chance."""
+    """Warn if a node already has a service of that name: both servers are called, and one answer wins by chance."""
     same = [other for other in node._graphflow.services if other is not made and _topic(other) == _topic(made)]
     former = getattr(same[0], "made_at", None) if same else None
     if former is not None and place not in _told:
@@ -69,7 +69,7 @@ def _tell_twin(node: Any, made: Any, place: Place) -> None:
 
 
 def _tell_same(node: Any, made: Any, place: Place) -> None:
-    """Tell if a node has a subscription of that topic and callback already: each message comes twice."""
+    """Warn if a node already has a subscription with that topic and callback: each message is handled twice."""
     for other in node._graphflow.subscriptions:
         is_same = other is not made and _topic(other) == _topic(made) and other.callback == made.callback
         former = getattr(other, "made_at", None) if is_same and other.raw is made.raw else None
@@ -80,8 +80,8 @@ def _tell_same(node: Any, made: Any, place: Place) -> None:
             logger.warning(text, node.get_fully_qualified_name(), called, _topic(made), former[0], place)
 
 
-def _name(made: Any, *, is_again: bool) -> Any:
-    """The name under which parts are alike; timers of a loop in `__init__` may call functions of one line."""
+def _name(made: Any, *, is_again: bool) -> object:
+    """Return the name by which entities count as equal; timers of a loop in `__init__` may share a callback's line."""
     if isinstance(made, Timer):
         return getattr(made.callback, "__code__", made.callback) if is_again else made.callback
     return _topic(made)
@@ -97,5 +97,5 @@ def _of(made: Any) -> str:
     return f" of {_topic(made)}"
 
 
-def _is_alive(other: Any) -> bool:
+def _is_alive(other: object) -> bool:
     return not isinstance(other, Timer) or not (other.handle.is_destroyed or other.is_canceled())

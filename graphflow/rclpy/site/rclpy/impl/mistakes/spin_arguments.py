@@ -1,4 +1,4 @@
-"""Checks that nodes are spun, by executors, and nothing else that a program may give in their place."""
+"""Checks that nodes, executors and futures are passed to the spin functions in their places."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from rclpy.impl.callers import caller
 from rclpy.task import Future
 
 _told: set[Place] = set()
-"""The lines whose executor has been told."""
+"""The lines whose executor has been reported."""
 logger = logging.getLogger("graphflow")
 
 
 def check_node(node: Any, call: str) -> None:
-    """Raise TypeError, with what to write, if something is no node.
+    """Raise a TypeError that shows the right call if something is not a node.
 
     Args:
-        call: The function that wants one.
+        call: The function that takes a node.
     """
     if is_node(node):
         return
@@ -41,11 +41,11 @@ def check_node(node: Any, call: str) -> None:
     raise TypeError(text)
 
 
-def check_executor(executor: Any, call: str) -> None:
-    """Raise TypeError, with what to write, if something behind a node is no executor.
+def check_executor(executor: object, call: str) -> None:
+    """Raise a TypeError that shows the right call if the argument after the node is not an executor.
 
     Args:
-        call: The function that takes one; None stands for the global one.
+        call: The function that takes one; None means the global executor.
     """
     if executor is None or hasattr(executor, "add_node"):
         return
@@ -62,7 +62,7 @@ def check_executor(executor: Any, call: str) -> None:
 
 
 def check_future(future: Any, call: str) -> None:
-    """Raise TypeError, with what to write, if something in the place of a future is none.
+    """Raise a TypeError that shows the right call if something is not a future.
 
     Args:
         call: The function that waits for it.
@@ -77,16 +77,16 @@ def check_future(future: Any, call: str) -> None:
     )
 
 
-def tell(call: str, thing: Any) -> None:
-    """Tell of a call of an executor's that does nothing, as what it was given is no node; ROS 2 says nothing."""
+def tell(call: str, thing: object) -> None:
+    """Warn that a call on an executor has no effect because its argument is not a node; ROS 2 does not."""
     asked = caller(2)
     if asked is not None and thing is not None:
         text = "%s: %s does nothing, since it takes a node and got %s; write executor.%s(node)"
         logger.warning(text, asked.place, call, thing.__name__ if isinstance(thing, type) else repr(thing), call)
 
 
-def tell_unused(node: Any, used: Any) -> None:
-    """Tell of an executor that the function which calls `rclpy.spin(node)` has made and gives to nothing."""
+def tell_unused(node: Any, used: object) -> None:
+    """Warn of an unused executor that the function which calls `rclpy.spin(node)` has created."""
     asked = caller(2)
     if asked is None:
         return
@@ -102,6 +102,6 @@ def tell_unused(node: Any, used: Any) -> None:
             logger.warning(text, asked.place, type(value).__name__, name, name)
 
 
-def is_node(thing: Any) -> bool:
-    """Whether something is a node, and no class of nodes."""
+def is_node(thing: object) -> bool:
+    """Whether something is a node, and not a class of nodes."""
     return not isinstance(thing, type) and hasattr(type(thing), "default_callback_group")

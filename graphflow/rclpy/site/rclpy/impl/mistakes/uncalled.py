@@ -1,6 +1,6 @@
-"""Lines of a program that name a method of a node's part and do not call it: `self.timer.cancel`.
+"""Statements that name a method without calling it: `self.timer.cancel`.
 
-Python runs them without a word, and without an effect.
+Python runs them silently and without effect.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ logger = logging.getLogger("graphflow")
 
 
 class Uncalled:
-    """Such lines in the files of one context's nodes, each told once."""
+    """Such statements in the files of one context's nodes, each reported once."""
 
     def __init__(self, life: ContextState) -> None:
         self._life = life
         self._nodes: set[int] = set()
-        """The ids of the nodes whose files have been read: their entities are there once they are spun, or leave."""
+        """The ids of the nodes whose files have been read: entities exist once a node is spun, or leaves."""
         self._files: set[str] = set()
         life.on_leaving.append(self._leaves)
 
     def look(self) -> None:
-        """Read the files of nodes that are spun for the first time."""
+        """Check the files of nodes that are spun for the first time."""
         for node in list(self._life.nodes):
             if node._graphflow.times_added and node._graphflow.core.id not in self._nodes:  # type: ignore[attr-defined]
                 self._read(node)
@@ -55,7 +55,7 @@ class Uncalled:
 
 
 def _files_of(node: Any) -> Iterator[str]:
-    """The files of a node's class and its callbacks that are the user's."""
+    """Return the user's files that define a node's class and callbacks."""
     functions = [value for cls in type(node).__mro__ for value in vars(cls).values()]
     functions += [getattr(e, "callback", None) or getattr(e, "_execute_callback", None) for e in entities_of(node)]
     for function in functions:

@@ -1,6 +1,6 @@
-"""Calls such as `destroy_timer(self.tick)`, whose argument is not what they destroy: ROS 2 answers False, and no more.
+"""Calls such as `destroy_timer(self.tick)`, whose argument is not of the kind they destroy; ROS 2 only returns False.
 
-Those of what is destroyed already, or of another node, are left alone, and so is None, which code that cleans up gives.
+Entities that are destroyed already, or another node's, are not reported; neither is None, which clean-up code passes.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ _KINDS: dict[str, tuple[type, str]] = {
     "destroy_guard_condition": (GuardCondition, "guards"),
     "destroy_rate": (Rate, ""),
 }
-"""What each call destroys, and where a node has them."""
+"""The class that each call destroys, and the node's list of them."""
 _told: set[Place] = set()
-"""The lines of which it has been told."""
+"""The lines that have been reported."""
 logger = logging.getLogger("graphflow")
 
 
-def tell(node: Any, thing: Any, call: str, depth: int) -> None:
-    """Tell of a call that has destroyed nothing, if what it was given is of another kind; each line once.
+def tell(node: Any, thing: object, call: str, depth: int) -> None:
+    """Warn, once per line, if a call has destroyed nothing because its argument is of another kind.
 
     Args:
         call: The name of the method.
-        depth: How many frames above the caller's the program is.
+        depth: The number of frames between the caller's and the program's.
     """
     kind, asked = _KINDS[call][0], caller(depth + 1)
     if thing is None or asked is None or isinstance(thing, kind) or asked.place in _told:
@@ -47,7 +47,7 @@ def tell(node: Any, thing: Any, call: str, depth: int) -> None:
     logger.warning(text, asked.place, call, kind.__name__, _shown(thing), _way(node, thing, call))
 
 
-def _shown(thing: Any) -> str:
+def _shown(thing: object) -> str:
     if isinstance(thing, type):
         return f"the class {thing.__name__}"
     if callable(thing) and (name := getattr(thing, "__name__", "")):
@@ -58,8 +58,8 @@ def _shown(thing: Any) -> str:
     return f"{'an' if name[:1] in 'AEIOU' else 'a'} {name}"
 
 
-def _way(node: Any, thing: Any, call: str) -> str:
-    """The call that is probably meant."""
+def _way(node: Any, thing: object, call: str) -> str:
+    """Return the call that was probably meant."""
     other = next((name for name, (kind, _) in _KINDS.items() if isinstance(thing, kind)), None)
     if other is not None:
         return f"{other}(...)"
@@ -72,12 +72,12 @@ def _way(node: Any, thing: Any, call: str) -> str:
     return f"{call}(self.{what}), with what create_{what} has returned"
 
 
-def _owned(node: Any, call: str) -> list[Any]:
+def _owned(node: Any, call: str) -> list[object]:
     return list(getattr(node._graphflow, _KINDS[call][1], ()))
 
 
-def _belongs(node: Any, own: Any, thing: Any) -> bool:
-    """Whether a part of the node's has that callback, or that name."""
+def _belongs(node: Any, own: object, thing: Any) -> bool:
+    """Whether an entity of the node's has that callback, or that name."""
     if not isinstance(thing, str):
         return bool(getattr(own, "callback", None) == thing)
     if (name := getattr(own, "topic_name", None)) is not None:
@@ -85,7 +85,7 @@ def _belongs(node: Any, own: Any, thing: Any) -> bool:
     return bool(getattr(own, "service_name", None) == thing)
 
 
-def _attribute(node: Any, thing: Any) -> str:
-    """The attribute in which the node keeps something, as `self.timer`; empty if there is none."""
+def _attribute(node: Any, thing: object) -> str:
+    """Return the node's attribute that holds a value, as `self.timer`; empty if there is none."""
     found = next((name for name, value in vars(node).items() if value is thing and thing is not None), "")
     return f"self.{found}" if found else ""

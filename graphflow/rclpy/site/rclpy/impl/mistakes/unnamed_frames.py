@@ -1,6 +1,6 @@
-"""Transforms that are sent without the names of their frames: every listener leaves them out.
+"""Transforms that are sent without frame names: every listener drops them.
 
-In ROS 2 the listeners say so, and the sender, whose mistake it is, nothing.
+In ROS 2 the listeners report it, but not the sender, whose mistake it is.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from graphflow.analysis.user_code import short_place, users_frame
 from graphflow.errors import Place
 
 _told: set[Place] = set()
-"""The lines of which it has been told."""
+"""The lines that have been reported."""
 logger = logging.getLogger("graphflow")
 
 
 def check(transform: Any) -> None:
-    """Tell of a transform that names no frames, or one frame twice, at the line that sends it."""
+    """Warn, at the line that sends it, of a transform that lacks frame names, or names one frame twice."""
     frame, parent = transform.child_frame_id, transform.header.frame_id
     if frame and parent and frame != parent:
         return

@@ -1,7 +1,7 @@
-"""Calls that come after `rclpy.spin(node)`, which ends only with the program: requests, goals, and nodes made there.
+"""Calls after `rclpy.spin(node)`, which ends only with the program: requests, goals, and nodes created there.
 
-When a spin has ended, the context is shut down: what needs the network could not be done then, either. What a program
-does at its end, such as to destroy, to log, to save and to plot, is not told, and neither is what `finally` does.
+When a spin has ended, the context is shut down, so calls that need the network would fail as well. What a program
+does at its end, such as destroying, logging, saving and plotting, is not reported, and neither is `finally`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FunctionType, MethodType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
@@ -28,38 +28,38 @@ from rclpy.impl.deadlock.stacks import stacks
 TELL_AFTER = 3.0
 """Seconds that a spin must have lasted."""
 LOOK_EVERY = 1.0
-"""Seconds between two looks at what threads spin."""
+"""Seconds between two checks of what threads spin."""
 _SENDS = {"call_async", "send_goal_async", "send_goal", "wait_for_service", "wait_for_server"}
 _SENDS |= {"spin_until_future_complete"}
 """Methods that need other nodes."""
 _DEPTH = 3
-"""Methods that may lie between a call and one that needs other nodes."""
+"""The number of calls between a line and a method that needs other nodes, at most."""
 _SHOWN = 60
-"""Characters of a call that a message shows."""
+"""The length of a call in a message, in characters."""
 logger = logging.getLogger("graphflow")
 
 
 class _Late(NamedTuple):
-    """A call that comes after a spin."""
+    """A call after a spin."""
 
     line: int
     name: str
     is_node: bool
-    """Whether it makes a node."""
+    """Whether it creates a node."""
 
 
 class Unreached:
-    """The spins of one process, each told once."""
+    """The spins of one process, each reported once."""
 
     def __init__(self) -> None:
         self._next = 0.0
         self._since: dict[tuple[CodeType, int], float] = {}
-        """When each line was first seen to spin, by the monotonic clock."""
+        """The monotonic time at which each line was first seen to spin."""
         self._read: set[tuple[CodeType, int]] = set()
-        """The lines whose functions have been read."""
+        """The lines whose functions have been analysed."""
 
     def look(self) -> None:
-        """Tell of what comes after spins that have lasted for long."""
+        """Report the calls after spins that have lasted long enough."""
         now = time.monotonic()
         if now < self._next:
             return
@@ -75,7 +75,7 @@ class Unreached:
 
 
 def _spinning() -> Iterator[Frame]:
-    """The user's functions that have called what spins for ever."""
+    """Yield the user's frames that have called an endless spin."""
     for stack in stacks():
         frames = stack.levels[0].frames
         at = next((place for place, frame in enumerate(frames) if _is_spin(frame.f_code)), None)
@@ -84,7 +84,7 @@ def _spinning() -> Iterator[Frame]:
 
 
 def _is_spin(code: CodeType) -> bool:
-    """Whether it is `rclpy.spin` or an executor's, which come back when the context is shut down."""
+    """Whether code is `rclpy.spin` or an executor's, which returns when the context is shut down."""
     return code.co_name == "spin" and is_ours(code.co_filename)
 
 
@@ -107,7 +107,7 @@ def _tell(frame: Frame) -> None:
 
 
 def _function_of(frame: Frame) -> ast.AST | None:
-    """The function that a frame runs, or its module."""
+    """Return the syntax of a frame's function, or of its module."""
     syntax = syntax_of(frame.f_code.co_filename)
     if frame.f_code.co_name == "<module>":
         return syntax.module
@@ -115,9 +115,9 @@ def _function_of(frame: Frame) -> ast.AST | None:
 
 
 def _after(function: ast.AST, line: int) -> tuple[ast.Call | None, list[ast.stmt]]:
-    """The call of a line, and the statements that come after it, if it returns as it should.
+    """Return the call of a line, and the statements that follow it if it returns normally.
 
-    Statements behind a `try` that it is in are left out, as are `except` and `finally`: they are for the end.
+    Statements after an enclosing `try` are omitted, as are `except` and `finally`: they are for the end.
     """
     later: list[ast.stmt] = []
     block: list[ast.stmt] = function.body  # type: ignore[attr-defined]
@@ -149,7 +149,7 @@ def _blocks(statement: ast.stmt) -> Iterator[list[ast.stmt]]:
 
 
 def _until_end(statements: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements up to one that leaves the function, or that begins anew with another context."""
+    """Return the statements up to one that leaves the function, or that starts over with another context."""
     for statement in statements:
         if isinstance(statement, (ast.Return, ast.Raise)) or "rclpy.init(" in ast.unparse(statement):
             return
@@ -157,14 +157,14 @@ def _until_end(statements: list[ast.stmt]) -> Iterator[ast.stmt]:
 
 
 def _may_be_ended(file: str, function: ast.AST) -> bool:
-    """Whether other code of a file may shut an executor down, whose `spin()` then returns."""
+    """Whether other code in a file may shut an executor down, whose `spin()` then returns."""
     own = range(getattr(function, "lineno", 0), (getattr(function, "end_lineno", 0) or 0) + 1)
     lines = enumerate(found_text(Path(file), "replace").splitlines(), 1)
     return any(".shutdown(" in line.replace("rclpy.shutdown(", "") for number, line in lines if number not in own)
 
 
 def _late_calls(statement: ast.stmt, frame: Frame) -> Iterator[_Late]:
-    """The calls in a statement that need other nodes, or that make a node."""
+    """Yield the calls in a statement that need other nodes, or that create a node."""
     calls = [node for node in ast.walk(statement) if isinstance(node, ast.Call)]
     for call in sorted(calls, key=lambda c: (c.lineno, c.col_offset)):
         name = ast.unparse(call.func).rpartition(".")[2]
@@ -175,8 +175,8 @@ def _late_calls(statement: ast.stmt, frame: Frame) -> Iterator[_Late]:
             yield _Late(call.lineno, name, is_node=False)
 
 
-def _resolved(expression: ast.expr, frame: Frame) -> Any:
-    """What an expression stands for, as far as that is known without running anything."""
+def _resolved(expression: ast.expr, frame: Frame) -> object:
+    """Return the value of an expression, as far as it is known without running code."""
     match expression:
         case ast.Name(id=name):
             return frame.f_locals.get(name, frame.f_globals.get(name))
@@ -189,8 +189,8 @@ def _resolved(expression: ast.expr, frame: Frame) -> Any:
     return None
 
 
-def _needs_others(thing: Any, depth: int) -> bool:
-    """Whether a function is one that needs other nodes, or a user's that calls one."""
+def _needs_others(thing: object, depth: int) -> bool:
+    """Whether a function needs other nodes, or is a user's function that calls one that does."""
     code = getattr(thing, "__code__", None)
     if not isinstance(code, CodeType) or not depth:
         return False

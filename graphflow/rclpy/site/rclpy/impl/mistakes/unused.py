@@ -1,7 +1,7 @@
-"""ROS arguments that have changed nothing: remaps, parameters and files of parameters for names that no node has.
+"""ROS arguments without effect: remaps, parameters and parameter files for names that no node has.
 
-ROS 2 ignores them without a word, and so a slip in a name goes unseen. They are told once nodes have had time to make
-what they need, or when the first one leaves.
+ROS 2 ignores them silently, so a misspelt name goes unnoticed. They are reported once nodes have had time to create
+their entities, or when the first node leaves.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
 TELL_AFTER = 3.0
-"""Seconds from the first time that a node is spun."""
+"""Seconds from the first spin of a node."""
 _EVERY_NODES = {"use_sim_time", "start_type_description_service"}
-"""Parameters that nodes have of themselves."""
+"""Parameters that every node has."""
 logger = logging.getLogger("graphflow")
 
 
@@ -38,7 +38,7 @@ class Unused:
         life.on_leaving.append(self._tell)
 
     def look(self) -> None:
-        """Tell them, if the time has come."""
+        """Report the unused arguments when it is time."""
         if self._is_told:
             return
         if self._since is None and any(node._graphflow.times_added for node in self._nodes()):
@@ -49,7 +49,7 @@ class Unused:
     def _nodes(self) -> list[Any]:
         return list(self._life.nodes)
 
-    def _tell(self, leaving: Any = None) -> None:
+    def _tell(self, leaving: object = None) -> None:
         if not self._is_told:
             self._is_told = True
             if isinstance(sys.exc_info()[1] or getattr(sys, "last_value", None), Exception):
@@ -98,7 +98,7 @@ def _near(word: str, known: list[str]) -> str:
 
 
 def _names(node: Any) -> Iterator[str]:
-    """The names that a node's own code gives to topics, services and actions, as far as they are its namespace's."""
+    """Return the names, relative to the node's namespace, that its own code gives to topics, services and actions."""
     inner = node._graphflow
     space = inner.node.namespace.rstrip("/") + "/"
     own = [*inner.publishers, *inner.subscriptions, *inner.clients, *inner.services]

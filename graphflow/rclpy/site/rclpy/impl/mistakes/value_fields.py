@@ -1,6 +1,6 @@
-"""Fields of a parameter's value that are not of its type: `get_parameter_value().double_value` of an integer.
+"""Fields of a parameter's value that do not match its type: `get_parameter_value().double_value` of an integer.
 
-They have their defaults, 0.0 here; ROS 2 says nothing of it.
+They have their defaults, 0.0 here; ROS 2 does not report it.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ FIELDS = (
     *("", "bool_value", "integer_value", "double_value", "string_value", "byte_array_value", "bool_array_value"),
     *("integer_array_value", "double_array_value", "string_array_value"),
 )
-"""The field of each type, by the numbers of rcl_interfaces/msg/ParameterType."""
+"""The field for each type, by the numbers of rcl_interfaces/msg/ParameterType."""
 _EXAMPLES = ("", False, 0, 0.0, "", [b"\0"], [False], [0], [0.0], [""])
 _seen: set[tuple[CodeType, int, int]] = set()
-"""The calls that have been looked at, each with a type."""
+"""The calls that have been checked, each with a type."""
 SEEN_BOUND = 1000
-"""Calls that are remembered; further ones, as of a program that compiles code again and again, are not looked at."""
+"""The number of calls to remember; further ones, as of a program that keeps compiling code, are not checked."""
 logger = logging.getLogger("graphflow")
 
 
-def check(parameter: Any, message: Any) -> None:
-    """Tell if the code that asks for a value reads a field that is not of its type, once for each line and type.
+def check(parameter: object, message: Any) -> None:
+    """Warn, once per line and type, if the code that gets a value reads a field that does not match its type.
 
     Args:
         message: The value, as rcl_interfaces/msg/ParameterValue.

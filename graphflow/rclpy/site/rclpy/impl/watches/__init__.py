@@ -1,1 +1,1 @@
-"""Mistakes in rclpy programs that show only in time: each module watches for one kind; `watches` runs all of them."""
+"""Mistakes in rclpy programs that only time reveals: each module watches for one kind; `watches` runs all of them."""

@@ -1,6 +1,6 @@
-"""Timers that are not what they were made for: of a period of zero, called late again and again, or without time.
+"""Timers that cannot keep their period: a period of zero, repeated delays, or a clock that stands still.
 
-In ROS 2 the first keeps a processor busy, the second leave out calls, and the third stand still, all without a word.
+In ROS 2 the first occupy a processor, the second skip calls, and the third never run, all silently.
 """
 
 from __future__ import annotations
@@ -22,40 +22,40 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
 TELL_AFTER = 3.0
-"""Seconds that a timer may have a period of zero, and a node's clock may stand still."""
+"""Seconds for which a period of zero, or a clock that stands still, is tolerated."""
 SLOW = 0.5
-"""Seconds that callbacks may take before it is looked for timers that are late because of them."""
+"""Seconds that a callback may take before it is checked for timers that it delays."""
 SLOW_ONCE = 1.5
-"""Seconds from which on it is told at the first time: less may be what only the first call needs."""
+"""Seconds from which a first delay is reported: shorter ones may be the cost of a first call."""
 logger = logging.getLogger("graphflow")
 
 
 class _Slow(NamedTuple):
-    """A run that makes timers late."""
+    """A run that delays timers."""
 
     title: str
     place: str
     late: Timer
     is_own: bool
-    """Whether the timer is late for its own callback."""
+    """Whether the timer is delayed by its own callback."""
 
 
 class LateTimers:
-    """The timers of one context's nodes, each told once."""
+    """The timers of one context's nodes, each reported once."""
 
     def __init__(self, life: ContextState, held_up: HeldUp) -> None:
         self._life, self._held_up = life, held_up
-        self._since: dict[Any, float] = {}
-        """When each step of a run was first seen, and each timer or node that is to be told, by the monotonic clock."""
-        self._slow: dict[Any, _Slow] = {}
-        """The steps that make timers late, while they run."""
+        self._since: dict[object, float] = {}
+        """The monotonic time at which each step of a run, timer or node was first noticed."""
+        self._slow: dict[object, _Slow] = {}
+        """The steps that delay timers, while they run."""
         self._were_slow: set[str] = set()
-        """The callbacks that have made timers late once."""
-        self._known: WeakSet[Any] = WeakSet()
-        """The timers and nodes of which it has been told."""
+        """The callbacks that have delayed timers once."""
+        self._known: WeakSet[object] = WeakSet()
+        """The timers and nodes that have been reported."""
 
     def look(self) -> None:
-        """Tell what has come about."""
+        """Report what has become due."""
         now = time.monotonic()
         runs = {(run, run.stepped_ns): run for run in self._held_up.runs() if run.thread}
         nodes: list[Any] = list(self._life.nodes)
@@ -79,7 +79,7 @@ class LateTimers:
                     _tell_restless(key, restless[key])
 
     def _slow_one(self, run: Run, seconds: float) -> _Slow | None:
-        """The report on a run that has taken so many seconds; None if it makes no timer late."""
+        """Return a report on a run of that many seconds; None if it delays no timer."""
         node, level = node_of(run), next((s.levels[-1] for s in stacks() if s.levels[-1].run is run), None)
         if node is None or level is None or level.waiting is not None:
             return None

@@ -1,6 +1,6 @@
-"""Nodes that leave the executor that spins them, by another spin or by their own callback: nothing of theirs runs then.
+"""Nodes that leave their executor, by another spin or by their own callback, so that nothing of theirs runs any more.
 
-In ROS 2 they fall silent without a word.
+In ROS 2 they just fall silent.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
 TELL_AFTER = 1.0
-"""Seconds within which somebody may spin the node again, or end the spin."""
+"""Seconds within which the node may be spun again, or the spin may end."""
 _IN_A_CALLBACK = "do not spin in a callback: future.add_done_callback(...), or await it in an async def callback"
 logger = logging.getLogger("graphflow")
 
 
 def watch(node: Any, former: Any, what: str) -> None:
-    """Tell it if nobody spins a node again, and its former executor goes on without it.
+    """Report a node that nothing spins again while its former executor continues without it.
 
     Args:
         node: The node that was spun by `what`, a function of rclpy's, and is in no executor now.
-        former: The executor that it was in before.
+        former: The executor that the node was in before.
     """
     begin = sys._getframe()
     where = _users_place(begin)
@@ -53,7 +53,7 @@ def watch(node: Any, former: Any, what: str) -> None:
 
 
 def attend(life: ContextState) -> None:
-    """Tell it when a callback destroys the last node of its executor, and the spin goes on."""
+    """Report a callback that destroys the last node of its executor while the spin continues."""
     life.on_leaving.append(_destroyed)
 
 
@@ -74,7 +74,7 @@ def _destroyed(node: Any) -> None:
 
 
 def _users_place(begin: FrameType) -> str:
-    """The innermost line of the user's code that leads to a frame: `lamp.py:12 in tick`; empty for none."""
+    """Return the innermost line of user code that leads to a frame: `lamp.py:12 in tick`; empty for none."""
     frame = users_frame(begin)
     if frame is None:
         return ""

@@ -1,6 +1,6 @@
-"""Work that is held up: callbacks that run for long while others wait, and nodes that nobody spins.
+"""Work that is held up: by callbacks that run for long, or on nodes that nothing spins.
 
-Neither is an error in ROS 2, where a node just falls silent. It is told once, with the line.
+Neither is an error in ROS 2, where a node just falls silent. Each is reported once, with the line.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
 TELL_AFTER = 3.0
-"""Seconds that work is held up before it is told."""
+"""Seconds for which work is held up before it is reported."""
 SHOWN = 3
-"""Callbacks that are named."""
+"""The number of callbacks that a report names."""
 RETURN = "return from it soon (a timer does what a loop with a sleep does)"
 OWN_GROUP = "give it a callback group of its own and spin with MultiThreadedExecutor()"
 _WAIT = Wake.wait.__code__
@@ -43,34 +43,34 @@ logger = logging.getLogger("graphflow")
 class _Told(NamedTuple):
     text: str
     is_over: str
-    """The words for its end, before the seconds that it took."""
+    """The phrase for its end, before its duration in seconds."""
 
 
 class HeldUp:
-    """The work of one context that is held up.
+    """The held-up work of one context.
 
     Args:
         is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
     """
 
-    def __init__(self, life: ContextState, is_told: Callable[[Any, str, str], bool]) -> None:
+    def __init__(self, life: ContextState, is_told: Callable[..., bool]) -> None:
         self._life, self._is_told = life, is_told
-        self._since: dict[Any, float] = {}
-        """When each step of a run, and each node's not being spun, was first seen, by the monotonic clock."""
-        self._told: dict[Any, _Told] = {}
+        self._since: dict[object, float] = {}
+        """The monotonic time at which each step of a run, and each node without a spin, was first seen."""
+        self._told: dict[object, _Told] = {}
         self._known: set[str] = set()
-        """The callbacks and nodes of which it has been told: what comes again is not told again."""
-        self._begun: WeakSet[Any] = WeakSet()
-        """The nodes that have been looked at once they had time to be made."""
+        """The callbacks and nodes that have been reported: a recurrence is not reported again."""
+        self._begun: WeakSet[object] = WeakSet()
+        """The nodes that have been checked once they had time to be constructed."""
         life.on_leaving.append(self._leaves)
 
     @property
     def texts(self) -> list[str]:
-        """Reports that still hold."""
+        """Return the reports that still hold."""
         return [told.text for told in list(self._told.values())]
 
     def look(self) -> None:
-        """Tell what has been held up for long, and what is held up no more."""
+        """Report work that has been held up for long, and work that is no longer held up."""
         now = time.monotonic()
         steps = {(run, run.stepped_ns): run for run in self.runs() if run.thread}
         idle = {(node, _turns(node)): node for node in list(self._life.nodes) if not _is_spun(node)}
@@ -93,23 +93,23 @@ class HeldUp:
                 self._tell_of_init(node)
 
     def runs(self) -> Iterator[Run]:
-        """All that goes on in its executors."""
+        """Return all runs of the context's executors."""
         for executor in executors():
             if executor.context.life is self._life:
                 yield from list(executor.spinning.running)
 
     def is_known(self, name: str) -> bool:
-        """Whether something has been told of before; from now on it has."""
+        """Return whether something has been reported before, and note that it has."""
         is_known = name in self._known
         self._known.add(name)
         return is_known
 
     def is_deadlocked(self, run: Run, title: str) -> bool:
-        """Whether a report of a deadlock tells more of a run than could be told here."""
+        """Whether a deadlock report covers a run in more detail."""
         return self._is_told(run, "r", title)
 
     def _of_run(self, run: Run, seconds: float) -> _Told | None:
-        """A callback that runs; None if nothing waits for it, or a report of a deadlock tells more."""
+        """Return a report on a run; None if nothing waits for it, or a deadlock report covers it."""
         level = next((stack.levels[-1] for stack in stacks() if stack.levels[-1].run is run), None)
         node = node_of(run)
         if level is None or node is None or (level.waiting is not None and not _spins_on(level)):
@@ -128,7 +128,7 @@ class HeldUp:
         return _Told(text, f"{title} has returned")
 
     def _tell_of_init(self, node: Any) -> None:
-        """Tell of a node that is spun in its own `__init__` before it has anything to be called."""
+        """Report a node that is spun in its own `__init__` before it has any callbacks."""
         if any(_called(entity) for entity in entities_of(node)):
             return  # the spin may be the last thing there
         for stack in stacks():
@@ -142,7 +142,7 @@ class HeldUp:
                 return
 
     def _of_node(self, key: tuple[Any, Any], seconds: float) -> _Told | None:
-        """A node that is not spun; None if that holds nothing up, or a report of a deadlock tells more."""
+        """Return a report on a node that is not spun; None if that holds nothing up, or a deadlock report covers it."""
         node, name = key[0], full_name(key[0])
         found = _program(list(stacks()), node)
         if found is None:
@@ -169,7 +169,7 @@ class HeldUp:
         return _Told(text, f"{name} is spun")
 
     def _leaves(self, node: Any) -> None:
-        """Tell of a node that ends and was never spun, unless that is known or the program ends in an error."""
+        """Report a node that leaves without having been spun, unless reported before, or the program is failing."""
         is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
         if node._graphflow.times_added or is_failing or full_name(node) in self._known:
             return
@@ -191,7 +191,7 @@ class HeldUp:
 
 
 def _shut_down_in() -> Place | None:
-    """The line of the user's code that shuts rclpy down; None if this thread is not about that."""
+    """Return the line of user code that shuts rclpy down; None if this thread is not doing so."""
     inner, frame = sys._getframe(), sys._getframe().f_back
     while frame is not None and not is_users(frame.f_code.co_filename):
         inner, frame = frame, frame.f_back
@@ -201,13 +201,13 @@ def _shut_down_in() -> Place | None:
 
 
 def _spins_on(level: Level) -> bool:
-    """Whether code has called a `spin` that lasts as long as the context does."""
+    """Whether code has called a `spin` that lasts as long as the context."""
     is_spin = any(frame.f_code.co_name == "spin" and is_ours(frame.f_code.co_filename) for frame in level.frames)
     return is_spin and level.waiting is not None
 
 
 def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Any]:
-    """The entities of users' that have something to do and cannot run because of a run that goes on.
+    """Return the user's entities that have work and cannot run because of a run.
 
     Args:
         spins_on: Whether the run spins, so that it keeps no thread from others.
@@ -223,9 +223,9 @@ def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Any]:
 
 
 def _due_of(entity: Any, run: Run) -> str:
-    """The name of something that waits for a run to end: an entity, or more; empty for nothing of users'.
+    """Return the name of an entity that waits for a run to end; empty for none of the user's.
 
-    The client of a goal asks for its result at once, and gets that when the run ends: it is not kept waiting.
+    A goal's client requests the result at once, and gets it when the run ends: it is not held up.
     """
     goal = goal_of(run)
     own = run.entity if goal is None else goal._action_server
@@ -241,7 +241,7 @@ def _is_ready(entity: Any) -> bool:
 
 
 def _called(entity: Any) -> str:
-    """The name of an entity; empty for graphflow's own."""
+    """Return the name of an entity; empty for graphflow's own."""
     role = role_of(entity)
     if isinstance(entity, (Client, ActionClient)):
         return f"the answer of {role.handler}"
@@ -249,14 +249,14 @@ def _called(entity: Any) -> str:
 
 
 def label_of(run: Run) -> str:
-    """The name of a run in the search for deadlocks: `timer tick`."""
+    """Return the label of a run in deadlock reports: `timer tick`."""
     if run.entity is not None:
         return role_of(run.entity).label
     return f"action {name_of(run._args[0]) or 'execute'}" if goal_of(run) is not None else f"task {name_of(run.called)}"
 
 
-def node_of(run: Run) -> Any:
-    """The node whose callback a run is; of a task, one of its executor's."""
+def node_of(run: Run) -> object:
+    """Return the node of a run's callback; for a task, one of its executor's nodes."""
     goal = goal_of(run)
     if goal is not None:
         return goal._action_server._node
@@ -264,13 +264,13 @@ def node_of(run: Run) -> Any:
 
 
 def place_of(level: Level, node: Any) -> str:
-    """Where the user's code of a thread is: `lamp.py:12 in tick`."""
+    """Return the position of a thread's user code: `lamp.py:12 in tick`."""
     found = where(level.frames, node)
     return f"{short_place(found.place.file, found.place.line)} in {found.function}"
 
 
 def _words(kept: list[str]) -> str:
-    """Callbacks, or as many of them as a sentence bears."""
+    """Join the names of callbacks, at most as many as a sentence bears."""
     shown = list(dict.fromkeys(kept))
     rest = len(shown) - SHOWN
     return " and ".join(shown) if rest <= 0 else f"{', '.join(shown[:SHOWN])} and {rest} more"
@@ -283,7 +283,7 @@ def _is_init(frame: Frame, node: Any) -> bool:
 
 
 def _program(found: list[Stack], node: Any) -> tuple[Stack, Level] | None:
-    """The thread of the program's own that makes a node, or else could spin it, or else spins others."""
+    """Return the program's thread that constructs a node, or else could spin it, or else spins others."""
     own = [(stack, stack.levels[0]) for stack in found if stack.is_users and stack.levels[0].innermost is not None]
     making = [pair for pair in own if any(_is_init(frame, node) for frame in pair[1].frames)]
     main = [pair for pair in own if pair[0].thread is threading.main_thread()]
@@ -297,13 +297,13 @@ def _executor_of(node: Any) -> Executor | None:
 
 
 def _turns(node: Any) -> tuple[int, int]:
-    """A number that is another when a node was spun meanwhile."""
+    """Return numbers that change when a node is spun."""
     executor = _executor_of(node)
     return node._graphflow.times_added, 0 if executor is None else executor.spinning.turns
 
 
 def _is_spun(node: Any) -> bool:
-    """Whether a thread spins a node right now: it waits for work, or does some."""
+    """Whether a thread is spinning a node: it waits for work, or does some."""
     executor = _executor_of(node)
     return executor is not None and executor.spinning.is_spun
 

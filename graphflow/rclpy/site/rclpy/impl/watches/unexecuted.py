@@ -1,6 +1,6 @@
-"""Goals that an action server has accepted and nobody executes, so that their clients wait for ever.
+"""Goals that an action server has accepted and never executes, so that their clients wait for ever.
 
-ROS 2 says nothing of them. A server with a `handle_accepted_callback` has to call `goal_handle.execute()` itself.
+ROS 2 does not report them. A server with a `handle_accepted_callback` must call `goal_handle.execute()` itself.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
 TELL_AFTER = 3.0
-"""Seconds after which a goal is told whose handle nobody has kept to execute it later."""
+"""Seconds after which a goal is reported if nothing holds its handle to execute it later."""
 KEPT = 15.0
-"""The seconds where somebody has, if no other goal of the server is executed meanwhile."""
+"""The same in seconds if something does, and no other goal of the server is executed meanwhile."""
 logger = logging.getLogger("graphflow")
 
 
 class Unexecuted:
-    """The goals of one context's action servers; one of each server is told."""
+    """The goals of one context's action servers; one goal of each server is reported."""
 
     def __init__(self, life: ContextState) -> None:
         self._life = life
         self._since: WeakKeyDictionary[ServerGoalHandle, float] = WeakKeyDictionary()
-        """When each goal was first seen to wait while no other was executed, by the monotonic clock."""
+        """The monotonic time since which each goal has waited while no other was executed."""
         self._kept: WeakSet[ServerGoalHandle] = WeakSet()
-        """The goals whose handle somebody has kept."""
+        """The goals whose handle something holds."""
         self._told: WeakSet[ActionServer] = WeakSet()
 
     def look(self) -> None:
-        """Tell of goals that have waited for long."""
+        """Report goals that have waited for long."""
         for node in list(self._life.nodes):
             for server in [w for w in list(node.waitables) if isinstance(w, ActionServer)]:  # type: ignore[attr-defined]
                 if server not in self._told:
@@ -71,6 +71,6 @@ class Unexecuted:
 
 
 def _is_kept(goal: ServerGoalHandle, *known: object) -> bool:
-    """Whether code of the user's could still execute a goal: something else than what is known refers to its handle."""
+    """Whether user code could still execute a goal: something unknown refers to its handle."""
     others = [other for other in gc.get_referrers(goal) if all(other is not one for one in known)]
     return not all(isinstance(other, FrameType) for other in others)

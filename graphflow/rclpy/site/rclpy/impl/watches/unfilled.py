@@ -1,6 +1,6 @@
-"""A buffer of transforms that is asked, and that nothing fills: its program has made no listener.
+"""A transform buffer that is queried but never filled, since its program has created no listener.
 
-In ROS 2 each answer is that the frame does not exist.
+In ROS 2 every lookup fails because the frame does not exist.
 """
 
 from __future__ import annotations
@@ -10,29 +10,28 @@ import sys
 import time
 from collections.abc import Iterator
 from types import FrameType
-from typing import Any
 
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_installed, is_users, short_place, users_frame
 
 TELL_AFTER = 1.0
-"""Seconds from the first question in vain: a listener may be made after it."""
+"""Seconds from the first failed lookup: a listener may be created after it."""
 _FILLERS = ("set_transform", "set_transform_static")
 logger = logging.getLogger("graphflow")
 
 
 class Unfilled:
-    """What is known of who fills one buffer."""
+    """The sources of one buffer's transforms."""
 
     def __init__(self) -> None:
         self.is_filled = False
-        """Whether there was a listener, or a transform."""
+        """Whether there was ever a listener, or a transform."""
         self.remark = ""
-        """What to do, once it has been told."""
+        """The remedy, once it has been reported."""
         self._since: float | None = None
 
-    def asked_in_vain(self, buffer: Any) -> None:
-        """A question had no answer."""
+    def asked_in_vain(self, buffer: object) -> None:
+        """Note a failed lookup."""
         now = time.monotonic()
         if self._since is None:
             self._since = now
@@ -63,7 +62,7 @@ def _names_a_filler(file: str) -> bool:
 
 
 def _name(buffer: object, frame: FrameType | None) -> str:
-    """How the code that asks a buffer calls it."""
+    """Return the expression by which the calling code names a buffer."""
     own = frame.f_locals.get("self") if frame is not None else None
     names = [name for name, value in getattr(own, "__dict__", {}).items() if value is buffer]
     return f"self.{names[0]}" if names else "buffer"

@@ -1,6 +1,6 @@
-"""Messages that a program publishes and ends, before any subscription has had time to find it.
+"""Messages published by a program that ends before any subscription has had time to match.
 
-In ROS 2 they are lost without a word.
+In ROS 2 they are lost silently.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
 BRIEF = 3.0
-"""Seconds that a node lives at most of which it is told: one that lives longer has had the time to be heard."""
+"""The lifetime in seconds below which a node is reported: one that lives longer had time to match."""
 logger = logging.getLogger("graphflow")
 
 
 def attend(life: ContextState) -> None:
-    """Tell it when a node of a context leaves."""
+    """Report lost messages when a node of a context leaves."""
     life.on_leaving.append(_tell)
 
 

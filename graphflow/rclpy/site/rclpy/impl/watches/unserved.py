@@ -1,6 +1,6 @@
-"""Waits for servers that nobody offers, and calls that no server answers.
+"""Waits for servers that no node offers, and calls that no server answers.
 
-In ROS 2 they last for ever, without a word. Each is told once, with the nearest name on offer.
+In ROS 2 they last for ever, silently. Each is reported once, with the nearest name on offer.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ class Unserved:
         is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
     """
 
-    def __init__(self, life: ContextState, context: Context, is_told: Callable[[Any, str, str], bool]) -> None:
+    def __init__(self, life: ContextState, context: Context, is_told: Callable[..., bool]) -> None:
         self._life, self._context, self._is_told = life, context, is_told
         self._since: dict[Any, float] = {}
-        """When each client was first seen to wait, by the monotonic clock; a loop may wait again and again."""
+        """The monotonic time at which each client was first seen to wait; a loop may wait repeatedly."""
         self._last: dict[Any, float] = {}
-        """When each of them was last seen to wait."""
+        """The time at which each of them was last seen to wait."""
         self._served: set[Any] = set()
-        """The clients that have been seen to have a server: their names are right."""
-        self._known: set[tuple[Any, bool]] = set()
-        """The clients of which it has been told, or of which others tell, each with whether it ever had a server."""
+        """The clients that have had a server: their names are right."""
+        self._known: set[tuple[object, bool]] = set()
+        """The clients that have been reported, here or elsewhere, each with whether it ever had a server."""
 
     def look(self) -> None:
-        """Tell of waits that have lasted for long, and of calls that were lost."""
+        """Report waits that have lasted for long, and calls that were lost."""
         now = time.monotonic()
         clients = {client: node for node in list(self._life.nodes) for client in _clients(node)}
         self._served = {client for client in clients if client in self._served or _is_served(client)}
@@ -102,7 +102,7 @@ class Unserved:
 
 
 def nobody(client: Client | ActionClient, cache: GraphCache) -> str:
-    """Say that no node offers what a client calls, and what there is instead."""
+    """Describe the lack of a server for a client, and the alternatives."""
     if isinstance(client, Client):
         return nobody_serves(cache, client._endpoint.name, client._endpoint.type_name)
     return nobody_acts(cache, role_of(client).handler, classes.type_name(client._action_type))
@@ -124,10 +124,10 @@ def _is_served(client: Client | ActionClient) -> bool:
 
 
 def _wakes(client: Client | ActionClient) -> list[Wake]:
-    """The wakes of the threads that wait for a client's server."""
+    """Return the wakes of the threads that wait for a client's server."""
     return list(client._changed if isinstance(client, Client) else client._graphflow_changed)
 
 
 def _is_in(level: Level, wake: Wake) -> bool:
-    """Whether the code of a thread waits to be woken by this."""
+    """Whether the code of a thread waits on this wake."""
     return any(frame.f_code is _WAIT and frame.f_locals["self"] is wake for frame in level.frames)

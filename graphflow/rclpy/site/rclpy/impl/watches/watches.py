@@ -1,9 +1,9 @@
-"""The watches over a context's nodes that tell what goes wrong in silence, besides deadlocks."""
+"""The watches over a context's nodes that report silent failures other than deadlocks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rclpy.impl.mistakes.uncalled import Uncalled
 from rclpy.impl.mistakes.unreached import Unreached
@@ -26,7 +26,7 @@ class Watches:
         is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
     """
 
-    def __init__(self, life: ContextState, context: Context, is_told: Callable[[Any, str, str], bool]) -> None:
+    def __init__(self, life: ContextState, context: Context, is_told: Callable[..., bool]) -> None:
         self._held_up = HeldUp(life, is_told)
         self.each = (
             self._held_up,
@@ -41,11 +41,11 @@ class Watches:
         orphans.attend(life)
 
     def look(self) -> None:
-        """Tell what there is to be told now. On the loop."""
+        """Run all watches. Runs on the loop."""
         for watch in self.each:
             watch.look()
 
     @property
     def texts(self) -> list[str]:
-        """Reports that still hold."""
+        """Return the reports that still hold."""
         return self._held_up.texts
