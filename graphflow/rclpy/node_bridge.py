@@ -40,7 +40,7 @@ class NodeBell:
         self.pending = False
         self.marked: deque[object] = deque()
         """Entities that have signalled work and have not been attended to."""
-        self.ready: dict[object, None] = {}
+        self.ready: dict[Any, None] = {}
         """Entities that may have work."""
         self.executor: Callable[[], Waker | None] = _none
 
@@ -50,7 +50,7 @@ class NodeBell:
         if executor is not None:
             executor.wake()
 
-    def mark(self, entity: Any) -> None:
+    def mark(self, entity: object) -> None:
         """Signal that an entity has work. Callable from any thread."""
         self.marked.append(entity)
         self.ring()
@@ -88,7 +88,7 @@ def overrides_for(args: RosArgs, names: Resolver) -> dict[str, tuple[object, str
     Raises:
         GraphFileError: A parameter file is wrong.
     """
-    found: dict[str, tuple[Any, str]] = {}
+    found: dict[str, tuple[object, str]] = {}
     for file in args.params_files:
         for name, setting in params_file.params_for(params_file.read(Path(file), file), names.full_name).items():
             found[name] = (setting.value, str(setting.place))

@@ -145,7 +145,7 @@ def run(program: Program) -> None:
         _begin(program)
     except BaseException:  # SystemExit and KeyboardInterrupt are shown by a hook, too
         if sys.excepthook is hook:  # not before: some libraries look whether it is Python's own
-            sys.excepthook = partial(_tell, program.workspace)
+            sys.excepthook = partial(_print_error, program.workspace)
         raise
 
 
@@ -153,7 +153,7 @@ def _begin(program: Program) -> None:
     if program.entry is None:
         if program.file.suffix != ".py" and not _is_python(program.file):
             if not os.access(program.file, os.X_OK):
-                raise UsageFault(f"{program.file} is no executable file; to make it one: chmod +x {program.file}")
+                raise UsageFault(f"{program.file} is not executable; to fix that: chmod +x {program.file}")
             os.execv(program.file, sys.argv)
         sys.path.insert(0, str(program.file.parent))
         if hiding.hides_what_it_imports(program.file):
@@ -175,15 +175,17 @@ def _begin(program: Program) -> None:
     sys.exit(called())
 
 
-def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
+def _print_error(
+    workspace: Workspace, kind: type[BaseException], error: BaseException, _: TracebackType | None
+) -> None:
     """Print an error that ends a program, limited to the program's own code, with a next step."""
     tracebacks.shorten(error)
     sys.__excepthook__(kind, error, error.__traceback__)
     if isinstance(error, ModuleNotFoundError) and error.name is not None and not hiding.hidden(error):
         sys.stderr.write(f"note: {_where_to_have(error.name, workspace, _imported_in(error))}\n")
     if isinstance(error, AssertionError) and " field must be " in str(error):
-        later = "ROS 2 Jazzy looks at this only when the message is sent, and then ends the process"
-        sys.stderr.write(f"note: {later}; to have it looked at then here, too: ROS_PYTHON_CHECK_FIELDS=0\n")
+        later = "ROS 2 Jazzy checks this only when the message is sent, and then aborts the process"
+        sys.stderr.write(f"note: {later}; to check it only then here, too: ROS_PYTHON_CHECK_FIELDS=0\n")
 
 
 def _imported_in(error: BaseException) -> str:
@@ -203,7 +205,7 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
     name, _, kind = module.partition(".")
     package = workspace.packages.get(name)
     if package is not None and name in of_ros():
-        return f"your package {package.folder} hides ROS 2's {name}; call yours otherwise, there and in its files"
+        return f"your package {package.folder} hides ROS 2's {name}; rename yours, there and in its files"
     if package is not None and kind in KINDS:
         for file, right in package.misplaced_interfaces.items():
             if right.suffix == f".{kind}":
@@ -215,7 +217,7 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
         near = nearest(name, others, cutoff=SLIP) or next((o for o in others if o.startswith(name)), None)
         if near is not None:
             return f"{name} has no .{kind} file; they are in {near}: from {near}.{kind} import ..."
-        return f"{name} has no .{kind} file: {package.folder / kind}, where they would be, is not there or empty"
+        return f"{name} has no .{kind} file: {package.folder / kind} does not exist or is empty"
     if package is not None:
         return f"{name} has no module {module}; the package is {package.folder}"
     there = sys.modules.get(name)
@@ -233,7 +235,7 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
     into = f"clone its package beside those below {workspace.root}" if workspace.packages else "clone its package"
     if name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
         return f"there is no {name} here: {into}{meant}"
-    return f"there is no {name} here{meant or f': {into} if it is of ROS, and pip install it if it is on PyPI'}"
+    return f"there is no {name} here{meant or f': {into} if it is a ROS package, or pip install it if it is on PyPI'}"
 
 
 def _no_module_in(package: ModuleType, module: str) -> str:
@@ -242,12 +244,12 @@ def _no_module_in(package: ModuleType, module: str) -> str:
     folders = getattr(package, "__path__", None)
     owner, _, word = module.rpartition(".")
     if folders is None and word != "py":
-        return f"{file or package.__name__} is a module, and no package that has others"
+        return f"{file or package.__name__} is a module, not a package"
     if word == "py":
         return f"modules are imported without .py: write import {owner}"
     above, _, kind = owner.rpartition(".")
     if kind in KINDS and above in registry.packages() and word in registry.names_in(above, kind):
-        return f"{word} is a class, and no module: write from {owner} import {word}"
+        return f"{word} is a class, not a module: write from {owner} import {word}"
     known = {found.name for found in iter_modules(folders)}
     if package.__name__ in registry.packages():
         known |= {kind for kind in KINDS if registry.names_in(package.__name__, kind)}
@@ -277,7 +279,7 @@ _ON_PYPI = {
 """The PyPI packages of modules that robot programs often import."""
 
 
-def _tell_build_faults(program: Program, name: str) -> None:
+def _warn_of_build_faults(program: Program, name: str) -> None:
     """Warn about what would keep ROS 2 from running the program, and about stale copies of its entry points."""
     if program.entry is not None:
         for package in program.workspace.packages.values():
@@ -304,8 +306,8 @@ def main(words: Sequence[str]) -> None:
     try:
         program = find_program(words[0], words[1:], Path.cwd())
         if program is None:
-            raise UsageFault(f"{' '.join(words[:2])} is no program that uses rclpy")
-        _tell_build_faults(program, words[1] if words[1:] else "")
+            raise UsageFault(f"{' '.join(words[:2])} is not a program that uses rclpy")
+        _warn_of_build_faults(program, words[1] if words[1:] else "")
         run(program)
     except UsageFault as error:
         sys.stderr.write(f"error: {error}\n")

@@ -9,4 +9,4 @@ from graphflow.rclpy import enabling
 from graphflow.rclpy.messages import finder
 
 if enabling.here() and not sys.flags.safe_path:  # python -P imports nothing from where it stands
-    finder.look_around()
+    finder.search_workspace()

@@ -311,9 +311,7 @@ def test_a_package_of_a_name_of_ros(workspace: Path) -> None:
     )
     (workspace / "src" / "lamp" / "setup.py").write_text(SETUP.replace("lamp.no:main", "lamp.late:main"))
     said, _ = start(workspace, "lamp", "none").communicate(timeout=20)
-    assert said.endswith(
-        f"note: your package {own} hides ROS 2's std_msgs; call yours otherwise, there and in its files\n"
-    )
+    assert said.endswith(f"note: your package {own} hides ROS 2's std_msgs; rename yours, there and in its files\n")
 
 
 @pytest.mark.real
@@ -332,7 +330,7 @@ def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
     for words, code, text in (
         (("tools", "say"), 0, "said\n"),
         (("lamp", "lmap"), 2, "error: package 'lamp' has no executable 'lmap'; did you mean 'lamp'?\n"),
-        (("nothing",), 2, "error: nothing is no program that uses rclpy\n"),
+        (("nothing",), 2, "error: nothing is not a program that uses rclpy\n"),
     ):
         process = start(workspace, *words)
         output, _ = process.communicate(timeout=20)

@@ -44,7 +44,7 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
     name = miscalled[1]
     if _is_users_own(name, last):
         return _called_at_once(name, line_of(frames)) if " missing " in str(error) else ""
-    unmade = _unmade(name, last) if "missing 1 required positional argument" in str(error) else ""
+    unmade = _not_constructed(name, last) if "missing 1 required positional argument" in str(error) else ""
     return unmade or _of_message(name, last) or _of_rclpy(name, str(error), (), {})
 
 
@@ -60,7 +60,7 @@ def called_value(error: BaseException, frames: list[FrameType]) -> str:
     fits = fits or (called if len(called) == 1 else [])
     if not fits:
         return ""
-    return f"{fits[0].lstrip('.')} is no function: leave out the parentheses behind it"
+    return f"{fits[0].lstrip('.')} is not a function: remove the parentheses after it"
 
 
 _VALUES = ("value", "is_cancel_requested", "is_active", "request", "status", "nanoseconds", "goal_id")
@@ -112,7 +112,7 @@ def _is_users_own(name: str, frame: FrameType) -> bool:
     return is_defined_by_user((frame.f_locals | frame.f_globals).get(name.partition(".")[0]))
 
 
-def _unmade(name: str, frame: FrameType) -> str:
+def _not_constructed(name: str, frame: FrameType) -> str:
     """Show how to create the object where a method was called on its class."""
     method = name.rpartition(".")[2]
     line = linecache.getline(frame.f_code.co_filename, frame.f_lineno)
@@ -120,7 +120,7 @@ def _unmade(name: str, frame: FrameType) -> str:
         owner, _, called = path.rpartition(".")
         cls = named(owner, frame) if called == method != "__init__" else None
         if isinstance(cls, type):
-            return f"{cls.__name__} is the class: make one, {cls.__name__}()"
+            return f"{cls.__name__} is a class: create an instance, {cls.__name__}()"
     return ""
 
 
@@ -129,7 +129,7 @@ def _of_message(name: str, frame: FrameType) -> str:
     cls = (frame.f_locals | frame.f_globals).get(name.removesuffix(".__init__"))
     if not (isinstance(cls, type) and issubclass(cls, StrictMessage)):
         return ""
-    return f"fields go by name: {cls.__name__}({', '.join(f'{f.name}=...' for f in cls.SCHEMA.fields)})"
+    return f"fields are keyword arguments: {cls.__name__}({', '.join(f'{f.name}=...' for f in cls.SCHEMA.fields)})"
 
 
 def _function(name: str) -> Callable[..., object] | None:
@@ -154,7 +154,7 @@ def _of_callback(text: str, frame: FrameType, name: str) -> str:
     code = function.__code__
     given = GIVEN.get(frame.f_code.co_qualname)
     if given is None:
-        given = ", ".join(map(_word, (*args, *frame.f_locals.get("args", ()))))
+        given = ", ".join(map(_argument_name, (*args, *frame.f_locals.get("args", ()))))
     is_method = "." in function.__qualname__ and not function.__qualname__.rpartition(".")[0].endswith("<locals>")
     place = short_place(code.co_filename, code.co_firstlineno)
     taken = ", ".join(word for word in ("self" if is_method else "", given) if word)
@@ -165,7 +165,7 @@ def _of_callback(text: str, frame: FrameType, name: str) -> str:
     return f"{function.__name__} ({place}) is called with ({given}): def {function.__name__}({taken})"
 
 
-def _word(argument: object) -> str:
+def _argument_name(argument: object) -> str:
     """Return the name that a callback would give an argument."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(argument).__name__).lower().replace("run", "future")
 

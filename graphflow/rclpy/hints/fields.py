@@ -39,13 +39,13 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
     if not isinstance(error, AssertionError) or not checks:
         return ""
     if found is None:
-        return _given(checks, str(error)) if _RANGE_OR_LIST.match(str(error)) else ""
+        return _wrong_element(checks, str(error)) if _RANGE_OR_LIST.match(str(error)) else ""
     name, kind = found.groups()
     value, cls = checks[-1]["value"], checks[-1].get("cls")
     set_ = re.match(rf"\s*([\w.\[\]]*\b{name})\s*=(?!=)\s*([^#;]+)", line_of(frames))
     target, given = (set_[1], set_[2].strip()) if set_ is not None else (name, "...")
     if type(value).__name__ == "Parameter":
-        return f"a parameter has its value in .value: {target} = {given}.value"
+        return f"a parameter's value is in .value: {target} = {given}.value"
     if isinstance(cls, type) and issubclass(cls, StrictMessage):
         return _part(target, given, value, cls)
     if isinstance(value, StrictMessage) and hasattr(value, "data"):
@@ -67,7 +67,7 @@ def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str
     if not shape:
         return f"write {target} = {kind}({given})"
     whole = given if PATH.fullmatch(given) else f"({given})"
-    what = f"{target} is {'an int' if kind == 'int' else 'a float'}, and was given an array of shape {shape}"
+    what = f"{target} is {'an int' if kind == 'int' else 'a float'}, got an array of shape {shape}"
     is_one = all(size == 1 for size in shape)
     way = (
         f"{kind}({whole}[{', '.join('0' for _ in shape)}])" if is_one else f"one of its elements, {kind}({whole}[...])"
@@ -75,7 +75,7 @@ def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str
     return f"{what}: write {way}"
 
 
-def _given(checks: list[dict[str, Any]], text: str) -> str:
+def _wrong_element(checks: list[dict[str, Any]], text: str) -> str:
     """Show a value that is out of range, or a list with an element of the wrong type."""
     last, kind = checks[-1], _ELEMENTS.search(text)
     if "items" in last:
@@ -85,7 +85,7 @@ def _given(checks: list[dict[str, Any]], text: str) -> str:
         way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and isinstance(last["item"], _PLAIN) else ""
         return f"one of its elements is {reprlib.repr(last['item'])}{way}"
     value = last["value"]
-    way = f": a list is wanted, write [{value!r}]" if kind is not None and type(value).__name__ == kind[1] else ""
+    way = f": a list is expected, write [{value!r}]" if kind is not None and type(value).__name__ == kind[1] else ""
     return f"it was given {reprlib.repr(value)}{way}"
 
 
@@ -96,7 +96,7 @@ def _part(target: str, given: str, value: object, cls: type[StrictMessage]) -> s
     if cls.__name__ == "Time" and isinstance(value, float) and "time.time()" in given:
         return f"write {target} = self.get_clock().now().to_msg()"
     if value is cls:
-        return f"that is a class and no message: write {target} = {cls.__name__}()"
+        return f"that is a class, not a message: write {target} = {cls.__name__}()"
     fields = cls.SCHEMA.fields
     if isinstance(value, StrictMessage) or not fields:
         return f"{target} is a {cls.__name__}, and was given a {type(value).__name__}"
@@ -107,7 +107,7 @@ def no_message(error: BaseException, frames: list[FrameType]) -> str:
     """Show how to create a message where its class was passed."""
     found = re.fullmatch(r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]*\._Generated'>", str(error))
     if found is not None:
-        return f"that is a class and no message: write {found[1].replace('_', '.')}()"
+        return f"that is a class, not a message: write {found[1].replace('_', '.')}()"
     last = frames[-1].f_locals if frames else {}
     cls, given = getattr(last.get("self"), "msg_type", None), last.get("msg")
     is_plain = isinstance(given, (bool, int, float, str)) and str(error).startswith("Expected <class ")
@@ -146,11 +146,11 @@ def _class_as_message(line: str, frame: FrameType) -> str:
         if isinstance(cls, type) and issubclass(cls, StrictMessage):
             is_kept = owner != cls.__name__
             return (
-                f"{owner} is {'the' if is_kept else 'a'} class{f' {cls.__name__}' if is_kept else ''}, and no message: "
+                f"{owner} is {'the' if is_kept else 'a'} class{f' {cls.__name__}' if is_kept else ''}, not a message: "
                 + (
                     f"write {owner} = {cls.__name__}()"
                     if is_kept
-                    else f"write {cls.__name__}(), or name the message that is meant"
+                    else f"write {cls.__name__}(), or use a message object"
                 )
             )
     return ""
@@ -160,7 +160,7 @@ def _fields(cls: type[StrictMessage], name: str) -> str:
     names = [field.name for field in cls.SCHEMA.fields]
     below = next(_paths(cls, name), "")
     if below:
-        return f"it is further down: .{below}"
+        return f"it is in a nested message: .{below}"
     near = nearest(name, names)
     listed = ", ".join(names) or "no fields"
     return f"{cls.__name__} has {listed}" + (f"; did you mean {near!r}?" if near is not None else "")

@@ -73,9 +73,9 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
     if thing is None and ".result()" in line_of(frames):
         return "future.result() is None until the future is done: add_done_callback(...), or spin until it is"
     if type(thing).__name__ in ("Future", "Run", "Task") and not is_defined_by_user(type(thing)):
-        return f"the answer has it: future.result().{name}, once the future is done: add_done_callback(...)"
+        return f"it is in the answer: future.result().{name}, once the future is done: add_done_callback(...)"
     if type(thing).__name__ == "ServerGoalHandle" and not is_defined_by_user(type(thing)):
-        return f"the goal has it: goal_handle.request.{name}"
+        return f"it is in the goal: goal_handle.request.{name}"
     if error.__class__ is AttributeError and type(thing).__module__ == "rclpy.qos":
         near = nearest(name, [word for word in dir(thing) if not word.startswith("_")])
         return f"did you mean {near!r}?" if near is not None else ""

@@ -54,7 +54,9 @@ def _of_callback(path: str, name: str, frame: FrameType) -> str:
         for attribute, value in getattr(thing, "__dict__", {}).items()
         if getattr(getattr(value, "callback", None), "__name__", "") == method
     ]
-    way = f"write {owner}.{kept[0]}.{name}()" if kept else f"keep what create_timer(...) returns, and call its {name}()"
+    way = (
+        f"write {owner}.{kept[0]}.{name}()" if kept else f"keep the result of create_timer(...), and call its {name}()"
+    )
     return f"{path} is a callback, which has no {name}: {way}"
 
 
@@ -71,7 +73,7 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
     if isinstance(error.obj, ModuleType):
         return _where(error.name, error.obj.__name__)
     if isinstance(error.obj, tuple) and (path := _path_of(error.name, line_of(frames))):
-        return f"{path} is a tuple, by a comma behind what it is set to: leave the comma out"
+        return f"{path} is a tuple because of the comma after its value: remove the comma"
     if isinstance(error.obj, (FunctionType, MethodType)) and (path := _path_of(error.name, line_of(frames))):
         if error.name in ("cancel", "reset", "destroy"):
             return _of_callback(path, error.name, users[-1])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 ATTRIBUTES = {
     "method.debug method.info method.warn method.warning method.error method.fatal function.info": (
-        "it is called first: write get_logger().info(...)"
+        "get_logger is a method: write get_logger().info(...)"
     ),
     "Timer.stop Timer.shutdown": "a timer is stopped by timer.cancel(), and started again by timer.reset()",
     "Timer.start": "a timer runs from create_timer on; after timer.cancel(), timer.reset() starts it again",
@@ -31,36 +31,36 @@ ATTRIBUTES = {
         "the result comes later: goal_handle.get_result_async().add_done_callback(self.done), and there "
         "future.result().result"
     ),
-    "Client.wait_for_server": "of a service it is wait_for_service()",
-    "Client.send_goal Client.send_goal_async": "of a service it is call_async(request)",
-    "ActionClient.call ActionClient.call_async": "of an action it is send_goal_async(goal)",
-    "ActionClient.wait_for_service": "of an action it is wait_for_server()",
+    "Client.wait_for_server": "for a service, use wait_for_service()",
+    "Client.send_goal Client.send_goal_async": "for a service, use call_async(request)",
+    "ActionClient.call ActionClient.call_async": "for an action, use send_goal_async(goal)",
+    "ActionClient.wait_for_service": "for an action, use wait_for_server()",
 }
 """By class (`T` for nodes) and missing attribute."""
 
 TEXTS: dict[str, str] = {
-    r'can only concatenate str \(not "(?:int|float|bool)"\)': "put it into the text: f'... {{value}}', or str(value)",
+    r'can only concatenate str \(not "(?:int|float|bool)"\)': "format it: f'... {{value}}', or str(value)",
     r"no running event loop": (
         "callbacks of rclpy run without asyncio: make a timer for a pause, and await futures of rclpy alone"
     ),
     r"context is invalid|rcl_shutdown already called|[Cc]ontext must be initialized": (
-        "rclpy has been shut down before, which Ctrl-C does, too: publish before, and end with rclpy.try_shutdown()"
+        "rclpy was already shut down, as Ctrl-C does: publish earlier, and end with rclpy.try_shutdown()"
     ),
     r"cannot use Destroyable": (
-        "it was destroyed before, by itself or with its node: use it before, and call destroy_node() last"
+        "it was already destroyed, by itself or with its node: use it earlier, and call destroy_node() last"
     ),
-    r"Context\.init\(\) must only be called once": "call rclpy.init() once, before the first node is made",
+    r"Context\.init\(\) must only be called once": "call rclpy.init() once, before the first node is created",
     r"property '(\w+)' of '\w+' object has no setter|(handle) cannot be modified": (
         "every node has '{0}' already: choose another name for the attribute"
     ),
     r"(?:operand type\(s\) for -:|not supported between instances of) 'Time' and 'Time'": (
-        "one of them is a message: rclpy.time.Time.from_msg(stamp) makes a time of it"
+        "one of them is a message: rclpy.time.Time.from_msg(stamp) converts it"
     ),
     r"operand.*'(?:Time|Duration)'|not supported between.*'(?:Time|Duration)'": (
-        "of a time or a duration take the seconds: .nanoseconds / 1e9"
+        "use the seconds of a time or duration: .nanoseconds / 1e9"
     ),
     r"(?:operand|not supported between).*'Parameter'|^(?!parameter_list).*, got Parameter: write": (
-        "a parameter has its value in .value"
+        "a parameter's value is in .value"
     ),
     r"Type 'Type\.DOUBLE' and value '(-?\d+)' do not agree": "a DOUBLE is a float: write {0}.0",
     r"Type 'Type\.INTEGER' and value '(-?\d+)\.\d*' do not agree": "an INTEGER is an int: write {0}",
@@ -68,13 +68,13 @@ TEXTS: dict[str, str] = {
         "give a value, or a type as in declare_parameter('name', Parameter.Type.DOUBLE)"
     ),
     r"given value is not one of the allowed types '\{": (
-        "a dictionary is a parameter for each key: declare_parameters('gains', [('p', 1.0), ('i', 0.1)])"
+        "declare a parameter for each key: declare_parameters('gains', [('p', 1.0), ('i', 0.1)])"
     ),
     r"given value is not one of the allowed types": (
         "a parameter is a bool, an int, a float, a str, bytes, or a list of one of them"
     ),
     r"not a list of one of the allowed types": (
-        "all elements are of one type, as in [1.0, 2.5], and none is a list: lists in lists are parameters of their own"
+        "all elements must be of one type, as in [1.0, 2.5], and none a list: make nested lists parameters of their own"
     ),
     r"Third element (.*) at index .* is not a ParameterDescriptor": (
         "the third argument is a ParameterDescriptor(description={0!r}), from rcl_interfaces.msg"
@@ -86,13 +86,13 @@ TEXTS: dict[str, str] = {
     r"descriptor '__init__' (?:requires a 'super' object|of 'super' object needs)": (
         "super is called: write super().__init__('node_name')"
     ),
-    r"object\.__init__\(\) takes exactly one argument": "the class derives from nothing: write class Name(Node):",
+    r"object\.__init__\(\) takes exactly one argument": "the class has no base class: write class Name(Node):",
     r"rclpy\.\w+\(\) argument after \* must be an iterable": (
-        "the arguments of a thread are a tuple: Thread(target=rclpy.spin, args=(node,))"
+        "pass a thread's arguments as a tuple: Thread(target=rclpy.spin, args=(node,))"
     ),
-    r"type must be an instance of '<enum 'Type'>'": "the value goes by name: Parameter('name', value=2.0)",
+    r"type must be an instance of '<enum 'Type'>'": "pass the value by keyword: Parameter('name', value=2.0)",
     r"could not convert string to float: ''": (
-        "an empty text is no number; of a parameter take .value, since .string_value is empty unless it is a string"
+        "an empty text is not a number; read a parameter's .value, since .string_value is empty unless it is a string"
     ),
 }
 """By a pattern of the error's text; a sentence may refer to its groups."""
@@ -102,11 +102,11 @@ CALLS = {
         "write super().__init__('node_name', namespace='...') in the __init__ of your class: without self, and all but "
         "the name by keyword"
     ),
-    "QoSProfile.__init__": "policies go by name: QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)",
-    "RcutilsLogger": "one text is logged: get_logger().info(f'... {value}')",
-    "Executor.spin": "nodes are added first: executor.add_node(node), and then executor.spin()",
-    "Executor.__init__": "nodes are added to it: executor.add_node(node)",
-    "Executor.add_node": "each node is added by itself: executor.add_node(node)",
+    "QoSProfile.__init__": "pass policies by keyword: QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)",
+    "RcutilsLogger": "pass one text: get_logger().info(f'... {value}')",
+    "Executor.spin": "add the nodes first: executor.add_node(node), and then executor.spin()",
+    "Executor.__init__": "add nodes to it: executor.add_node(node)",
+    "Executor.add_node": "add each node separately: executor.add_node(node)",
     "init": "write rclpy.init(), or rclpy.init(args=sys.argv)",
     "ParameterMethods.declare_parameters": "write declare_parameters('', [('a', 1), ('b', 2)])",
 }

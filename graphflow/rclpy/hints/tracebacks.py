@@ -49,7 +49,7 @@ def shorten(error: BaseException) -> None:
 def _shortened(error: BaseException, *, is_clear: bool) -> TracebackType | None:
     parts = list(parts_of(error.__traceback__))
     own = [place for place, part in enumerate(parts) if is_users(part.tb_frame.f_code.co_filename)]
-    if is_clear or _is_clear(error) or (own and is_refusal(parts[-1], "assert")):
+    if is_clear or _is_redundant(error) or (own and is_refusal(parts[-1], "assert")):
         kept = [parts[place] for place in own]
     elif own:
         kept = [p for place, p in enumerate(parts) if place > own[-1] or (place >= own[0] and not _is_ours(p))]
@@ -65,7 +65,7 @@ def _is_ours(part: TracebackType) -> bool:
     return is_ours(part.tb_frame.f_code.co_filename)
 
 
-def _is_clear(error: BaseException) -> bool:
+def _is_redundant(error: BaseException) -> bool:
     """Whether the frame in graphflow that raised an error adds no information."""
     return isinstance(error, (KeyboardInterrupt, SyntaxError)) or type(error).__module__.startswith("rclpy.")
 

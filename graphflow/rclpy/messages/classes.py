@@ -66,7 +66,7 @@ class StrictMessage(metaclass=_Generated):
 class _NoInstances(_Generated):
     def __call__(cls, *_: object, **__: object) -> NoReturn:
         kind, part = ("Action", "Goal") if hasattr(cls, "Goal") else ("Service", "Request")
-        way = f"a {part.lower()} is made by {cls.__name__}.{part}()"
+        way = f"create a {part.lower()} with {cls.__name__}.{part}()"
         raise NotImplementedError(f"{kind} classes can not be instantiated: {way}")
 
 

@@ -31,7 +31,7 @@ class MessagePackages:
             if not (is_package(package) or fullname == "rclpy"):
                 return None
             if _is_elsewhere(fullname, path):
-                _tell_hidden(fullname)
+                _warn_of_shadowing(fullname)
                 return None
             return self._spec(fullname) if fullname != "rclpy" else None
         kind, _, inner = rest.partition(".")
@@ -169,7 +169,7 @@ def _is_elsewhere(fullname: str, path: Sequence[str] | None) -> bool:
     return found is not None and found.origin is not None
 
 
-def _tell_hidden(package: str) -> None:
+def _warn_of_shadowing(package: str) -> None:
     """Warn that a module shadows a package: importing from it fails, or silently yields something else."""
     found = importlib.machinery.PathFinder.find_spec(package)
     if found is not None and found.origin is not None and found.submodule_search_locations is None:
@@ -208,7 +208,7 @@ def prefer_own() -> None:
         sys.meta_path.insert(0, OwnPackages())
 
 
-def look_around() -> None:
+def search_workspace() -> None:
     """Install the hook that searches the surrounding workspace."""
     if not any(isinstance(finder, WorkspacePackages) for finder in sys.meta_path):
         sys.meta_path.append(WorkspacePackages())

@@ -84,26 +84,26 @@ def _message(message: Message) -> str:
         if field.type.array:
             lines += [
                 "    @property",
-                f"    def {field.name}(self) -> {_held(field.type, module)}: ...",
+                f"    def {field.name}(self) -> {_getter_type(field.type, module)}: ...",
                 f"    @{field.name}.setter",
-                f"    def {field.name}(self, value: {_taken(field.type, module)}) -> None: ...",
+                f"    def {field.name}(self, value: {_setter_type(field.type, module)}) -> None: ...",
             ]
         else:
             lines.append(f"    {field.name}: {_element(field.type.base, module)}")
-    parameters = [f"{field.name}: {_taken(field.type, module)} = ..." for field in message.fields]
+    parameters = [f"{field.name}: {_setter_type(field.type, module)} = ..." for field in message.fields]
     lines.append(f"    def __init__({', '.join(['self', *(['*'] if parameters else []), *parameters])}) -> None: ...")
     lines.append("    @classmethod\n    def get_fields_and_field_types(cls) -> dict[str, str]: ...")
     return "\n".join([*lines, ""])
 
 
-def _held(type_: FieldType, module: str) -> str:
+def _getter_type(type_: FieldType, module: str) -> str:
     """Return the type of an array that a field holds."""
     if type_.base not in SEQUENCE_CODES:
         return f"list[{_element(type_.base, module)}]"
     return "npt.NDArray[Any]" if type_.array == "fixed" else f"array[{_element(type_.base, module)}]"
 
 
-def _taken(type_: FieldType, module: str) -> str:
+def _setter_type(type_: FieldType, module: str) -> str:
     """Return the type that a field may be set to."""
     element = _element(type_.base, module)
     if not type_.array:

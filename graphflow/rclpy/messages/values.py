@@ -151,7 +151,7 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
     element = _single(name, type_._replace(array="", size=0), cls)
     size = type_.size
     length = {"fixed": f" with length {size}", "bounded": f" with length <= {size}"}.get(type_.array, "")
-    word = cls.__name__ if cls is not None else _python_word(type_.base)
+    word = cls.__name__ if cls is not None else _python_name(type_.base)
     complaint = f"The '{name}' field must be a set or sequence{length} and each value of type '{word}'"
 
     def fits(count: int) -> bool:
@@ -219,7 +219,7 @@ def _fixed(type_: FieldType, value: Any, plain: Check) -> object:
     return np.array(plain(value), dtype)
 
 
-def _python_word(base: str) -> str:
+def _python_name(base: str) -> str:
     if base in STRINGS:
         return "str"
     if base in ("bool", "byte"):

@@ -175,4 +175,4 @@ def test_values_that_are_called(tmp_path: Path, line: str, path: str) -> None:
     known: dict[str, Any] = {"handle": Handle(), "param": Parameter("n", value=1.5), "qos": QoSProfile(depth=1)}
     known |= {"given": lambda name: Parameter(name, value=1.5), "print": str}
     found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
-    assert found == (f"{path} is no function: leave out the parentheses behind it" if path else "")
+    assert found == (f"{path} is not a function: remove the parentheses after it" if path else "")

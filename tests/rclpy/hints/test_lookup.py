@@ -36,14 +36,14 @@ MAKER: Any = MultiThreadedExecutor
 PROFILE: Any = QoSProfile
 WRONG: list[tuple[Callable[[Any], Any], str]] = [
     # by attribute
-    (lambda n: n.get_logger.info("hi"), "it is called first: write get_logger().info(...)"),
+    (lambda n: n.get_logger.info("hi"), "get_logger is a method: write get_logger().info(...)"),
     (lambda n: n.create_timer(1.0, print).stop(), "a timer is stopped by timer.cancel(), and started again by"),
     (lambda n: n.get_clock().now().seconds, "write .nanoseconds / 1e9"),
     (lambda n: n.create_action_server(Fibonacci, "fib", print), 'write ActionServer(self, Type, "name", self.execute)'),
     (lambda n: n.get_logger().warning_once("hi"), "once is an argument: get_logger().info(..., once=True)"),
     (
         lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request()).sum,
-        "the answer has it: future.res",
+        "it is in the answer: future.res",
     ),
     (
         lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request()).result().sum,
@@ -62,14 +62,14 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: asyncio.get_running_loop(), "callbacks of rclpy run without asyncio"),
     (
         lambda n: n.get_clock().now() - n.get_clock().now() > 1.0,
-        "of a time or a duration take the seconds: .nanoseconds / 1e9",
+        "use the seconds of a time or duration: .nanoseconds / 1e9",
     ),
-    (lambda n: 1 / n.declare_parameter("rate", 1.0), "a parameter has its value in .value"),
+    (lambda n: 1 / n.declare_parameter("rate", 1.0), "a parameter's value is in .value"),
     (lambda n: Parameter("rate", Parameter.Type.DOUBLE, 2), "a DOUBLE is a float: write 2.0"),
     (lambda n: n.declare_parameter("rate", float), "or a type as in declare_parameter('name', Parameter.Type.DOUBLE)"),
     (
         lambda n: n.declare_parameter("gains", {"p": 1.0}),
-        "a dictionary is a parameter for each key: declare_parameters(",
+        "declare a parameter for each key: declare_parameters(",
     ),
     (
         lambda n: n.declare_parameter("gains", object()),
@@ -78,36 +78,36 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: n.declare_parameter("gains", [1, 2.5]), "all elements are of one type, as in [1.0, 2.5]"),
     (lambda n: n.declare_parameter("rate", 1.0, "the rate"), "is a ParameterDescriptor(description='the rate')"),
     (lambda n: n.set_parameters(Parameter("n", value=6)), ""),
-    (lambda n: Parameter("n", 2.0), "the value goes by name: Parameter('name', value=2.0)"),  # type: ignore[arg-type]
+    (lambda n: Parameter("n", 2.0), "pass the value by keyword: Parameter('name', value=2.0)"),  # type: ignore[arg-type]
     (lambda n: [Parameter("n", value=6)].name, "that is a list of parameters: for parameter in parameters"),  # type: ignore[attr-defined]
     (lambda n: n.set_parameters({"n": 6}), "write set_parameters([Parameter('name', value=6)])"),
-    (lambda n: n.create_publisher(String, "chat", 1).publish(String), "that is a class and no message: write String()"),
+    (lambda n: n.create_publisher(String, "chat", 1).publish(String), "that is a class, not a message: write String()"),
     (lambda n: n.create_publisher(String, "chat", 1).publish("hello"), "write String(data='hello')"),
     (lambda n: n.create_publisher(Twist, "drive", 1).publish("hello"), ""),
-    (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter has its value in .value"),
+    (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter's value is in .value"),
     (lambda n: ActionClient(n, Fibonacci, "fib").send_goal_async(Fibonacci.Goal), "write Fibonacci.Goal()"),
     (lambda n: (n.destroy_node(), n.get_name()), "it was destroyed before, by itself or with its node"),
-    (lambda n: rclpy.init(), "call rclpy.init() once, before the first node is made"),
+    (lambda n: rclpy.init(), "call rclpy.init() once, before the first node is created"),
     # fields
     (lambda n: String().text, "String has data"),
     (lambda n: setattr(n.twist, "linaer", 1), "Twist has linear, angular; did you mean 'linear'?"),
-    (lambda n: Twist(x=1.0), "it is further down: .linear.x"),
-    (lambda n: Fibonacci.Impl.FeedbackMessage().sequence, "it is further down: .feedback.sequence"),
-    (lambda n: String("hi"), "fields go by name: String(data=...)"),
+    (lambda n: Twist(x=1.0), "it is in a nested message: .linear.x"),
+    (lambda n: Fibonacci.Impl.FeedbackMessage().sequence, "it is in a nested message: .feedback.sequence"),
+    (lambda n: String("hi"), "fields are keyword arguments: String(data=...)"),
     # calls
     (lambda n: type(n)("other", "space"), "write super().__init__('node_name', namespace='...') in the __init__"),
-    (lambda n: n.get_logger().info("%d", 1), "one text is logged: get_logger().info(f'... {value}')"),
+    (lambda n: n.get_logger().info("%d", 1), "pass one text: get_logger().info(f'... {value}')"),
     (lambda n: n.create_client(AddTwoInts, "add").wait_for_service(timeout=1.0), "it is timeout_sec="),
     (
         lambda n: ROS.spin_until_future_complete(n),
         "spin_until_future_complete(node, future, executor=, timeout_sec=)",
     ),
     (lambda n: QoSProfile(reliability=1), "give it a depth: QoSProfile(depth=10, ...)"),
-    (lambda n: PROFILE(10), "policies go by name: QoSProfile(depth=10, reliability="),
+    (lambda n: PROFILE(10), "pass policies by keyword: QoSProfile(depth=10, reliability="),
     (lambda n: n.declare_parameters([("a", 1)]), "write declare_parameters('', [('a', 1), ('b', 2)])"),
     (lambda n: ROS.init(["x"]), "write rclpy.init(), or rclpy.init(args=sys.argv)"),
-    (lambda n: MAKER.add_node(n), "MultiThreadedExecutor is the class: make one, MultiThreadedExecutor()"),
-    (lambda n: MAKER.shutdown(), "MultiThreadedExecutor is the class: make one, MultiThreadedExecutor()"),
+    (lambda n: MAKER.add_node(n), "MultiThreadedExecutor is a class: create an instance, MultiThreadedExecutor()"),
+    (lambda n: MAKER.shutdown(), "MultiThreadedExecutor is a class: create an instance, MultiThreadedExecutor()"),
     # nothing to add
     (lambda n: int("a"), ""),
     (lambda n: OWN(), ""),
@@ -144,13 +144,13 @@ def test_the_note(node: Node) -> None:
         rclpy.spin(node)
     for _ in range(2):
         tracebacks.shorten(caught.value)
-        assert caught.value.__notes__ == ["note: that is a class and no message: write String()"]
+        assert caught.value.__notes__ == ["note: that is a class, not a message: write String()"]
 
 
 def test_goals(node: Node) -> None:
     """Their fields are in the request."""
     goal: Any = ServerGoalHandle.__new__(ServerGoalHandle)
-    assert hint_of(lambda: goal.order) == "the goal has it: goal_handle.request.order"
+    assert hint_of(lambda: goal.order) == "it is in the goal: goal_handle.request.order"
 
 
 def test_clocks_have_no_hint_of_nodes() -> None:

@@ -70,7 +70,7 @@ LAMPS = [
     ),
     (
         "def tick(self):\n    self.pub = self.create_rate(1.0),\n    self.pub.publish(1)",
-        "self.pub is a tuple, by a comma behind what it is set to: leave the comma out",
+        "self.pub is a tuple because of the comma after its value: remove the comma",
     ),
     ("def tick(self):\n    r = self.hear\n    r.sum", "r is a function: call it, as in r().sum"),
     (
@@ -79,9 +79,9 @@ LAMPS = [
     ),
     (
         "def tick(self):\n    self.hear.reset()",
-        "self.hear is a callback, which has no reset: keep what create_timer(...) returns, and call its reset()",
+        "self.hear is a callback, which has no reset: keep the result of create_timer(...), and call its reset()",
     ),
-    ("def tick(self):\n    'Hello ' + self.count", "put it into the text: f'... {value}', or str(value)"),
+    ("def tick(self):\n    'Hello ' + self.count", "format it: f'... {value}', or str(value)"),
     ("print(Lamp)", "this line is inside class Lamp: indent it less"),
 ]
 

@@ -104,7 +104,7 @@ def test_a_synchronizer_without_a_callback(caplog: pytest.LogCaptureFixture) -> 
     late.registerCallback(after.signalMessage)
     for ms in (30, 40, 50):
         source.signalMessage(at(ms))
-    text = "this synchronizer has put messages together, and nothing is called with them"
+    text = "this synchronizer has matched messages, but has no callback"
     way = "write synchronizer.registerCallback(self.callback)"
     assert told(caplog, text) == [f"test_message_filters.py:{line}: {text}; {way}"] * len(made)
 
@@ -125,4 +125,4 @@ def test_messages_without_a_stamp_are_told_now_and_then(caplog: pytest.LogCaptur
     ApproximateTimeSynchronizer([source], 10, 0.1)
     for _ in range(5):
         source.signalMessage(Int32())
-    assert len(told(caplog, "a message without a stamp is left out")) <= 1
+    assert len(told(caplog, "a message without a stamp is dropped")) <= 1

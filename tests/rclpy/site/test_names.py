@@ -58,7 +58,7 @@ def test_ours_are_names_that_nobody_writes(cls: type) -> None:
     rclpy.shutdown()
 
 
-OFTEN = "_service _topic _count _info _graph _resolved _destroy _look_again _expanded bell held"
+OFTEN = "_service _topic _count _info _graph _resolved _destroy _recheck _expanded bell held"
 
 
 class Careless(Node):

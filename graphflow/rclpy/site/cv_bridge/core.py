@@ -46,7 +46,7 @@ class CvBridge:
         for name, known in _KINDS.items():
             if known == code:
                 return f"{name}C{n_channels}"
-        raise CvBridgeError(f"images have no numbers of type {np.dtype(dtype)}")
+        raise CvBridgeError(f"images cannot have elements of type {np.dtype(dtype)}")
 
     def imgmsg_to_cv2(self, img_msg: Image, desired_encoding: str = "passthrough") -> NDArray[Any]:
         """Convert an image message to an array.
@@ -113,7 +113,7 @@ class CvBridge:
         data = np.frombuffer(memoryview(cmprs_img_msg.data), dtype=np.uint8)
         image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
         if image is None:
-            raise CvBridgeError(f"the data is no image that OpenCV knows; its format is {cmprs_img_msg.format!r}")
+            raise CvBridgeError(f"OpenCV cannot decode the data; its format is {cmprs_img_msg.format!r}")
         found = self.dtype_with_channels_to_cvtype2(image.dtype, 1 if image.ndim == 2 else image.shape[2])
         named = {"8UC1": "mono8", "16UC1": "mono16", "8UC3": "bgr8", "16UC3": "bgr16", "8UC4": "bgra8"}
         known = named.get(found, found)
@@ -130,7 +130,9 @@ class CvBridge:
         """
         ending = _FILE_ENDINGS.get(dst_format.lower())
         if ending is None:
-            raise CvBridgeError(f"{dst_format!r} is no format of images here; there are {', '.join(_FILE_ENDINGS)}")
+            raise CvBridgeError(
+                f"{dst_format!r} is not a supported image format; use one of {', '.join(_FILE_ENDINGS)}"
+            )
         is_done, data = _opencv("to compress images").imencode(ending, cvim)
         if not is_done:
             raise CvBridgeError(f"OpenCV cannot write this array as {dst_format}")

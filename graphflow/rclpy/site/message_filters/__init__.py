@@ -33,13 +33,13 @@ class SimpleFilter:
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[object, ...]]] = {}
 
-    def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:  # noqa: N802 - its name there
+    def registerCallback(self, cb: Callable[..., object], *args: object) -> int:  # noqa: N802 - its name there
         """Register `cb`, called with each output message followed by `args`; return its number."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
-    def signalMessage(self, *msg: Any) -> None:  # noqa: N802 - its name there
+    def signalMessage(self, *msg: object) -> None:  # noqa: N802 - its name there
         """Pass messages to the callbacks."""
         for callback, args in list(self.callbacks.values()):
             callback(*msg, *args)
@@ -54,7 +54,7 @@ class Subscriber(SimpleFilter):
         kwargs.setdefault("qos_profile", 10)
         self.sub = self.node.create_subscription(*args[1:], self.callback, **kwargs)
 
-    def callback(self, msg: Any) -> None:
+    def callback(self, msg: object) -> None:
         """Pass on an incoming message."""
         self.signalMessage(msg)
 
@@ -68,7 +68,7 @@ class Subscriber(SimpleFilter):
         return getattr(self.__dict__["sub"], key)
 
 
-def _connected(f: Any, who: object, callback: Callable[..., Any], *args: Any) -> int:
+def _connected(f: Any, who: object, callback: Callable[..., object], *args: object) -> int:
     """Connect a callback to a filter's output.
 
     Raises:
@@ -77,7 +77,7 @@ def _connected(f: Any, who: object, callback: Callable[..., Any], *args: Any) ->
     if isinstance(f, Subscription):
         kind, name = type(who).__name__, f.msg_type.__name__
         made = f"message_filters.Subscriber(self, {name}, {f.topic_name!r})"
-        raise AttributeError(f"{kind} takes filters, and a subscription is none; in place of it write {made}")
+        raise AttributeError(f"{kind} takes filters, not subscriptions; write {made}")
     number: int = f.registerCallback(callback, *args)
     return number
 
@@ -166,7 +166,7 @@ class TimeSynchronizer(SimpleFilter):
         pairs = enumerate(zip(fs, self.queues, strict=True))
         self.input_connections = [_connected(f, self, self.add, queue, index) for index, (f, queue) in pairs]
 
-    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
+    def add(self, msg: Any, my_queue: dict[int, object], my_queue_index: int | None = None) -> None:
         """Take a message from a filter."""
         with self.lock:
             self._keep(Time.from_msg(msg.header.stamp).nanoseconds, msg, my_queue)
@@ -175,15 +175,15 @@ class TimeSynchronizer(SimpleFilter):
         for together in found:
             self.signalMessage(*together)
 
-    def signalMessage(self, *msg: Any) -> None:  # noqa: N802 - its name there
+    def signalMessage(self, *msg: object) -> None:  # noqa: N802 - its name there
         super().signalMessage(*msg)
         if not self.callbacks:
             self._graphflow_unheard += 1
             if self._graphflow_unheard == UNHEARD:
-                text = "%sthis synchronizer has put messages together, and nothing is called with them; write %s"
+                text = "%sthis synchronizer has matched messages, but has no callback; write %s"
                 logger.warning(text, self._graphflow_place, "synchronizer.registerCallback(self.callback)")
 
-    def _keep(self, stamp_ns: int, msg: Any, queue: dict[int, object]) -> None:
+    def _keep(self, stamp_ns: int, msg: object, queue: dict[int, object]) -> None:
         queue[stamp_ns] = msg
         while len(queue) > self.queue_size:
             del queue[min(queue)]
@@ -205,7 +205,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         super().__init__(fs, queue_size)
         self.slop, self.allow_headerless = Duration(seconds=slop), allow_headerless
 
-    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
+    def add(self, msg: Any, my_queue: dict[int, object], my_queue_index: int | None = None) -> None:
         """Take a message from a filter."""
         stamp = _stamp(msg, self.allow_headerless, "message_filters_approx")
         if stamp is None:
@@ -241,7 +241,7 @@ def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Time | None:
     if allow_headerless:
         return ROSClock().now()
     _logger(logger).warn(
-        "a message without a stamp is left out; allow_headerless=True takes the time of its arrival",
+        "a message without a stamp is dropped; allow_headerless=True uses its time of arrival",
         throttle_duration_sec=10.0,
     )
     return None

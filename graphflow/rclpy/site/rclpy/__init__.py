@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from graphflow.rclpy.hints import tracebacks
 from rclpy.context import Context
-from rclpy.impl.mistakes.spin_arguments import check_executor, check_future, check_node, tell_unused
+from rclpy.impl.mistakes.spin_arguments import check_executor, check_future, check_node, warn_of_unused
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -149,7 +149,7 @@ def create_node(
     use_global_arguments: bool = True,
     enable_rosout: bool = True,
     start_parameter_services: bool = True,
-    parameter_overrides: list[Parameter[Any]] | None = None,
+    parameter_overrides: list[Parameter] | None = None,
     allow_undeclared_parameters: bool = False,
     automatically_declare_parameters_from_overrides: bool = False,
     enable_logger_service: bool = False,
@@ -192,7 +192,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     check_executor(executor, "spin")
     if executor is None:
         executor = get_global_executor()
-        tell_unused(node, executor)
+        warn_of_unused(node, executor)
     former, is_added = node.executor, False
     try:
         is_added = executor.add_node(node)
@@ -204,7 +204,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 
 def spin_until_future_complete(
-    node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
+    node: Node, future: Future, executor: Executor | None = None, timeout_sec: float | None = None
 ) -> None:
     """Run the callbacks of a node until a future is done, at most `timeout_sec` seconds."""
     check_node(node, "spin_until_future_complete")

@@ -47,7 +47,7 @@ class Client(ServiceEnd):
         self.context, self.srv_type, self.srv_name, self.qos_profile = context, srv_type, srv_name, qos_profile
         self.callback_group = callback_group
         self._endpoint, self._life, self._handle = client_impl, life, handle
-        self._pending: dict[int, Future[Any]] = {}
+        self._pending: dict[int, Future] = {}
         self._lock = threading.Lock()
         self._changed = changed
         """The wake-ups of threads that wait for a server."""
@@ -81,16 +81,16 @@ class Client(ServiceEnd):
             return None
         return future.result()
 
-    def call_async(self, request: Any) -> Future[Any]:
+    def call_async(self, request: Any) -> Future:
         """Send a request; the future is done once a spinning thread has taken the response.
 
         A request without a server logs a warning and gets no answer: call `wait_for_service` first. Errors: see `call`.
         """
         if not isinstance(request, self.srv_type.Request):
             made = f"{self.srv_type.__name__}.Request()"
-            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: a request is made by {made}")
+            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: create a request with {made}")
         with self._handle, self._lock:
-            future: Future[Any] = Future()
+            future: Future = Future()
             payload = classes.encode(request)
             sequence = self._endpoint.send(payload)
             self._pending[sequence] = future
@@ -98,11 +98,11 @@ class Client(ServiceEnd):
         future._when_done(partial(self._pending.pop, sequence, None))
         return future
 
-    def get_pending_request(self, sequence_number: int) -> Future[Any]:
+    def get_pending_request(self, sequence_number: int) -> Future:
         """Return the future of a pending call by its number. Raises KeyError if it is not pending."""
         return self._pending[sequence_number]
 
-    def remove_pending_request(self, future: Future[Any]) -> None:
+    def remove_pending_request(self, future: Future) -> None:
         """Stop waiting for a response."""
         with self._lock:
             for sequence, waiting in list(self._pending.items()):

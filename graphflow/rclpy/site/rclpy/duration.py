@@ -39,22 +39,22 @@ class Duration:
         return "Infinite" if self._nanoseconds == _INFINITE else f"{self.nanoseconds} nanoseconds"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Duration) and self._nanoseconds == other._nanoseconds
+        return isinstance(other, Duration) and self._nanoseconds == other.nanoseconds
 
     def __hash__(self) -> int:
         return hash(self._nanoseconds)
 
     def __lt__(self, other: Duration) -> bool:
-        return self._nanoseconds < other._nanoseconds if isinstance(other, Duration) else NotImplemented
+        return self._nanoseconds < other.nanoseconds if isinstance(other, Duration) else NotImplemented
 
     def __le__(self, other: Duration) -> bool:
-        return self._nanoseconds <= other._nanoseconds if isinstance(other, Duration) else NotImplemented
+        return self._nanoseconds <= other.nanoseconds if isinstance(other, Duration) else NotImplemented
 
     def __gt__(self, other: Duration) -> bool:
-        return self._nanoseconds > other._nanoseconds if isinstance(other, Duration) else NotImplemented
+        return self._nanoseconds > other.nanoseconds if isinstance(other, Duration) else NotImplemented
 
     def __ge__(self, other: Duration) -> bool:
-        return self._nanoseconds >= other._nanoseconds if isinstance(other, Duration) else NotImplemented
+        return self._nanoseconds >= other.nanoseconds if isinstance(other, Duration) else NotImplemented
 
     def to_msg(self) -> DurationMessage:
         """Convert to builtin_interfaces/msg/Duration."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -147,7 +147,7 @@ class EventHandler(Waitable):
         self,
         *,
         callback_group: CallbackGroup,
-        callback: Callable[[Any], None],
+        callback: Callable[..., None],
         event_type: IntEnum,
         parent_impl: object = None,
         bell: NodeBell | None = None,
@@ -305,7 +305,11 @@ class PublisherEventCallbacks:
         return _handlers(wanted, callback_group, bell)
 
 
-def _handlers(wanted: dict[Any, Any], group: CallbackGroup, bell: NodeBell | None) -> list[EventHandler]:
+def _handlers(
+    wanted: Mapping[Any, Callable[..., None] | None],
+    group: CallbackGroup,
+    bell: NodeBell | None,
+) -> list[EventHandler]:
     return [
         EventHandler(callback_group=group, callback=callback, event_type=kind, bell=bell)
         for kind, callback in wanted.items()

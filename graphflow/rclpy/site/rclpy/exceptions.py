@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rclpy._rclpy_pybind11 import InvalidHandle
 
@@ -123,7 +123,7 @@ class InvalidParameterException(ParameterException):
 class InvalidParameterTypeException(ParameterException):
     """A value's type differs from its parameter's."""
 
-    def __init__(self, parameter: Parameter[Any], expected_type: object, *args: object) -> None:
+    def __init__(self, parameter: Parameter, expected_type: object, *args: object) -> None:
         name = getattr(expected_type, "name", expected_type)
         super().__init__(
             f"Trying to set parameter '{parameter.name}' to '{parameter.value}' of type '{parameter.type_.name}', "

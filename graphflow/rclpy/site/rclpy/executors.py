@@ -13,7 +13,7 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, Self
 from weakref import WeakSet
 
-from rclpy.impl.mistakes.spin_arguments import check_node, is_node, tell
+from rclpy.impl.mistakes.spin_arguments import check_node, is_node, warn_no_node
 from rclpy.impl.reexports import passed_on
 from rclpy.impl.spinning import (
     POLL,
@@ -29,6 +29,8 @@ from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from rclpy.context import Context
+    from rclpy.impl.spinning import Entity
+    from rclpy.node import Node
 
 __all__ = [
     "ConditionReachedException",
@@ -93,7 +95,7 @@ class Executor(AbstractContextManager["Executor"]):
     def _is_shutdown(self, value: bool) -> None:
         self._graphflow.is_shutdown = value
 
-    def create_task(self, callback: Any, *args: Any, **kwargs: object) -> Task[Any]:
+    def create_task(self, callback: Any, *args: Any, **kwargs: object) -> Task:
         """Run a function, a coroutine function or a coroutine as a task; return the task."""
         run = Run(self, callback, args, kwargs)
         self._graphflow.start(run)
@@ -127,7 +129,7 @@ class Executor(AbstractContextManager["Executor"]):
         if spinning is not None:
             spinning.is_shutdown = True
 
-    def add_node(self, node: Any) -> bool:
+    def add_node(self, node: Node) -> bool:
         """Run a node's callbacks from now on; return whether the node was new. Raises TypeError if it is not a node."""
         check_node(node, "add_node")
         spinning = self._graphflow
@@ -139,10 +141,10 @@ class Executor(AbstractContextManager["Executor"]):
         spinning.wake.set()
         return True
 
-    def remove_node(self, node: Any) -> None:
+    def remove_node(self, node: Node) -> None:
         """Stop running a node's callbacks."""
         if not is_node(node):
-            tell("remove_node", node)
+            warn_no_node("remove_node", node)
         if self._graphflow.nodes.pop(node, self) is None:
             self._graphflow.wake.set()
 
@@ -150,7 +152,7 @@ class Executor(AbstractContextManager["Executor"]):
         """Wake the waiting thread to check for work. Callable from any thread."""
         self._graphflow.wake.set()
 
-    def get_nodes(self) -> list[Any]:
+    def get_nodes(self) -> list[Node]:
         """Return the nodes whose callbacks it runs."""
         return list(self._graphflow.nodes)
 
@@ -159,7 +161,7 @@ class Executor(AbstractContextManager["Executor"]):
         while self._context.ok() and not self._graphflow.is_shutdown:
             self.spin_once()
 
-    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+    def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done, at most `timeout_sec` seconds."""
         self._graphflow_wake_when_done(future)
         if timeout_sec is None or timeout_sec < 0:
@@ -174,7 +176,7 @@ class Executor(AbstractContextManager["Executor"]):
             if limit.timeout <= 0:
                 return
 
-    def _graphflow_wake_when_done(self, future: Any) -> None:
+    def _graphflow_wake_when_done(self, future: Future) -> None:
         """Wake the executor when a future, also one of asyncio's, is done; registered once per future."""
         if isinstance(future, Future):
             future._when_done(self.wake)
@@ -182,7 +184,7 @@ class Executor(AbstractContextManager["Executor"]):
             self._graphflow_watched.add(future)
             future.add_done_callback(lambda _: self.wake())
 
-    def _graphflow_may_go_on(self, future: Future[Any]) -> bool:
+    def _graphflow_may_go_on(self, future: Future) -> bool:
         is_over = future.done() or future.cancelled()
         return self._context.ok() and not is_over and not self._graphflow.is_shutdown
 
@@ -198,22 +200,20 @@ class Executor(AbstractContextManager["Executor"]):
         """
         raise NotImplementedError
 
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
+    def spin_once_until_future_complete(self, future: Future, timeout_sec: float | TimeoutObject | None = None) -> None:
         """Like `spin_once`, but stop waiting when a future is done."""
         raise NotImplementedError
 
-    def can_execute(self, entity: Any) -> bool:
+    def can_execute(self, entity: Entity) -> bool:
         """Whether an entity's group allows its callback to run now."""
         return bool(entity.callback_group.can_execute(entity))
 
     def wait_for_ready_callbacks(
         self,
         timeout_sec: float | TimeoutObject | None = None,
-        nodes: list[Any] | None = None,
+        nodes: list[Node] | None = None,
         condition: Callable[[], bool] = lambda: False,
-    ) -> tuple[Task[Any], Any, Any]:
+    ) -> tuple[Task, Entity | None, Node | None]:
         """Wait for work: return a task to call, its entity and its node.
 
         Raises:
@@ -227,7 +227,7 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _wait_for_ready_callbacks(
         self, *args: Any, **kwargs: Any
-    ) -> Generator[tuple[Task[Any], object, object], None, None]:
+    ) -> Generator[tuple[Task, Entity | None, Node | None], None, None]:
         while True:
             yield self.wait_for_ready_callbacks(*args, **kwargs)
 
@@ -259,9 +259,7 @@ class SingleThreadedExecutor(Executor):
     def spin_once(self, timeout_sec: float | None = None) -> None:
         self._graphflow_do_one(timeout_sec)
 
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
+    def spin_once_until_future_complete(self, future: Future, timeout_sec: float | TimeoutObject | None = None) -> None:
         self._graphflow_wake_when_done(future)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
 
@@ -319,7 +317,7 @@ class MultiThreadedExecutor(Executor):
             num_threads = len(affinity(0)) if affinity is not None else os.cpu_count() or 2
         if not isinstance(num_threads, int):
             fault = f"num_threads must be a number of threads, got {num_threads!r}"
-            raise TypeError(f"{fault}: nodes are added by executor.add_node(node)")
+            raise TypeError(f"{fault}: add nodes with executor.add_node(node)")
         if num_threads == 1:
             warnings.warn(
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
@@ -345,7 +343,7 @@ class MultiThreadedExecutor(Executor):
             return
         raise error
 
-    def _graphflow_work(self, handler: Task[Any]) -> None:
+    def _graphflow_work(self, handler: Task) -> None:
         try:
             handler()
             error = handler.exception()
@@ -358,9 +356,7 @@ class MultiThreadedExecutor(Executor):
     def spin_once(self, timeout_sec: float | None = None) -> None:
         self._graphflow_do_one(timeout_sec)
 
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
+    def spin_once_until_future_complete(self, future: Future, timeout_sec: float | TimeoutObject | None = None) -> None:
         self._graphflow_wake_when_done(future)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
 

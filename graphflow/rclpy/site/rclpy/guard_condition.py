@@ -19,7 +19,7 @@ class GuardCondition:
 
     def __init__(
         self,
-        callback: Callable[[], Any] | None,
+        callback: Callable[[], object] | None,
         callback_group: CallbackGroup | None,
         context: Context | None = None,
         *,

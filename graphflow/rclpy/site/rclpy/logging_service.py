@@ -2,32 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.reexports import passed_on
 from rclpy.logging import get_logger_level, set_logger_level
 
+if TYPE_CHECKING:
+    from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
+
+    from rclpy.node import Node
+
 
 class LoggingService:
     """The logger services of a node."""
 
-    def __init__(self, node: Any) -> None:
-        from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
+    def __init__(self, node: Node) -> None:
+        from rcl_interfaces import srv
 
         name = node.get_name()
-        self._get = node.create_service(GetLoggerLevels, f"{name}/get_logger_levels", self._asked)
-        self._set = node.create_service(SetLoggerLevels, f"{name}/set_logger_levels", self._asked_to_set)
+        self._get = node.create_service(srv.GetLoggerLevels, f"{name}/get_logger_levels", self._serve_levels)
+        self._set = node.create_service(srv.SetLoggerLevels, f"{name}/set_logger_levels", self._serve_set_levels)
 
     @staticmethod
-    def _asked(request: Any, response: Any) -> object:
+    def _serve_levels(request: GetLoggerLevels.Request, response: GetLoggerLevels.Response) -> object:
         from rcl_interfaces.msg import LoggerLevel
 
         response.levels = [LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names]
         return response
 
     @staticmethod
-    def _asked_to_set(request: Any, response: Any) -> object:
+    def _serve_set_levels(request: SetLoggerLevels.Request, response: SetLoggerLevels.Response) -> object:
         from rcl_interfaces.msg import SetLoggerLevelsResult
 
         for wanted in request.levels:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from functools import partial
-from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
@@ -53,6 +52,11 @@ from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 from rclpy.validate_topic_name import validate_topic_name
 
+if TYPE_CHECKING:
+    from graphflow.runtime.endpoints.endpoint import Endpoint
+    from graphflow.runtime.node_core import NodeCore
+
+
 __all__ = ["HIDDEN_NODE_PREFIX", "Node", "NodeNameNonExistentError"]
 
 HIDDEN_NODE_PREFIX = "_"
@@ -76,7 +80,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         use_global_arguments: bool = True,
         enable_rosout: bool = True,
         start_parameter_services: bool = True,
-        parameter_overrides: list[Parameter[Any]] | None = None,
+        parameter_overrides: list[Parameter] | None = None,
         allow_undeclared_parameters: bool = False,
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,
@@ -125,8 +129,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     @property
     def executor(self) -> Executor | None:
         """The executor that runs the node's callbacks."""
-        found: Executor | None = self._graphflow.executor()
-        return found
+        return self._graphflow.executor()
 
     @executor.setter
     def executor(self, new_executor: Executor | None) -> None:
@@ -256,7 +259,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         self,
         msg_type: Any,
         topic: str,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
@@ -296,7 +299,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         for handler in handlers:
             self.add_waitable(handler)
         mark()
-        self._graphflow_look_again()
+        self._graphflow_recheck()
         return made
 
     def _graphflow_topic(self, msg_type: Any, topic: str) -> str:
@@ -309,7 +312,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         validate_topic_name(srv_name, is_service=True)
         return self._graphflow_resolved(srv_name, "service")
 
-    def _graphflow_withdraws(self, endpoint: Any) -> Handle:
+    def _graphflow_withdraws(self, endpoint: Endpoint) -> Handle:
         life = self._graphflow.life
         return Handle(partial(_remove, life, endpoint))
 
@@ -332,7 +335,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             for wake in list(changed):
                 wake.set()
 
-        def make(core: Any) -> threaded.ThreadedClient:
+        def make(core: NodeCore) -> threaded.ThreadedClient:
             profile = to_graphflow(qos_profile)
             return threaded.ThreadedClient(core, type_, name, profile, inner.bell, mark, servers_changed)
 
@@ -360,7 +363,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         self,
         srv_type: object,
         srv_name: str,
-        callback: Callable[[Any, Any], Any],
+        callback: Callable[..., object],
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
@@ -387,7 +390,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def create_timer(
         self,
         timer_period_sec: float,
-        callback: Callable[..., Any] | None,
+        callback: Callable[..., object] | None,
         callback_group: CallbackGroup | None = None,
         clock: Clock | None = None,
         autostart: bool = True,
@@ -407,11 +410,11 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         )
         group.add_entity(made)
         inner.timers.append(made)
-        self._graphflow_look_again()
+        self._graphflow_recheck()
         return made
 
     def create_guard_condition(
-        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
+        self, callback: Callable[[], object], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """Call `callback` when the guard condition is triggered."""
         group = callback_group or self.default_callback_group
@@ -459,9 +462,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.destroy_node()
 
 
@@ -469,7 +470,8 @@ class _Mark:
     """Signals an entity's work to the node's bell, as soon as the entity exists."""
 
     def __init__(self, bell: NodeBell) -> None:
-        self._bell, self.entity = bell, None  # type: Any, Any
+        self._bell = bell
+        self.entity: object = None
 
     def __call__(self) -> None:
         if self.entity is not None:
@@ -487,7 +489,7 @@ def _close(life: ContextState, node: HeldNode) -> None:
         node_bridge.close_node(node)
 
 
-def _remove(life: ContextState, endpoint: Any) -> None:
+def _remove(life: ContextState, endpoint: Endpoint) -> None:
     if life.is_ok and endpoint.is_open:
         node_bridge.remove(endpoint)
 

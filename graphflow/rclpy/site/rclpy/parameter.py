@@ -6,7 +6,7 @@ import array
 from collections.abc import Iterable, Sequence
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import GraphflowError
 from graphflow.graph import params_file
@@ -18,10 +18,17 @@ if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMessage
     from rcl_interfaces.msg import ParameterValue
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    T = TypeVar("T", default=Any)  # as in ROS 2; at run time, Python 3.11 knows no defaults
+else:
+    from typing import TypeVar
+
+    T = TypeVar("T")
 
 PARAMETER_SEPARATOR_STRING = "."
-AllowableParameterValue = object
+AllowableParameterValue = Any
 
 _ARRAYS = {bool: "BOOL_ARRAY", int: "INTEGER_ARRAY", float: "DOUBLE_ARRAY", str: "STRING_ARRAY", bytes: "BYTE_ARRAY"}
 _CODES = {"b": "INTEGER_ARRAY", "q": "INTEGER_ARRAY", "i": "INTEGER_ARRAY", "l": "INTEGER_ARRAY", "d": "DOUBLE_ARRAY"}
@@ -105,7 +112,7 @@ class Parameter(Generic[T]):
         self._name, self._type_, self._value = name, type_, value
 
     @classmethod
-    def from_parameter_msg(cls, param_msg: ParameterMessage) -> Parameter[Any]:
+    def from_parameter_msg(cls, param_msg: ParameterMessage) -> Parameter:
         """Convert a message to a parameter."""
         type_ = Parameter.Type(value=param_msg.value.type)
         return cls(param_msg.name, type_, parameter_value_to_python(param_msg.value))

@@ -12,8 +12,12 @@ from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_serv
 from rclpy.task import Future
 
 if TYPE_CHECKING:
+    from rcl_interfaces.msg import Parameter as ParameterMessage
+
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.client import Client
     from rclpy.event_handler import SubscriptionEventCallbacks
+    from rclpy.node import Node
     from rclpy.qos_overriding_options import QoSOverridingOptions
     from rclpy.subscription import Subscription
 
@@ -29,7 +33,7 @@ class AsyncParameterClient:
 
     def __init__(
         self,
-        node: Any,
+        node: Node,
         remote_node_name: str,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
@@ -38,7 +42,7 @@ class AsyncParameterClient:
 
         self.remote_node_name, self.node = remote_node_name, node
 
-        def client(type_: Any, name: str) -> Any:
+        def client(type_: type, name: str) -> Client:
             options: dict[str, Any] = {"qos_profile": qos_profile, "callback_group": callback_group}
             return node.create_client(type_, f"{remote_node_name}/{name}", **options)
 
@@ -57,6 +61,7 @@ class AsyncParameterClient:
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
         """Block until the services are available, at most `timeout_sec` seconds; return whether they are."""
         life, wake = self.node.context.life, Wake()
+        assert life is not None  # a node has joined it
         life.on_end(wake)
         for client in self._clients:
             client._changed[wake] = None
@@ -70,58 +75,58 @@ class AsyncParameterClient:
         return self.services_are_ready()
 
     @staticmethod
-    def _call(client: Any, request: Any, callback: Callback) -> Future[Any]:
-        future: Future[Any] = client.call_async(request)
+    def _call(client: Client, request: object, callback: Callback) -> Future:
+        future = client.call_async(request)
         if callback is not None:
             future.add_done_callback(callback)
         return future
 
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Callback = None
-    ) -> Future[Any]:
+    ) -> Future:
         """List the names below prefixes, at most `depth` levels."""
         request = self._list.srv_type.Request(prefixes=prefixes or [], depth=depth or 0)
         return self._call(self._list, request, callback)
 
-    def get_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
+    def get_parameters(self, names: list[str], callback: Callback = None) -> Future:
         return self._call(self._get, self._get.srv_type.Request(names=names), callback)
 
-    def set_parameters(self, parameters: Sequence[Any], callback: Callback = None) -> Future[Any]:
+    def set_parameters(self, parameters: Sequence[Parameter | ParameterMessage], callback: Callback = None) -> Future:
         """Set parameters, given as `Parameter`s or as messages, one after the other."""
         return self._call(self._set, self._set.srv_type.Request(parameters=_messages(parameters)), callback)
 
-    def describe_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
+    def describe_parameters(self, names: list[str], callback: Callback = None) -> Future:
         return self._call(self._describe, self._describe.srv_type.Request(names=names), callback)
 
-    def get_parameter_types(self, names: list[str], callback: Callback = None) -> Future[Any]:
+    def get_parameter_types(self, names: list[str], callback: Callback = None) -> Future:
         return self._call(self._types, self._types.srv_type.Request(names=names), callback)
 
-    def set_parameters_atomically(self, parameters: Sequence[Any], callback: Callback = None) -> Future[Any]:
+    def set_parameters_atomically(
+        self, parameters: Sequence[Parameter | ParameterMessage], callback: Callback = None
+    ) -> Future:
         """Set all parameters or none."""
         return self._call(self._set_all, self._set_all.srv_type.Request(parameters=_messages(parameters)), callback)
 
-    def delete_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
+    def delete_parameters(self, names: list[str], callback: Callback = None) -> Future:
         """Delete parameters; only those with dynamic typing can be deleted."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
-    def load_parameter_file(
-        self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None
-    ) -> Future[Any]:
+    def load_parameter_file(self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None) -> Future:
         """Set a file's parameters for the node. Errors as for `parameter_dict_from_yaml_file`."""
         return self.set_parameters(self._of_file(parameter_file, use_wildcard), callback)
 
     def load_parameter_file_atomically(
         self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None
-    ) -> Future[Any]:
+    ) -> Future:
         """Set all of a file's parameters for the node, or none."""
         return self.set_parameters_atomically(self._of_file(parameter_file, use_wildcard), callback)
 
-    def _of_file(self, file: str, use_wildcard: bool) -> list[object]:
+    def _of_file(self, file: str, use_wildcard: bool) -> list[ParameterMessage]:
         return list(parameter_dict_from_yaml_file(file, use_wildcard).values())
 
     def on_parameter_event(
         self,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         qos_profile: QoSProfile = qos_profile_parameter_events,
         *,
         callback_group: CallbackGroup | None = None,
@@ -130,7 +135,7 @@ class AsyncParameterClient:
         raw: bool = False,
     ) -> Subscription:
         """Call `callback` with each change of parameters in the graph."""
-        made: Subscription = on_parameter_event(
+        return on_parameter_event(
             self.node,
             callback,
             qos_profile,
@@ -139,17 +144,18 @@ class AsyncParameterClient:
             qos_overriding_options=qos_overriding_options,
             raw=raw,
         )
-        return made
 
 
-def on_parameter_event(node: Any, callback: Callable[..., Any], qos_profile: QoSProfile, **options: Any) -> Any:
+def on_parameter_event(
+    node: Node, callback: Callable[..., object], qos_profile: QoSProfile, **options: Any
+) -> Subscription:
     """Subscribe to /parameter_events."""
     from rcl_interfaces.msg import ParameterEvent
 
     return node.create_subscription(ParameterEvent, "/parameter_events", callback, qos_profile, **options)
 
 
-def _messages(parameters: Sequence[Any]) -> list[object]:
+def _messages(parameters: Sequence[Parameter | ParameterMessage]) -> list[ParameterMessage]:
     return [p.to_parameter_msg() if isinstance(p, Parameter) else p for p in parameters]
 
 

@@ -11,17 +11,19 @@ from rclpy.parameter_client import on_parameter_event
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 
 if TYPE_CHECKING:
+    from rcl_interfaces.msg import Parameter as ParameterMessage
     from rcl_interfaces.msg import ParameterEvent
 
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import SubscriptionEventCallbacks
+    from rclpy.node import Node
     from rclpy.qos_overriding_options import QoSOverridingOptions
 
 
 class ParameterCallbackHandle:
     """A callback for one parameter of one node."""
 
-    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[Any], None]) -> None:
+    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[ParameterMessage], None]) -> None:
         self.parameter_name, self.node_name, self.callback = parameter_name, node_name, callback
 
 
@@ -55,7 +57,7 @@ class ParameterEventHandler:
 
     def __init__(
         self,
-        node: Any,
+        node: Node,
         qos_profile: QoSProfile = qos_profile_parameter_events,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
@@ -79,7 +81,7 @@ class ParameterEventHandler:
         self.node.destroy_subscription(self.parameter_event_subscription)
 
     @staticmethod
-    def get_parameter_from_event(event: ParameterEvent, parameter_name: str, node_name: str) -> Any:
+    def get_parameter_from_event(event: ParameterEvent, parameter_name: str, node_name: str) -> ParameterMessage | None:
         """Return an event's message of a new or changed parameter; None if it has none."""
         if event.node != node_name:
             return None
@@ -87,12 +89,12 @@ class ParameterEventHandler:
         return next(found, None)
 
     @staticmethod
-    def get_parameters_from_event(event: ParameterEvent) -> list[Any]:
+    def get_parameters_from_event(event: ParameterEvent) -> list[ParameterMessage]:
         """Return an event's messages of all new or changed parameters."""
         return [*event.new_parameters, *event.changed_parameters]
 
     def add_parameter_callback(
-        self, parameter_name: str, node_name: str, callback: Callable[[Any], None]
+        self, parameter_name: str, node_name: str, callback: Callable[[ParameterMessage], None]
     ) -> ParameterCallbackHandle:
         """Call `callback(message)` when a parameter of a node is set."""
         full = self._resolve_path(node_name)

@@ -8,6 +8,7 @@ from graphflow.rclpy.messages import classes
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.duration import Duration
 from rclpy.handle import Handle
+from rclpy.impl.mistakes.origins import Created
 from rclpy.impl.reexports import passed_on
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 _FOREVER = Duration(seconds=-1)
 
 
-class Publisher:
+class Publisher(Created):
     """A publisher. Create it with `Node.create_publisher`."""
 
     def __init__(

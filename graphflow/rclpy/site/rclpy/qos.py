@@ -127,7 +127,7 @@ QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
 
 
-def _wanted(name: str, kind: type, value: object) -> str:
+def _mismatch(name: str, kind: type, value: object) -> str:
     """Show what to write instead of a value of the wrong type."""
     way = f"{kind.__name__}(seconds={value})" if kind is Duration else "10" if kind is int else ""
     if issubclass(kind, Enum):
@@ -184,7 +184,7 @@ class QoSProfile:
 
     @history.setter
     def history(self, value: HistoryPolicy) -> None:
-        assert isinstance(value, (HistoryPolicy, int)), _wanted("history", HistoryPolicy, value)
+        assert isinstance(value, (HistoryPolicy, int)), _mismatch("history", HistoryPolicy, value)
         self._history = HistoryPolicy(value)
 
     @property
@@ -193,7 +193,7 @@ class QoSProfile:
 
     @reliability.setter
     def reliability(self, value: ReliabilityPolicy) -> None:
-        assert isinstance(value, (ReliabilityPolicy, int)), _wanted("reliability", ReliabilityPolicy, value)
+        assert isinstance(value, (ReliabilityPolicy, int)), _mismatch("reliability", ReliabilityPolicy, value)
         self._reliability = ReliabilityPolicy(value)
 
     @property
@@ -202,7 +202,7 @@ class QoSProfile:
 
     @durability.setter
     def durability(self, value: DurabilityPolicy) -> None:
-        assert isinstance(value, (DurabilityPolicy, int)), _wanted("durability", DurabilityPolicy, value)
+        assert isinstance(value, (DurabilityPolicy, int)), _mismatch("durability", DurabilityPolicy, value)
         self._durability = DurabilityPolicy(value)
 
     @property
@@ -211,7 +211,7 @@ class QoSProfile:
 
     @depth.setter
     def depth(self, value: int) -> None:
-        assert isinstance(value, int), _wanted("depth", int, value)
+        assert isinstance(value, int), _mismatch("depth", int, value)
         if self.history == HistoryPolicy.KEEP_LAST and value == 0:
             warnings.warn(
                 "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
@@ -228,7 +228,7 @@ class QoSProfile:
 
     @lifespan.setter
     def lifespan(self, value: Duration) -> None:
-        assert isinstance(value, Duration), _wanted("lifespan", Duration, value)
+        assert isinstance(value, Duration), _mismatch("lifespan", Duration, value)
         self._lifespan = value
 
     @property
@@ -237,7 +237,7 @@ class QoSProfile:
 
     @deadline.setter
     def deadline(self, value: Duration) -> None:
-        assert isinstance(value, Duration), _wanted("deadline", Duration, value)
+        assert isinstance(value, Duration), _mismatch("deadline", Duration, value)
         self._deadline = value
 
     @property
@@ -246,7 +246,7 @@ class QoSProfile:
 
     @liveliness.setter
     def liveliness(self, value: LivelinessPolicy) -> None:
-        assert isinstance(value, (LivelinessPolicy, int)), _wanted("liveliness", LivelinessPolicy, value)
+        assert isinstance(value, (LivelinessPolicy, int)), _mismatch("liveliness", LivelinessPolicy, value)
         self._liveliness = LivelinessPolicy(value)
 
     @property
@@ -255,7 +255,7 @@ class QoSProfile:
 
     @liveliness_lease_duration.setter
     def liveliness_lease_duration(self, value: Duration) -> None:
-        assert isinstance(value, Duration), _wanted("liveliness_lease_duration", Duration, value)
+        assert isinstance(value, Duration), _mismatch("liveliness_lease_duration", Duration, value)
         self._liveliness_lease_duration = value
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import SetParametersResult as QosCallbackResult
 
@@ -12,6 +12,12 @@ from rclpy.exceptions import ParameterAlreadyDeclaredException
 from rclpy.impl.reexports import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSPolicyEnum, QoSPolicyKind, QoSProfile
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import SetParametersResult
+
+    from rclpy.node import Node
+
 
 QosCallbackType = Callable[[QoSProfile], object]
 
@@ -42,7 +48,7 @@ class QoSOverridingOptions:
         return self._policy_kinds
 
     @property
-    def callback(self) -> Callable[[QoSProfile], Any] | None:
+    def callback(self) -> Callable[[QoSProfile], SetParametersResult] | None:
         return self._callback
 
     @property
@@ -51,7 +57,7 @@ class QoSOverridingOptions:
 
     @classmethod
     def with_default_policies(
-        cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
+        cls, *, callback: Callable[[QoSProfile], SetParametersResult] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
         """Return the options for history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
@@ -66,7 +72,7 @@ _ALLOWED = {"publisher": _FOR_SUBSCRIPTIONS | {QoSPolicyKind.LIFESPAN}, "subscri
 
 
 def _declare_qos_parameters(
-    entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
+    entity_type: type, node: Node, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
 ) -> None:
     """Declare the parameters that override policies of `qos`, and change it accordingly.
 
@@ -107,7 +113,7 @@ def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> object:
     return value.nanoseconds if isinstance(value, Duration) else value
 
 
-def _override(qos: QoSProfile, policy: str, parameter: Parameter[Any]) -> None:
+def _override(qos: QoSProfile, policy: str, parameter: Parameter) -> None:
     former = getattr(qos, policy)
     value = parameter.value
     if isinstance(former, QoSPolicyEnum):

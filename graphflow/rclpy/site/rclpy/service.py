@@ -59,7 +59,7 @@ class Service(ServiceEnd):
         self._endpoint, self._life, self._handle = service_impl, life, handle
         handle.__dict__["service_take_request"] = self._take_request
 
-    def send_response(self, response: Any, header: RequestHeader) -> None:
+    def send_response(self, response: object, header: RequestHeader) -> None:
         """Answer a request. Raises TypeError if the response is not of the service's type."""
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
@@ -96,7 +96,7 @@ class Service(ServiceEnd):
         if request is not None:
             self._answer(await self.callback(request, self.srv_type.Response()), asked)
 
-    def _answer(self, response: Any, asked: Asked) -> None:
+    def _answer(self, response: object, asked: Asked) -> None:
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(must_return(self.callback, "its response", response))
         self.send_response(response, RequestHeader(asked))

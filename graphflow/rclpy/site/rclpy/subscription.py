@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 from graphflow.errors import DecodeError
 from graphflow.rclpy.messages import classes
 from rclpy.handle import Handle
+from rclpy.impl.mistakes.origins import Created
 from rclpy.impl.reexports import passed_on
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ class MessageInfo(TypedDict):
     reception_sequence_number: int | None
 
 
-class Subscription:
+class Subscription(Created):
     """A subscription. Create it with `Node.create_subscription`."""
 
     turn = 1
@@ -97,7 +98,7 @@ class Subscription:
         taken = self._endpoint.take()
         return None if taken is None else partial(self._run, taken)
 
-    def _arguments(self, taken: Taken) -> tuple[Any, ...]:
+    def _arguments(self, taken: Taken) -> tuple[object, ...]:
         """Return the callback's arguments; empty if the arrival is not a message of the type."""
         if self.raw:
             message: Any = taken.payload

@@ -8,12 +8,19 @@ import threading
 import warnings
 import weakref
 from collections.abc import Callable, Generator
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol
 
 from rclpy.impl.callers import caller
 from rclpy.impl.mistakes import early_results
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    T = TypeVar("T", default=Any)  # as in ROS 2; at run time, Python 3.11 knows no defaults
+else:
+    from typing import TypeVar
+
+    T = TypeVar("T")
 
 
 class Runs(Protocol):
@@ -25,7 +32,7 @@ class Runs(Protocol):
 class _Stepping(threading.local):
     """The task that the current thread is stepping."""
 
-    task: Task[Any] | None = None
+    task: Task | None = None
 
 
 _stepping = _Stepping()
@@ -204,7 +211,7 @@ class Task(Future[T]):
         else:
             self._handler = handler
         self._step_lock = threading.Lock()
-        self._awaits: Future[Any] | None = None
+        self._awaits: Future | None = None
         """The future that the coroutine awaits, if known."""
 
     def __call__(self) -> None:

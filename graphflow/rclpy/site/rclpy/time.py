@@ -70,7 +70,7 @@ class Time:
     def __sub__(self, other: Time | Duration) -> Time | Duration:
         if isinstance(other, Time):
             self._refuse_other_clock(other, "Can't subtract times with different clock types")
-            return Duration(nanoseconds=self._nanoseconds - other._nanoseconds)
+            return Duration(nanoseconds=self._nanoseconds - other.nanoseconds)
         if not isinstance(other, Duration):
             return NotImplemented
         try:
@@ -86,7 +86,7 @@ class Time:
         if not isinstance(other, Time):
             return NotImplemented
         self._refuse_other_clock(other)
-        return self._nanoseconds == other._nanoseconds
+        return self._nanoseconds == other.nanoseconds
 
     def __hash__(self) -> int:
         return hash((self._nanoseconds, self._clock_type))
@@ -95,13 +95,13 @@ class Time:
         if not isinstance(other, Time):
             return NotImplemented
         self._refuse_other_clock(other)
-        return self._nanoseconds < other._nanoseconds
+        return self._nanoseconds < other.nanoseconds
 
     def __le__(self, other: Time) -> bool:
         if not isinstance(other, Time):
             return NotImplemented
         self._refuse_other_clock(other)
-        return self._nanoseconds <= other._nanoseconds
+        return self._nanoseconds <= other.nanoseconds
 
     def __gt__(self, other: Time) -> bool:
         return other < self if isinstance(other, Time) else NotImplemented

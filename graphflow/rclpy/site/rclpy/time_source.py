@@ -25,6 +25,10 @@ from rclpy.time import Time
 
 if TYPE_CHECKING:
     import rosgraph_msgs.msg
+    from rcl_interfaces.msg import SetParametersResult
+
+    from graphflow.runtime.node_core import NodeCore
+    from rclpy.node import Node
 
 CLOCK_TOPIC = "/clock"
 USE_SIM_TIME_NAME = "use_sim_time"
@@ -34,9 +38,9 @@ _QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 class TimeSource:
     """Sets the attached clocks to simulated time."""
 
-    def __init__(self, *, node: Any = None) -> None:
+    def __init__(self, *, node: Node | None = None) -> None:
         self._clock_sub: _Hearing | None = None
-        self._node: Any = None
+        self._node: weakref.ref[Node] | None = None
         self._clocks: list[ROSClock] = []
         self._is_active = False
         self._last = Time(clock_type=ClockType.ROS_TIME)
@@ -70,7 +74,7 @@ class TimeSource:
             self._clock_sub.close()
             self._clock_sub = None
 
-    def attach_node(self, node: Any) -> None:
+    def attach_node(self, node: Node) -> None:
         """Follow a node's parameter `use_sim_time`, declaring it if necessary. Raises TypeError if it is not a node."""
         if not hasattr(node, "declare_parameter"):
             raise TypeError("Node must be of type rclpy.node.Node")
@@ -113,7 +117,7 @@ class TimeSource:
         for clock in self._clocks:
             clock.set_ros_time_override(self._last)
 
-    def _check(self, parameters: list[Parameter[Any]]) -> Any:
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
         from rcl_interfaces.msg import SetParametersResult
 
         for parameter in parameters:
@@ -122,12 +126,12 @@ class TimeSource:
                 return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
-    def _set(self, parameters: list[Parameter[Any]]) -> None:
+    def _set(self, parameters: list[Parameter]) -> None:
         for parameter in parameters:
             if parameter.name == USE_SIM_TIME_NAME:
                 self.ros_time_is_active = parameter.value
 
-    def _get_node(self) -> Any:
+    def _get_node(self) -> Node | None:
         return None if self._node is None else self._node()
 
 
@@ -146,14 +150,14 @@ class _Waking(NodeBell):
 class _Hearing:
     """A subscription of /clock, and the thread that takes its messages."""
 
-    def __init__(self, node: Any, source: TimeSource) -> None:
+    def __init__(self, node: Node, source: TimeSource) -> None:
         import rosgraph_msgs.msg
 
         self._type, self._source = rosgraph_msgs.msg.Clock, source
         self._bell, self._is_closed = _Waking(), False
         name = node.resolve_topic_name(CLOCK_TOPIC)
 
-        def make(core: Any) -> ThreadedSubscription:
+        def make(core: NodeCore) -> ThreadedSubscription:
             made = ThreadedSubscription(core, self._type, name, to_graphflow(_QOS), self._bell, _nothing)
             made.is_inner = True
             return made

@@ -14,24 +14,26 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.handle import Handle
+from rclpy.impl.mistakes.origins import Created
 from rclpy.impl.reexports import passed_on
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from graphflow.rclpy.node_bridge import NodeBell
+    from rclpy.clock_type import ClockType
     from rclpy.context import Context
 
 
 class TimerInfo:
     """The times at which a call was due, and at which it came."""
 
-    def __init__(self, *, expected_call_time: int, actual_call_time: int, clock_type: Any) -> None:
+    def __init__(self, *, expected_call_time: int, actual_call_time: int, clock_type: ClockType) -> None:
         self.expected_call_time = Time(nanoseconds=max(0, expected_call_time), clock_type=clock_type)
         self.actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
 
 
-class Timer:
+class Timer(Created):
     """Has an executor call `callback` periodically by a clock. Missed periods are skipped; the phase is kept.
 
     Args:
@@ -44,7 +46,7 @@ class Timer:
 
     def __init__(
         self,
-        callback: Callable[..., Any] | None,
+        callback: Callable[..., object] | None,
         callback_group: CallbackGroup | None,
         timer_period_ns: int,
         clock: Clock,
@@ -62,18 +64,18 @@ class Timer:
         self._last_ns = clock.now_ns()
         self._next_ns = self._last_ns + self._period_ns
         self._handle = Handle(_nothing)
-        self._callback: Callable[..., Any] | None = None
+        self._callback: Callable[..., object] | None = None
         self._takes_info = False
         self.callback = callback
         self.callback_group = callback_group
         clock.watch(self)
 
     @property
-    def callback(self) -> Callable[..., Any] | None:
+    def callback(self) -> Callable[..., object] | None:
         return self._callback
 
     @callback.setter
-    def callback(self, value: Callable[..., Any] | None) -> None:
+    def callback(self, value: Callable[..., object] | None) -> None:
         self._callback = value
         self._takes_info = value is not None and _takes_one(value)
 
@@ -93,7 +95,7 @@ class Timer:
     def timer_period_ns(self, value: int) -> None:
         with self._lock:
             self._period_ns = int(value)
-        self._look_again()
+        self._recheck()
 
     def is_ready(self) -> bool:
         """Whether a call is due."""
@@ -115,7 +117,7 @@ class Timer:
             self._is_canceled = False
             self._last_ns = self._clock.now_ns()
             self._next_ns = self._last_ns + self._period_ns
-        self._look_again()
+        self._recheck()
 
     def time_since_last_call(self) -> int:
         """Return the nanoseconds since the last call."""
@@ -133,9 +135,9 @@ class Timer:
         with self._lock:
             if self._next_ns - now_ns > self._period_ns:  # it went back
                 self._last_ns, self._next_ns = now_ns, now_ns + self._period_ns
-        self._look_again()
+        self._recheck()
 
-    def _look_again(self) -> None:
+    def _recheck(self) -> None:
         if self._bell is not None:
             self._bell.wake()
 
@@ -170,7 +172,7 @@ class Timer:
         self._handle.destroy_when_not_in_use()
 
 
-def _takes_one(callback: Callable[..., Any]) -> bool:
+def _takes_one(callback: Callable[..., object]) -> bool:
     """Whether a callback takes a `TimerInfo`."""
     try:
         inspect.signature(callback).bind()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy import node_bridge
 from graphflow.rclpy.node_bridge import NodeBell
@@ -12,6 +12,9 @@ from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, to_graphflow, validated
 from rclpy.serialization import deserialize_message
 from rclpy.type_support import check_is_valid_msg_type
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 
 class _Waking(NodeBell):
@@ -27,7 +30,7 @@ class _Waking(NodeBell):
 
 
 def wait_for_message(
-    msg_type: Any, node: Any, topic: str, *, qos_profile: QoSProfile | int = 1, time_to_wait: float = -1
+    msg_type: Any, node: Node, topic: str, *, qos_profile: QoSProfile | int = 1, time_to_wait: float = -1
 ) -> tuple[bool, Any]:
     """Block until a message arrives; no thread has to spin.
 
@@ -39,6 +42,7 @@ def wait_for_message(
     """
     check_is_valid_msg_type(msg_type)
     life, wake, name = node.context.life, Wake(), node.resolve_topic_name(topic)
+    assert life is not None  # a node has joined it
     bell, qos = _Waking(wake), to_graphflow(validated(qos_profile))
     endpoint = node_bridge.add(
         node._graphflow.node, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing)

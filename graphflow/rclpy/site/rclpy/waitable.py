@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.callback_groups import CallbackGroup
+
+if TYPE_CHECKING:
+    from rclpy.task import Future
 
 
 class NumberOfEntities:
@@ -51,7 +54,7 @@ class Waitable:
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group
         self.callback_group.add_entity(self)
-        self._futures: list[Any] = []
+        self._futures: list[Future] = []
 
     def __enter__(self) -> None:
         """Do nothing."""
@@ -59,11 +62,11 @@ class Waitable:
     def __exit__(self, *_: object) -> None:
         """Do nothing."""
 
-    def add_future(self, future: Any) -> None:
+    def add_future(self, future: Future) -> None:
         """Keep a future until it is done."""
         self._futures.append(future)
 
-    def remove_future(self, future: Any) -> None:
+    def remove_future(self, future: Future) -> None:
         """Stop keeping a future."""
         self._futures.remove(future)
 
@@ -92,7 +95,7 @@ class Waitable:
     def has_work(self) -> bool:
         return bool(self.is_ready(None))
 
-    def take_work(self) -> Callable[[], Any] | None:
+    def take_work(self) -> Callable[[], object] | None:
         data = self.take_data()
 
         async def execute() -> None:

@@ -64,11 +64,11 @@ def _unit(q: poses.Quaternion) -> poses.Quaternion:
     return (q[0] / length, q[1] / length, q[2] / length, q[3] / length) if length else poses.IDENTITY.rotation
 
 
-def _xyz(vector: Any) -> poses.Vector:
+def _xyz(vector: Vector3) -> poses.Vector:
     return vector.x, vector.y, vector.z
 
 
-def _set(vector: Any, values: poses.Vector) -> None:
+def _set(vector: Vector3, values: poses.Vector) -> None:
     vector.x, vector.y, vector.z = values
 
 

@@ -6,7 +6,7 @@ import math
 import threading
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import TransformStamped
 
@@ -18,13 +18,17 @@ from tf2_py.exceptions import InvalidArgumentException, TransformException
 from tf2_py.frames import Frames
 from tf2_py.poses import Pose
 
+if TYPE_CHECKING:
+    from geometry_msgs.msg import Transform
+
+
 TOLERANCE = 0.01
 """The greatest deviation of a quaternion's squared length from 1."""
 NAME_BOUND = 1000
 """The length of a frame's name in characters, at most."""
 
 
-def pose_of(transform: Any) -> Pose:
+def pose_of(transform: Transform) -> Pose:
     """Convert a `geometry_msgs/Transform` to a pose."""
     t, r = transform.translation, transform.rotation
     return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
@@ -78,7 +82,7 @@ class BufferCore:
         pose = pose_of(transform.transform)
         fault = _fault(frame, parent, pose)
         if fault is not None:
-            _logger(fault).error(f"transform from {authority!r} is left out: {fault}", throttle_duration_sec=1.0)
+            _logger(fault).error(f"transform from {authority!r} is dropped: {fault}", throttle_duration_sec=1.0)
             return
         with self._graphflow_lock:
             stamp = nanoseconds(transform.header.stamp)
@@ -86,9 +90,7 @@ class BufferCore:
             if is_kept:
                 self._graphflow_authorities[frame] = authority
         if not is_kept:
-            text = (
-                f"transform of {frame!r} from {authority!r} is left out: it is older than what is kept, or one too many"
-            )
+            text = f"transform of {frame!r} from {authority!r} is dropped: it is too old, or the buffer is full"
             _logger(frame).warning(text, throttle_duration_sec=1.0)
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: object) -> TransformStamped:

@@ -121,7 +121,7 @@ class Frames:
         known = f"the frames known so far are {', '.join(names[:SHOWN])}" if names else "no frame is known so far"
         error.add_note(
             f"note: {known}{' ...' if len(names) > SHOWN else ''}{did_you_mean(frame, names)}; "
-            "frames come after a while: catch tf2_ros.TransformException, and try again"
+            "frames take a while to arrive: catch tf2_ros.TransformException, and try again"
         )
         return error
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time as clocks
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.srv import FrameGraph
@@ -17,6 +17,9 @@ from rclpy.impl.watches.unfilled import Unfilled
 from rclpy.task import Future
 from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
 
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
 
 class Buffer(BufferCore, BufferInterface):
     """A buffer of transforms between frames; look them up here.
@@ -26,31 +29,31 @@ class Buffer(BufferCore, BufferInterface):
         node: The node that serves `tf2_frames`, and whose shutdown ends all waits.
     """
 
-    def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
+    def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
         BufferCore.__init__(self, cache_time)
         BufferInterface.__init__(self)
         self._graphflow_changed = threading.Condition()
-        self._graphflow_waiting: dict[Future[Any], Callable[[], tuple[bool, str]]] = {}
+        self._graphflow_waiting: dict[Future, Callable[[], tuple[bool, str]]] = {}
         self._graphflow_node = node
         self._graphflow_unfilled = Unfilled()
         if node is not None:
-            self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_answer_frames)
+            self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_serve_frames)
 
-    def _graphflow_answer_frames(self, request: object, response: Any) -> object:
+    def _graphflow_serve_frames(self, request: object, response: FrameGraph.Response) -> object:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
     def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
         self._graphflow_unfilled.is_filled = True
         super().set_transform(transform, authority)
-        self._graphflow_tell()
+        self._graphflow_wake()
 
     def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
         self._graphflow_unfilled.is_filled = True
         super().set_transform_static(transform, authority)
-        self._graphflow_tell()
+        self._graphflow_wake()
 
-    def _graphflow_tell(self) -> None:
+    def _graphflow_wake(self) -> None:
         """Wake the waiting threads to check again."""
         with self._graphflow_changed:
             self._graphflow_changed.notify_all()
@@ -131,7 +134,7 @@ class Buffer(BufferCore, BufferInterface):
                     break
                 self._graphflow_changed.wait(min(left, 0.1))  # the end of a context tells nobody
         if not answer[0]:
-            self._graphflow_unfilled.asked_in_vain(self)
+            self._graphflow_unfilled.lookup_failed(self)
         return answer
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: object) -> Future[bool]:

@@ -67,7 +67,7 @@ class BufferClient(BufferInterface):
             TransformException: There is none; TimeoutException if the server is unavailable.
         """
         goal = LookupTransform.Goal(target_frame=target_frame, source_frame=source_frame, source_time=_message(time))
-        return self._graphflow_ask(goal, timeout)
+        return self._graphflow_request(goal, timeout)
 
     def lookup_transform_full(
         self,
@@ -87,7 +87,7 @@ class BufferClient(BufferInterface):
             fixed_frame=fixed_frame,
             advanced=True,
         )
-        return self._graphflow_ask(goal, timeout)
+        return self._graphflow_request(goal, timeout)
 
     def can_transform(self, target_frame: str, source_frame: str, time: object, timeout: Duration = AT_ONCE) -> bool:
         """Whether `lookup_transform` would return a transform."""
@@ -110,7 +110,7 @@ class BufferClient(BufferInterface):
         """Destroy the client."""
         self.action_client.destroy()
 
-    def _graphflow_ask(self, goal: Any, timeout: Duration) -> TransformStamped:
+    def _graphflow_request(self, goal: LookupTransform.Goal, timeout: Duration) -> TransformStamped:
         goal.timeout = timeout.to_msg()
         if not self.action_client.server_is_ready():
             raise TimeoutException("The BufferServer is not ready.")
@@ -134,7 +134,7 @@ def _succeeds(look_up: Callable[[], TransformStamped]) -> bool:
     return True
 
 
-def _waited_for(future: Future[Any], limit: float) -> Any:
+def _waited_for(future: Future, limit: float) -> Any:
     """Return a future's result within some seconds."""
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())

@@ -35,7 +35,7 @@ class TransformRegistration:
 
     _known: ClassVar[dict[type, Callable[..., object]]] = {}
 
-    def add(self, key: type, callback: Callable[[Any, Any], Any]) -> None:
+    def add(self, key: type, callback: Callable[..., object]) -> None:
         self._known[key] = callback
 
     def get(self, key: type) -> Callable[..., Any]:
@@ -55,13 +55,13 @@ class ConvertRegistration:
     _from: ClassVar[dict[type, Callable[..., Any]]] = {}
     _between: ClassVar[dict[tuple[type, type], Callable[..., Any]]] = {}
 
-    def add_to_msg(self, key: type, callback: Callable[[Any], Any]) -> None:
+    def add_to_msg(self, key: type, callback: Callable[..., object]) -> None:
         self._to[key] = callback
 
-    def add_from_msg(self, key: type, callback: Callable[[Any], Any]) -> None:
+    def add_from_msg(self, key: type, callback: Callable[..., object]) -> None:
         self._from[key] = callback
 
-    def add_convert(self, key: tuple[type, type], callback: Callable[[Any], Any]) -> None:
+    def add_convert(self, key: tuple[type, type], callback: Callable[..., object]) -> None:
         self._between[key] = callback
 
     def get_to_msg(self, key: type) -> Callable[[Any], Any]:

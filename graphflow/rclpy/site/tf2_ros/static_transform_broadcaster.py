@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING
 
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
@@ -12,11 +12,14 @@ from rclpy.impl.mistakes.unnamed_frames import check
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_ros.transform_broadcaster import as_list
 
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
 
 class StaticTransformBroadcaster:
     """Publishes transforms on `/tf_static`, also for late subscribers."""
 
-    def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
+    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         if qos is None:
             kept = DurabilityPolicy.TRANSIENT_LOCAL
             qos = QoSProfile(depth=1, durability=kept, history=HistoryPolicy.KEEP_LAST)

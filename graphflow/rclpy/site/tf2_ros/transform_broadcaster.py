@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING
 
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
@@ -11,11 +11,14 @@ from tf2_msgs.msg import TFMessage
 from rclpy.impl.mistakes.unnamed_frames import check
 from rclpy.qos import QoSProfile
 
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
 
 class TransformBroadcaster:
     """Publishes transforms on `/tf`."""
 
-    def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
+    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", 100 if qos is None else qos)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
+from typing import TYPE_CHECKING
 
 from tf2_msgs.msg import TFMessage
 from tf2_py import BufferCore
@@ -12,6 +12,11 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_ros.buffer import Buffer
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.subscription import Subscription
+
 
 DEFAULT_TF_TOPIC = "/tf"
 DEFAULT_STATIC_TF_TOPIC = "/tf_static"
@@ -29,7 +34,7 @@ class TransformListener:
     def __init__(
         self,
         buffer: BufferCore,
-        node: Any,
+        node: Node,
         *,
         spin_thread: bool = False,
         qos: QoSProfile | int | None = None,
@@ -45,12 +50,12 @@ class TransformListener:
         if static_qos is None:
             kept = DurabilityPolicy.TRANSIENT_LOCAL
             static_qos = QoSProfile(depth=DEPTH, durability=kept, history=HistoryPolicy.KEEP_LAST)
-        self.tf_sub = None
+        self.tf_sub: Subscription | None = None
         if not static_only:
             self.tf_sub = node.create_subscription(
                 TFMessage, tf_topic, self.callback, DEPTH if qos is None else qos, callback_group=self.group
             )
-        self.tf_static_sub = node.create_subscription(
+        self.tf_static_sub: Subscription | None = node.create_subscription(
             TFMessage, tf_static_topic, self.static_callback, static_qos, callback_group=self.group
         )
         self.executor: SingleThreadedExecutor | None = None

@@ -67,7 +67,7 @@ def test_what_does_not_fit_is_told() -> None:
         bridge.cv2_to_imgmsg(image, "bgr9")
     with pytest.raises(CvBridgeError, match="specified as mono8, but image has incompatible type 8UC3"):
         bridge.cv2_to_imgmsg(image, "mono8")
-    with pytest.raises(CvBridgeError, match="no numbers of type complex128"):
+    with pytest.raises(CvBridgeError, match="elements of type complex128"):
         bridge.cv2_to_imgmsg(image.astype(complex))
     with pytest.raises(TypeError, match="not a numpy array of two or three dimensions"):
         bridge.cv2_to_imgmsg([1, 2])  # type: ignore[arg-type]
@@ -110,9 +110,9 @@ def test_colours_and_files_are_opencvs(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (compressed.format, bytes(compressed.data)) == ("png", b".png")
     assert bridge.compressed_imgmsg_to_cv2(compressed, "bgr8").shape == (1, 1, 3)
     for unreadable in (b"", b"no image"):
-        with pytest.raises(CvBridgeError, match="no image that OpenCV knows"):
+        with pytest.raises(CvBridgeError, match="cannot decode"):
             bridge.compressed_imgmsg_to_cv2(CompressedImage(data=unreadable))
-    with pytest.raises(CvBridgeError, match="'gif' is no format"):
+    with pytest.raises(CvBridgeError, match="'gif' is not a supported"):
         bridge.cv2_to_compressed_imgmsg(np.zeros((1, 1), np.uint8), "gif")
     with pytest.raises(CvBridgeError, match="cannot write this array as webp"):
         bridge.cv2_to_compressed_imgmsg(np.zeros((1, 1), np.uint8), "webp")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
@@ -34,16 +33,14 @@ class RobotStatePublisher(Node):
         super().__init__("robot_state_publisher")
         self.declare_parameter("robot_description", description, ParameterDescriptor(description="The robot, in URDF."))
         most = FloatingPointRange(from_value=0.0, to_value=1000.0)
-        about = "How often a joint is published at most, in Hz; 0 for each state."
+        about = "Highest rate at which a joint is published, in Hz; 0 for every state."
         self.declare_parameter(
             "publish_frequency", 20.0, ParameterDescriptor(description=about, floating_point_range=[most])
         )
         self.declare_parameter(
             "ignore_timestamp", False, ParameterDescriptor(description="Publish every joint state, whatever its time.")
         )
-        self.declare_parameter(
-            "frame_prefix", "", ParameterDescriptor(description="What comes before the name of each frame.")
-        )
+        self.declare_parameter("frame_prefix", "", ParameterDescriptor(description="Prefix of each frame's name."))
         if not self._text("robot_description"):
             raise URDFError("the parameter robot_description must not be empty")
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -70,7 +67,7 @@ class RobotStatePublisher(Node):
         if fixed:
             self._fixed.sendTransform(fixed)
 
-    def _is_well(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+    def _is_well(self, parameters: list[Parameter]) -> SetParametersResult:
         for parameter in parameters:
             if parameter.name == "robot_description":
                 try:
@@ -79,7 +76,7 @@ class RobotStatePublisher(Node):
                     return SetParametersResult(successful=False, reason=f"robot_description: {error}")
         return SetParametersResult(successful=True)
 
-    def _changed(self, parameters: list[Parameter[Any]]) -> None:
+    def _changed(self, parameters: list[Parameter]) -> None:
         names = {parameter.name for parameter in parameters}
         if "robot_description" in names:
             self._robot = parse(self._text("robot_description"))
@@ -91,9 +88,9 @@ class RobotStatePublisher(Node):
         if len(state.position) != len(state.name):
             named = ", ".join(state.name)
             if not state.position:
-                self.get_logger().warning(f"a JointState of {named} is left out: it has no positions")
+                self.get_logger().warning(f"a JointState of {named} is ignored: it has no positions")
             else:
-                self.get_logger().error(f"a JointState of {named} is left out: it has not one position for each name")
+                self.get_logger().error(f"a JointState of {named} is ignored: it needs one position per name")
             return
         now, stamp = self.get_clock().now().nanoseconds, Time.from_msg(state.header.stamp).nanoseconds
         if now < self._heard:

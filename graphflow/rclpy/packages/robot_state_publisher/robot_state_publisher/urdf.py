@@ -68,7 +68,7 @@ def parse(text: str) -> Robot:
     except ElementTree.ParseError as error:
         raise URDFError(f"it is not XML: {error}") from None
     if top.tag != "robot":
-        raise URDFError(f"its first element is <{top.tag}>, and not <robot>")
+        raise URDFError(f"the root element is <{top.tag}>, not <robot>")
     links = [_name(link) for link in top.findall("link")]
     twice = next((link for i, link in enumerate(links) if link in links[:i]), None)
     if not links or twice is not None:
@@ -99,7 +99,7 @@ def _check_tree(links: list[str], joints: dict[str, Joint]) -> None:
         above[joint.child] = joint
     roots = [link for link in links if link not in above]
     if len(roots) != 1:
-        said = f"several roots: {', '.join(roots)}" if roots else "no root: its joints go in a circle"
+        said = f"several roots: {', '.join(roots)}" if roots else "no root: its joints form a cycle"
         raise URDFError(f"its links are not a tree: there are {said}")
 
 

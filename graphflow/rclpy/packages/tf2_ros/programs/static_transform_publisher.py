@@ -82,14 +82,14 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
     """
     parser = argparse.ArgumentParser(
         "static_transform_publisher",
-        description="Say where one frame is in another, which does not change.",
+        description="Publish a constant transform between two frames.",
         allow_abbrev=False,
     )
     for names, unit in ((METRES, "METRES"), (TURNS, "RADIANS"), (PARTS, "NUMBER")):
         for name in names:
             parser.add_argument(f"--{name}", type=_number, metavar=unit)
-    parser.add_argument("--frame-id", help="the frame that the other is in; always needed")
-    parser.add_argument("--child-frame-id", help="the other frame; always needed")
+    parser.add_argument("--frame-id", help="the parent frame; required")
+    parser.add_argument("--child-frame-id", help="the child frame; required")
     if len(words) in (8, 9) and not any(word.startswith("--") for word in words):
         get_logger("static_transform_publisher").warning(
             "Old-style arguments are deprecated; see --help for new-style arguments"
@@ -98,10 +98,10 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
         words = [f"--{option}={word}" for option, word in zip(options, words, strict=True)]
     found = parser.parse_args(_with_values(words))
     if not found.frame_id or not found.child_frame_id:
-        parser.error("--frame-id and --child-frame-id are needed")
+        parser.error("--frame-id and --child-frame-id are required")
     turns, parts = ([getattr(found, name) for name in names] for names in (TURNS, PARTS))
     if any(turn is not None for turn in turns) and any(part is not None for part in parts):
-        parser.error("give --roll, --pitch and --yaw, or --qx, --qy, --qz and --qw, and not some of both")
+        parser.error("give --roll, --pitch and --yaw, or --qx, --qy, --qz and --qw, but not both")
     x, y, z = (getattr(found, name) or 0.0 for name in METRES)
     if any(part is not None for part in parts):
         a, b, c, w = (usual if part is None else part for part, usual in zip(parts, (0.0, 0.0, 0.0, 1.0), strict=True))

@@ -33,9 +33,9 @@ class Echo(Node):
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self._is_known = False
-        self.create_timer(period, self._look)
+        self.create_timer(period, self._print)
 
-    def _look(self) -> None:
+    def _print(self) -> None:
         try:
             found = self._buffer.lookup_transform(self._target, self._source, Time())
         except TransformException as error:
@@ -84,9 +84,9 @@ def _show(text: str) -> None:
 def main() -> None:
     """Run the program."""
     rclpy.init()
-    parser = argparse.ArgumentParser("tf2_echo", description="Show where one frame is in another.")
-    parser.add_argument("source_frame", help="the frame that the other is told in")
-    parser.add_argument("target_frame", help="the frame whose pose is told")
+    parser = argparse.ArgumentParser("tf2_echo", description="Print the transform between two frames.")
+    parser.add_argument("source_frame", help="the frame in which coordinates are given")
+    parser.add_argument("target_frame", help="the frame whose pose is given")
     parser.add_argument("rate", nargs="?", type=float, default=1.0, help="times a second (default 1)")
     parser.add_argument("-1", "--once", action="store_true", help="show it once")
     found = parser.parse_args(remove_ros_args(sys.argv)[1:])

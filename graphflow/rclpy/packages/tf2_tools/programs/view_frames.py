@@ -71,7 +71,7 @@ def main() -> None:
     rclpy.init()
     parser = argparse.ArgumentParser("view_frames", description="Draw the tree of frames.")
     parser.add_argument("--wait-time", "-t", type=float, default=5.0, help="seconds to listen (default 5)")
-    parser.add_argument("--output", "-o", help="the file's name without its ending (default frames_ and the time)")
+    parser.add_argument("--output", "-o", help="the file's name without its suffix (default frames_ and the time)")
     found = parser.parse_args(remove_ros_args(sys.argv)[1:])
     node = Node("view_frames")
     buffer = Buffer()
@@ -85,7 +85,7 @@ def main() -> None:
         return
     known = frames(buffer.all_frames_as_yaml())
     if not known:
-        sys.exit("no frames: nobody has published on /tf or /tf_static in that time")
+        sys.exit("no frames: nothing was published on /tf or /tf_static in that time")
     sys.stdout.write(f"{drawn(known)}\n")
     name = found.output or time.strftime("frames_%Y-%m-%d_%H.%M.%S")
     try:
@@ -93,7 +93,7 @@ def main() -> None:
     except OSError as error:
         sys.exit(f"error: {error.filename} cannot be written: {error.strerror}")
     if shutil.which("dot") is None:
-        sys.stdout.write(f"{name}.gv; to have it as PDF, install Graphviz: dot -Tpdf -O {name}.gv\n")
+        sys.stdout.write(f"{name}.gv; for a PDF, install Graphviz: dot -Tpdf -O {name}.gv\n")
         return
     drawing = subprocess.run(["dot", "-Tpdf", f"{name}.gv", "-o", f"{name}.pdf"], check=False)
     sys.stdout.write(f"{name}.gv\n" if drawing.returncode else f"{name}.gv\n{name}.pdf\n")

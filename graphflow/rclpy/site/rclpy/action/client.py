@@ -15,7 +15,7 @@ from graphflow.msgs import registry
 from graphflow.rclpy import node_bridge
 from graphflow.rclpy.messages import classes
 from graphflow.rclpy.wake import Wake
-from graphflow.runtime.endpoints.threaded import ThreadedClient, ThreadedSubscription
+from graphflow.runtime.endpoints.threaded import Answered, ThreadedClient, ThreadedSubscription
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
 from rclpy.impl.callers import caller
@@ -27,7 +27,13 @@ from rclpy.type_support import check_for_type_support
 from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
+    from action_msgs.srv import CancelGoal
+    from builtin_interfaces.msg import Time as TimeMessage
+    from unique_identifier_msgs.msg import UUID
+
+    from graphflow.runtime.node_core import NodeCore
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.node import Node
 
 __all__ = ["ActionClient", "ClientGoalHandle"]
 
@@ -37,7 +43,7 @@ logger = logging.getLogger("graphflow")
 class ClientGoalHandle:
     """The client's handle of a goal that the server has answered."""
 
-    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
+    def __init__(self, action_client: ActionClient, goal_id: UUID, goal_response: Any) -> None:
         self._action_client, self._goal_id, self._goal_response = action_client, goal_id, goal_response
         self._status = int(Status.UNKNOWN)
 
@@ -53,12 +59,12 @@ class ClientGoalHandle:
         )
 
     @property
-    def goal_id(self) -> Any:
+    def goal_id(self) -> UUID:
         """The goal's id, a unique_identifier_msgs/msg/UUID."""
         return self._goal_id
 
     @property
-    def stamp(self) -> Any:
+    def stamp(self) -> TimeMessage:
         """The time of the server's answer."""
         return self._goal_response.stamp
 
@@ -72,11 +78,11 @@ class ClientGoalHandle:
         """The last known status, a value of action_msgs/msg/GoalStatus."""
         return self._status
 
-    def cancel_goal(self) -> Any:
+    def cancel_goal(self) -> CancelGoal.Response:
         """Request cancellation and block until the answer; another thread must be spinning."""
         return self._action_client._graphflow_block_on(self.cancel_goal_async())
 
-    def cancel_goal_async(self) -> Future[Any]:
+    def cancel_goal_async(self) -> Future:
         """Request cancellation; the future yields a CancelGoal.Response."""
         return self._action_client._graphflow_cancel(self)
 
@@ -84,12 +90,10 @@ class ClientGoalHandle:
         """Block until the goal ends and return its result; another thread must be spinning."""
         return self._action_client._graphflow_block_on(self.get_result_async())
 
-    def get_result_async(self) -> Future[Any]:
+    def get_result_async(self) -> Future:
         """Return a future of `status` and `result`; for a rejected goal both are empty."""
         if not self.accepted and (asked := caller(1)) is not None:
-            text = (
-                "%s: the goal was rejected, and has no result: look at goal_handle.accepted before get_result_async()"
-            )
+            text = "%s: the goal was rejected and has no result: check goal_handle.accepted before get_result_async()"
             logger.warning(text, asked.place)
         return self._action_client._graphflow_result_of(self)
 
@@ -100,7 +104,7 @@ class ActionClient(Waitable):
     @explained
     def __init__(
         self,
-        node: Any,
+        node: Node,
         action_type: Any,
         action_name: str,
         *,
@@ -115,35 +119,35 @@ class ActionClient(Waitable):
         check_for_type_support(action_type)
         self._node, self._action_type, self._action_name = node, action_type, action_name
         self._graphflow_lock = threading.RLock()
-        self._graphflow_waiting: dict[tuple[object, int], tuple[Future[Any], Callable[..., object]]] = {}
+        self._graphflow_waiting: dict[tuple[ThreadedClient, int], tuple[Future, Callable[[bytes], object]]] = {}
         """Pending calls by client and number: the future, and the conversion of the response."""
         self._goal_handles: dict[bytes, ClientGoalHandle] = {}
-        self._feedback_callbacks: dict[bytes, Callable[..., Any]] = {}
+        self._feedback_callbacks: dict[bytes, Callable[..., object]] = {}
         self._graphflow_changed: dict[Wake, None] = {}
         self._graphflow_is_open = False  # another thread may be spinning the node
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
         mark = partial(node._graphflow.bell.mark, self)
 
-        def client(carrier: Any, part: str, qos: QoSProfile) -> Any:
+        def client(carrier: type, part: str, qos: QoSProfile) -> ThreadedClient:
             type_ = registry.interface_class(classes.type_name(carrier))
             full = f"{name}/_action/{part}"
             return node_bridge.add(
                 node._graphflow.node,
                 lambda core: ThreadedClient(
-                    core, type_, full, to_graphflow(qos), node._graphflow.bell, mark, self._graphflow_look
+                    core, type_, full, to_graphflow(qos), node._graphflow.bell, mark, self._graphflow_server_changed
                 ),
             )
 
-        def subscription(carrier: Any, part: str, qos: QoSProfile) -> Any:
+        def subscription(carrier: type, part: str, qos: QoSProfile) -> ThreadedSubscription:
             full, bell = f"{name}/_action/{part}", node._graphflow.bell
 
-            def make(core: Any) -> ThreadedSubscription:
-                told = ThreadedSubscription(
-                    core, carrier, full, to_graphflow(qos), bell, mark, lambda event: self._graphflow_look()
+            def make(core: NodeCore) -> ThreadedSubscription:
+                made = ThreadedSubscription(
+                    core, carrier, full, to_graphflow(qos), bell, mark, lambda event: self._graphflow_server_changed()
                 )
-                told.in_order = part == "feedback"
-                return told
+                made.in_order = part == "feedback"
+                return made
 
             return node_bridge.add(node._graphflow.node, make)
 
@@ -155,7 +159,7 @@ class ActionClient(Waitable):
         self._graphflow_is_open = True
         node.add_waitable(self)
 
-    def _graphflow_look(self) -> None:
+    def _graphflow_server_changed(self) -> None:
         """React to a server that has appeared or left."""
         for wake in list(self._graphflow_changed):
             wake.set()
@@ -177,7 +181,7 @@ class ActionClient(Waitable):
         status = self._graphflow_status.take()
         if status is not None:
             work.append(partial(self._graphflow_heard_status, status.payload))
-        answers: list[Callable[[], Any]] = []
+        answers: list[Callable[[], object]] = []
         for client in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results):
             answered = client.take()
             if answered is not None:
@@ -200,7 +204,7 @@ class ActionClient(Waitable):
     def add_to_wait_set(self, wait_set: object) -> None:
         """Do nothing: there are no wait sets."""
 
-    def _graphflow_settle(self, client: Any, answered: Any) -> None:
+    def _graphflow_settle(self, client: ThreadedClient, answered: Answered) -> None:
         with self._graphflow_lock:
             found = self._graphflow_waiting.pop((client, answered.sequence), None)
         if found is None or found[0].cancelled():
@@ -230,15 +234,15 @@ class ActionClient(Waitable):
 
     # goals
 
-    def _graphflow_send(self, client: Any, request: Any, made: Callable[[bytes], Any]) -> Future[Any]:
-        future: Future[Any] = Future()
+    def _graphflow_send(self, client: ThreadedClient, request: object, made: Callable[[bytes], object]) -> Future:
+        future: Future = Future()
         with self._graphflow_lock:
             with sending():
                 sequence = client.send(classes.encode(request))
             self._graphflow_waiting[client, sequence] = (future, made)
         return future
 
-    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+    def send_goal(self, goal: object, **kwargs: Any) -> Any:
         """Send a goal and block until it ends; another thread must be spinning.
 
         Args:
@@ -255,9 +259,10 @@ class ActionClient(Waitable):
         handle = self._graphflow_block_on(self.send_goal_async(goal, **kwargs))
         return handle.get_result() if handle is not None and handle.accepted else None
 
-    def _graphflow_block_on(self, future: Future[Any]) -> Any:
+    def _graphflow_block_on(self, future: Future) -> Any:
         """Block until a future is done or the context is shut down."""
         life, wake = self._node.context.life, Wake()
+        assert life is not None  # a node has joined it
         future._when_done(wake.set)
         life.on_end(wake)
         try:
@@ -267,8 +272,8 @@ class ActionClient(Waitable):
         return future.result()
 
     def send_goal_async(
-        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
-    ) -> Future[Any]:
+        self, goal: object, feedback_callback: Callable[..., object] | None = None, goal_uuid: UUID | None = None
+    ) -> Future:
         """Send a goal; the future yields a `ClientGoalHandle` when the server answers.
 
         Args:
@@ -278,12 +283,12 @@ class ActionClient(Waitable):
         Raises:
             TypeError: Not a goal of the action's type.
         """
-        from unique_identifier_msgs.msg import UUID
+        from unique_identifier_msgs import msg
 
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
         carrier = self._action_type.Impl.SendGoalService
-        goal_id = UUID(uuid=list(uuid.uuid4().bytes)) if goal_uuid is None else goal_uuid
+        goal_id = msg.UUID(uuid=list(uuid.uuid4().bytes)) if goal_uuid is None else goal_uuid
         key = bytes(goal_id.uuid)
         if feedback_callback is not None:
             self._feedback_callbacks[key] = feedback_callback
@@ -299,25 +304,25 @@ class ActionClient(Waitable):
 
         return self._graphflow_send(self._graphflow_goals, carrier.Request(goal_id=goal_id, goal=goal), made)
 
-    def _graphflow_cancel(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+    def _graphflow_cancel(self, goal_handle: ClientGoalHandle) -> Future:
         """Request the cancellation of a goal. Raises TypeError if it is not a goal handle."""
-        from action_msgs.srv import CancelGoal
+        from action_msgs import srv
 
         if not isinstance(goal_handle, ClientGoalHandle):
             raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
-        request = CancelGoal.Request()
+        request = srv.CancelGoal.Request()
         request.goal_info.goal_id = goal_handle.goal_id
         return self._graphflow_send(
-            self._graphflow_cancels, request, lambda payload: classes.decode(CancelGoal.Response, payload)
+            self._graphflow_cancels, request, lambda payload: classes.decode(srv.CancelGoal.Response, payload)
         )
 
-    def _graphflow_result_of(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+    def _graphflow_result_of(self, goal_handle: ClientGoalHandle) -> Future:
         """Request the result of a goal. Raises TypeError if it is not a goal handle."""
         if not isinstance(goal_handle, ClientGoalHandle):
             raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
         carrier, key = self._action_type.Impl.GetResultService, bytes(goal_handle.goal_id.uuid)
 
-        def made(payload: bytes) -> Any:
+        def made(payload: bytes) -> object:
             self._feedback_callbacks.pop(key, None)
             self._goal_handles.pop(key, None)
             response = classes.decode(carrier.Response, payload)
@@ -330,7 +335,7 @@ class ActionClient(Waitable):
 
     def server_is_ready(self) -> bool:
         """Whether a server with all its parts is available. Raises RCLError if the context was shut down."""
-        if not self._node.context.life.is_ok:
+        if not self._node.context.ok():
             raise RCLError("Failed to check if action server is available: rcl node's context is invalid")
         clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
         return (
@@ -342,6 +347,7 @@ class ActionClient(Waitable):
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Block until a server is available, at most `timeout_sec` seconds; return whether one is."""
         life, wake = self._node.context.life, Wake()
+        assert life is not None  # a node has joined it
         self._graphflow_changed[wake] = None
         life.on_end(wake)
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec

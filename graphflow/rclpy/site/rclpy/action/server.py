@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from enum import Enum
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -33,7 +33,11 @@ from rclpy.type_support import check_for_type_support
 from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
+    from action_msgs.msg import GoalInfo
+    from unique_identifier_msgs.msg import UUID
+
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.node import Node
 
 __all__ = ["ActionServer", "CancelResponse", "GoalEvent", "GoalResponse", "RCLError", "ServerGoalHandle"]
 
@@ -68,13 +72,13 @@ _STEPS = {
 class ServerGoalHandle:
     """The server's handle of a goal, passed to its callbacks."""
 
-    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: object) -> None:
+    def __init__(self, action_server: ActionServer, goal_info: GoalInfo, goal_request: object) -> None:
         self._action_server, self._goal_request = action_server, goal_request
         self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
         self._status = Status.ACCEPTED
         self._lock = threading.Lock()
-        self._result: Future[Any] = Future()
-        self._graphflow_asked: list[Asked] = []
+        self._result: Future = Future()
+        self._graphflow_result_requests: list[Asked] = []
         """The requests that wait for the result."""
 
     @property
@@ -83,7 +87,7 @@ class ServerGoalHandle:
         return self._goal_request
 
     @property
-    def goal_id(self) -> Any:
+    def goal_id(self) -> UUID:
         """The goal's id, a unique_identifier_msgs/msg/UUID."""
         return self._goal_id
 
@@ -173,7 +177,7 @@ class ActionServer(Waitable):
     @explained
     def __init__(
         self,
-        node: Any,
+        node: Node,
         action_type: Any,
         action_name: str,
         execute_callback: Callable[[ServerGoalHandle], object],
@@ -205,7 +209,7 @@ class ActionServer(Waitable):
         mark = partial(node._graphflow.bell.mark, self)
         self._graphflow_is_open = False  # another thread may be spinning the node
 
-        def service(carrier: Any, part: str, qos: QoSProfile) -> Any:
+        def service(carrier: type, part: str, qos: QoSProfile) -> ThreadedService:
             type_ = registry.interface_class(classes.type_name(carrier))
             return node_bridge.add(
                 node._graphflow.node,
@@ -214,7 +218,7 @@ class ActionServer(Waitable):
                 ),
             )
 
-        def publisher(carrier: Any, part: str, qos: QoSProfile) -> Any:
+        def publisher(carrier: type, part: str, qos: QoSProfile) -> ThreadedPublisher:
             return node_bridge.add(
                 node._graphflow.node,
                 lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos)),
@@ -239,7 +243,7 @@ class ActionServer(Waitable):
             s.inbox.items for s in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
         )
 
-    def take_data(self) -> list[tuple[Callable[[Asked], object], Asked]]:
+    def take_data(self) -> list[tuple[Callable[[Asked], Awaitable[None]], Asked]]:
         services = (
             (self._graphflow_goals, self._graphflow_goal),
             (self._graphflow_cancels, self._graphflow_cancel),
@@ -248,7 +252,7 @@ class ActionServer(Waitable):
         taken = [(do, service.take()) for service, do in services]
         return [(do, asked) for do, asked in taken if asked is not None]
 
-    async def execute(self, taken_data: list[tuple[Callable[[Asked], Any], Asked]]) -> None:
+    async def execute(self, taken_data: list[tuple[Callable[[Asked], Awaitable[None]], Asked]]) -> None:
         for do, asked in taken_data:
             await do(asked)
 
@@ -265,7 +269,7 @@ class ActionServer(Waitable):
         request = classes.decode(carrier.Request, asked.payload)
         key = bytes(request.goal_id.uuid)
         is_known = key in self._goal_handles
-        answer: Any = None
+        answer: object = None
         if is_known:
             self._logger.error(f"Failed to accept new goal with ID {key.hex()}: it is under way")
         else:
@@ -285,9 +289,9 @@ class ActionServer(Waitable):
         stamp = self._node.get_clock().now().to_msg()
         handle = None
         if accepted:
-            from action_msgs.msg import GoalInfo
+            from action_msgs import msg
 
-            handle = ServerGoalHandle(self, GoalInfo(goal_id=request.goal_id, stamp=stamp), request.goal)
+            handle = ServerGoalHandle(self, msg.GoalInfo(goal_id=request.goal_id, stamp=stamp), request.goal)
             with self._lock:
                 self._goal_handles[key] = handle
             self._graphflow_publish_status()
@@ -297,17 +301,17 @@ class ActionServer(Waitable):
             await await_or_execute(self._handle_accepted_callback, handle)
 
     def notify_execute(
-        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
+        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], object] | None
     ) -> None:
         """Schedule a goal's execution on the node's executor."""
         callback = execute_callback or self._execute_callback
         executor = self._node.executor
         if executor is None:
-            raise RuntimeError("a goal cannot be executed while no executor has the node: spin it")
+            raise RuntimeError("a goal cannot be executed while the node is in no executor: spin it")
         executor.create_task(self._execute_goal, callback, goal_handle)
 
     async def _execute_goal(
-        self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: ServerGoalHandle
+        self, execute_callback: Callable[[ServerGoalHandle], object], goal_handle: ServerGoalHandle
     ) -> None:
         self._logger.debug(f"Executing goal with ID {bytes(goal_handle.goal_id.uuid).hex()}")
         way = f": {described(execute_callback)} returned without goal_handle.succeed()"
@@ -340,7 +344,7 @@ class ActionServer(Waitable):
             self._goal_handles.pop(bytes(goal_handle.goal_id.uuid), None)
 
     async def _graphflow_cancel(self, asked: Asked) -> None:
-        from action_msgs.msg import GoalInfo
+        from action_msgs import msg
         from action_msgs.srv import CancelGoal
 
         request = classes.decode(CancelGoal.Request, asked.payload)
@@ -354,13 +358,13 @@ class ActionServer(Waitable):
                 except RCLError as error:  # it has ended meanwhile
                     self._logger.debug(f"Failed to cancel goal in cancel callback: {error}")
                     continue
-                response.goals_canceling.append(GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp))
+                response.goals_canceling.append(msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp))
         if wanted and not response.goals_canceling:
             response.return_code = int(CancelCode.REJECTED)
         with sending():
             self._graphflow_cancels.answer(asked, classes.encode(response))
 
-    def _graphflow_to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
+    def _graphflow_to_cancel(self, info: GoalInfo) -> tuple[CancelCode, list[ServerGoalHandle]]:
         """Return the goals that a request matches: one by id, those up to a time, or all. Source: CancelGoal.srv."""
         key, until_ns = bytes(info.goal_id.uuid), Time.from_msg(info.stamp).nanoseconds
         with self._lock:
@@ -388,10 +392,10 @@ class ActionServer(Waitable):
             with sending():
                 self._graphflow_results.answer(asked, classes.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
-        goal._graphflow_asked.append(asked)
+        goal._graphflow_result_requests.append(asked)
         goal._result._when_done(partial(self._graphflow_answer_result, asked, goal._result))  # no reference to the goal
 
-    def _graphflow_answer_result(self, asked: Asked, result: Future[Any]) -> None:
+    def _graphflow_answer_result(self, asked: Asked, result: Future) -> None:
         if self._graphflow_is_open:
             with sending():
                 self._graphflow_results.answer(asked, classes.encode(result.result()))
@@ -403,13 +407,12 @@ class ActionServer(Waitable):
 
     def _graphflow_publish_status(self) -> None:
         """Publish the statuses of all known goals."""
-        from action_msgs.msg import GoalInfo
-        from action_msgs.msg import GoalStatus as StatusMessage
+        from action_msgs import msg
 
         with self._lock:
             goals = list(self._goal_handles.values())
         rows = [
-            StatusMessage(goal_info=GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
+            msg.GoalStatus(goal_info=msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
             for goal in goals
         ]
         if self._graphflow_is_open:
@@ -417,7 +420,7 @@ class ActionServer(Waitable):
             with sending():
                 self._graphflow_status.put(classes.encode(message))
 
-    def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
+    def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: object) -> None:
         """Publish feedback on a goal. Raises TypeError if it is not of the action's feedback type."""
         if not isinstance(feedback, self._action_type.Feedback):
             way = f"write publish_feedback({self._action_type.__name__}.Feedback(...))"

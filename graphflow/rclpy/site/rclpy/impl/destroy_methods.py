@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rclpy.client import Client
 from rclpy.exceptions import InvalidHandle
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.internals import Internals
-from rclpy.impl.mistakes.undestroyed import tell
+from rclpy.impl.mistakes.undestroyed import warn
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Rate, Timer
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.waitable import Waitable
 
 
 class DestroyMethods:
@@ -20,26 +24,26 @@ class DestroyMethods:
 
     _graphflow: Internals
 
-    def _graphflow_look_again(self) -> None:
+    def _graphflow_recheck(self) -> None:
         """Make the executor recheck the node's entities."""
         executor = self._graphflow.executor()
         if executor is not None:
             executor.wake()
 
-    def add_waitable(self, waitable: Any) -> None:
+    def add_waitable(self, waitable: Waitable) -> None:
         """Add a waitable to the node's entities."""
         self._graphflow.waitables.append(waitable)
-        self._graphflow_look_again()
+        self._graphflow_recheck()
 
-    def remove_waitable(self, waitable: Any) -> None:
+    def remove_waitable(self, waitable: Waitable) -> None:
         """Remove a waitable from the node's entities."""
         self._graphflow.waitables.remove(waitable)
         self._graphflow.bell.ready.pop(waitable, None)
-        self._graphflow_look_again()
+        self._graphflow_recheck()
 
     def _graphflow_destroy(self, things: list[Any], thing: Any, call: str) -> bool:
         if thing not in things:
-            tell(self, thing, call, depth=2)
+            warn(cast("Node", self), thing, call, depth=2)
             return False
         things.remove(thing)
         self._graphflow.bell.ready.pop(thing, None)
@@ -49,7 +53,7 @@ class DestroyMethods:
             thing.destroy()
         except InvalidHandle:
             return False
-        self._graphflow_look_again()
+        self._graphflow_recheck()
         return True
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
@@ -72,7 +76,7 @@ class DestroyMethods:
 
     def destroy_rate(self, rate: Rate) -> bool:
         if rate is not None and not hasattr(rate, "_timer"):
-            tell(self, rate, "destroy_rate", depth=1)
+            warn(cast("Node", self), rate, "destroy_rate", depth=1)
             return False
         timer = rate._timer
         is_known = timer in self._graphflow.timers

@@ -5,22 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from types import CellType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.analysis.class_source import ANSWERED
 from graphflow.analysis.frames import Frame, awaited, suspended
 from graphflow.analysis.user_code import is_ours
 from graphflow.errors import ClosedError, ServerLost
 from graphflow.machines.waits.wait_graph import goal_id
-from graphflow.runtime.endpoints.threaded import Asked, read_request
+from graphflow.runtime.endpoints.threaded import Asked, ThreadedClient, ThreadedService, read_request
 from rclpy.action.client import ActionClient
 from rclpy.action.server import ActionServer, ServerGoalHandle
 from rclpy.client import Client
 from rclpy.guard_condition import GuardCondition
-from rclpy.impl.spinning import Run
+from rclpy.impl.nodes import internals_of
+from rclpy.impl.spinning import Entity, Run
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Rate, Timer
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.task import Future
 
 
 class Role(NamedTuple):
@@ -40,7 +45,7 @@ class Role(NamedTuple):
 _KINDS = {Timer: "timer", Subscription: "subscription", Service: "service", GuardCondition: "guard_condition"}
 
 
-def role_of(entity: Any) -> Role:
+def role_of(entity: Entity) -> Role:
     """Return the role of an entity."""
     if isinstance(entity, Client):
         return Role("reply", entity._endpoint.name)
@@ -60,25 +65,26 @@ def role_of(entity: Any) -> Role:
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 
-def name_of(callback: Any) -> str:
+def name_of(callback: object) -> str:
     """Return a function's name; empty for other callables."""
     while isinstance(callback, partial):
         callback = callback.func
     return str(getattr(callback, "__name__", ""))
 
 
-def full_name(node: Any) -> str:
+def full_name(node: Node | None) -> str:
     """Return a node's name with its namespace; empty for no node."""
-    return "" if node is None else str(node._graphflow.node.full_name)
+    return "" if node is None else str(internals_of(node).node.full_name)
 
 
-def entities_of(node: Any) -> Iterator[Any]:
+def entities_of(node: Node) -> Iterator[Entity]:
     """Return the node's entities that have callbacks."""
-    for kind in ("subscriptions", "clients", "services", "timers", "guards", "waitables"):
-        yield from list(getattr(node, kind))
+    kinds: tuple[Iterator[Entity], ...] = (node.subscriptions, node.clients, node.services, node.timers)
+    for kind in (*kinds, node.guards, node.waitables):
+        yield from list(kind)
 
 
-def arrived(entity: Any) -> tuple[tuple[str, ...], int]:
+def arrived(entity: Entity) -> tuple[tuple[str, ...], int]:
     """Return the calls that have arrived for an entity, or whose answers have, and the number of all arrivals."""
     if isinstance(entity, Service):
         return _requests(entity._endpoint)
@@ -100,12 +106,12 @@ def arrived(entity: Any) -> tuple[tuple[str, ...], int]:
     return (), waiting if isinstance(waiting, int) else 0
 
 
-def _requests(endpoint: Any) -> tuple[tuple[str, ...], int]:
+def _requests(endpoint: ThreadedService) -> tuple[tuple[str, ...], int]:
     items = list(endpoint.inbox.items)
     return tuple(asked.call for asked in map(read_request, items) if asked is not None), len(items)
 
 
-def _answers(endpoint: Any) -> tuple[tuple[str, ...], int]:
+def _answers(endpoint: ThreadedClient) -> tuple[tuple[str, ...], int]:
     # That a call is lost is no answer: whoever takes it, the future of the call is never done.
     items = [answered for answered in list(endpoint.inbox.items) if not isinstance(answered.error, ServerLost)]
     try:
@@ -114,9 +120,9 @@ def _answers(endpoint: Any) -> tuple[tuple[str, ...], int]:
         return (), len(items)
 
 
-def after_answers(entity: Any, node: Any) -> Iterator[str]:
+def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
     """Return the node's methods that run after an answer for which a client waits."""
-    futures: list[Any] = []
+    futures: list[Future] = []
     if isinstance(entity, Client):
         futures = list(entity._pending.values())
     elif isinstance(entity, ActionClient):
@@ -137,12 +143,14 @@ def _content(cell: CellType) -> object:
         return None
 
 
-def results_asked(entity: Any) -> Iterator[tuple[str, str]]:
+def result_requests(entity: Entity) -> Iterator[tuple[str, str]]:
     """Return the calls that request results from an action server, each with its goal."""
     if isinstance(entity, ActionServer):
         for goal in list(entity._goal_handles.values()):
             if not goal._result.done():
-                yield from ((asked.call, goal_id(bytes(goal.goal_id.uuid))) for asked in list(goal._graphflow_asked))
+                yield from (
+                    (asked.call, goal_id(bytes(goal.goal_id.uuid))) for asked in list(goal._graphflow_result_requests)
+                )
 
 
 def goal_of(run: Run) -> ServerGoalHandle | None:

@@ -27,15 +27,15 @@ class GraphMethods:
     _graphflow: Internals
     _graphflow_handle_of_node: Handle
 
-    def _graphflow_graph(self, look: Callable[[GraphCache], object]) -> Any:
+    def _graphflow_graph(self, query: Callable[[GraphCache], object]) -> Any:
         with self._graphflow_handle_of_node:
-            return LOOP.call(look, self._graphflow.core.context.cache)
+            return LOOP.call(query, self._graphflow.core.context.cache)
 
     def _graphflow_of_node(self, node_name: str, node_namespace: str, kind: Kind) -> list[tuple[str, list[str]]]:
         full = f"{node_namespace.rstrip('/')}/{node_name}"
         _refuse_names(node_name, node_namespace)
 
-        def look(cache: GraphCache) -> list[tuple[str, list[str]]] | None:
+        def query(cache: GraphCache) -> list[tuple[str, list[str]]] | None:
             if not cache.owners(full):
                 return None
             found: dict[str, set[str]] = {}
@@ -43,7 +43,7 @@ class GraphMethods:
                 found.setdefault(entity.name, set()).add(entity.type)
             return [(name, sorted(types)) for name, types in sorted(found.items())]
 
-        rows = self._graphflow_graph(look)
+        rows = self._graphflow_graph(query)
         if rows is None:
             raise NodeNameNonExistentError(f"Cannot get information about node {full}: it does not exist")
         found: list[tuple[str, list[str]]] = rows

@@ -14,7 +14,7 @@ from rclpy.client import Client
 from rclpy.clock import ROSClock
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
-from rclpy.impl.mistakes.arguments import Unmade
+from rclpy.impl.mistakes.arguments import NotConstructed
 from rclpy.impl.parameters import NodeParameters
 from rclpy.logging import get_logger
 from rclpy.publisher import Publisher
@@ -24,6 +24,8 @@ from rclpy.time_source import TimeSource
 from rclpy.timer import Timer
 
 if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.node import Node
     from rclpy.waitable import Waitable
 
 
@@ -40,7 +42,7 @@ class Internals:
         self.timers: list[Timer] = []
         self.guards: list[GuardCondition] = []
         self.waitables: list[Waitable] = []
-        self.executor: Callable[[], Any] = none
+        self.executor: Callable[[], Executor | None] = none
         self.begun = time.monotonic()
         self.times_added = 0
         """The number of times that the node was added to an executor."""
@@ -59,7 +61,7 @@ class Known:
     def __init__(self, get: Callable[..., object]) -> None:
         self._get = get
 
-    def __get__(self, node: Any, owner: type) -> Any:
+    def __get__(self, node: Node, owner: type) -> Any:
         return self if node is None else self._get(node)
 
 
@@ -70,7 +72,7 @@ def none() -> None:
 class Holdings:
     """The node's entities for inspection; a base class of `Node`."""
 
-    _graphflow: Internals = Unmade()  # type: ignore[assignment]
+    _graphflow: Internals = NotConstructed()  # type: ignore[assignment]
 
     @property
     def publishers(self) -> Iterator[Publisher]:

@@ -19,13 +19,13 @@ _SINGLE = {
 _TRUTHS = {"1": "true", "true": "true", "0": "false", "false": "false"}
 
 
-def as_parameters(values: Mapping[str, tuple[object, str]]) -> dict[str, Parameter[Any]]:
+def as_parameters(values: Mapping[str, tuple[object, str]]) -> dict[str, Parameter]:
     """Convert values, each with its source, to parameters.
 
     Raises:
         TypeError: No parameter can have such a value; a note gives its source.
     """
-    found: dict[str, Parameter[Any]] = {}
+    found: dict[str, Parameter] = {}
     for name, (value, source) in values.items():
         try:
             found[name] = Parameter(name, value=value)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from graphflow.analysis.user_code import place_in
 from graphflow.rclpy import node_bridge
@@ -21,7 +21,11 @@ from rclpy.qos import qos_profile_parameter_events, qos_profile_parameters
 from rclpy.time_source import TimeSource
 
 if TYPE_CHECKING:
+    from rcl_interfaces.msg import Parameter as ParameterMessage
     from rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
+    from rcl_interfaces.srv import SetParameters, SetParametersAtomically
+
+    from rclpy.node import Node
 
 logger = logging.getLogger("graphflow")
 
@@ -34,8 +38,8 @@ class ParameterMethods:
     _graphflow: Internals
 
     @property
-    def _graphflow_as_node(self) -> Any:
-        return self
+    def _graphflow_as_node(self) -> Node:
+        return cast("Node", self)
 
     def _graphflow_open_parameters(self, has_services: bool) -> None:
         from rcl_interfaces.msg import ParameterEvent
@@ -43,7 +47,7 @@ class ParameterMethods:
 
         inner, node = self._graphflow, self._graphflow_as_node
         inner.events = node.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
-        inner.time_source = TimeSource(node=self)
+        inner.time_source = TimeSource(node=node)
         inner.time_source.attach_clock(inner.clock)
         if not self.has_parameter("start_type_description_service"):
             self.declare_parameter("start_type_description_service", True)
@@ -54,9 +58,9 @@ class ParameterMethods:
             LOOP.call(answers.serve, inner.core)
             options: dict[str, Any] = {"qos_profile": qos_profile_parameters}
             base = node.get_name()
-            node.create_service(SetParameters, f"{base}/set_parameters", self._graphflow_asked_to_set, **options)
+            node.create_service(SetParameters, f"{base}/set_parameters", self._graphflow_serve_set, **options)
             all_name = f"{base}/set_parameters_atomically"
-            node.create_service(SetParametersAtomically, all_name, self._graphflow_asked_to_set_all, **options)
+            node.create_service(SetParametersAtomically, all_name, self._graphflow_serve_set_all, **options)
 
     def _graphflow_declare_overrides(self) -> None:
         from rcl_interfaces.msg import ParameterDescriptor
@@ -71,7 +75,7 @@ class ParameterMethods:
 
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: ParameterDescriptor | None = None, ignore_override: bool = False
-    ) -> Parameter[Any]:
+    ) -> Parameter:
         """Declare a parameter.
 
         Args:
@@ -82,13 +86,13 @@ class ParameterMethods:
             ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException,
             InvalidParameterValueException: As their names say.
         """
-        given: tuple[Any, ...] = (name, value) if descriptor is None else (name, value, descriptor)
+        given: tuple[object, ...] = (name, value) if descriptor is None else (name, value, descriptor)
         given = (name,) if value is None and descriptor is None else given
         return self._graphflow.parameters.declare("", [given], ignore_override=ignore_override)[0]
 
     def declare_parameters(
-        self, namespace: str, parameters: Sequence[Any], ignore_override: bool = False
-    ) -> list[Parameter[Any]]:
+        self, namespace: str, parameters: Sequence[Sequence[object]], ignore_override: bool = False
+    ) -> list[Parameter]:
         """Declare several parameters: (name,), (name, value or type) or (name, value or type, descriptor) each."""
         return self._graphflow.parameters.declare(namespace, parameters, ignore_override=ignore_override)
 
@@ -111,45 +115,45 @@ class ParameterMethods:
             return parameters.values[name].type_
         return parameters.get(name).type_
 
-    def get_parameters(self, names: list[str]) -> list[Parameter[Any]]:
+    def get_parameters(self, names: list[str]) -> list[Parameter]:
         if not all(isinstance(name, str) for name in names):
             raise TypeError("All names must be instances of type str")
         return [self.get_parameter(name) for name in names]
 
-    def get_parameter(self, name: str) -> Parameter[Any]:
+    def get_parameter(self, name: str) -> Parameter:
         """Return a parameter. Raises ParameterNotDeclaredException, ParameterUninitializedException."""
         return self._graphflow.parameters.get(name)
 
-    def get_parameter_or(self, name: str, alternative_value: Parameter[Any] | None = None) -> Parameter[Any]:
+    def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
         """Return a parameter, or the alternative if it was not declared or has no value."""
         if alternative_value is None:
             alternative_value = Parameter(name, Parameter.Type.NOT_SET)
         found = self._graphflow.parameters.values.get(name)
         return alternative_value if found is None or found.type_ is Parameter.Type.NOT_SET else found
 
-    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
         """Return the parameters below a prefix, by the rest of their names."""
         return self._graphflow.parameters.with_prefix(prefix)
 
     @explained
-    def set_parameters(self, parameter_list: list[Parameter[Any]]) -> list[SetParametersResult]:
+    def set_parameters(self, parameter_list: list[Parameter]) -> list[SetParametersResult]:
         """Set parameters one after the other. Raises ParameterNotDeclaredException before setting any."""
-        return self._graphflow_told(self._graphflow.parameters.set_each(parameter_list), parameter_list)
+        return self._graphflow_log_failures(self._graphflow.parameters.set_each(parameter_list), parameter_list)
 
     @explained
-    def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all parameters or none. Raises ParameterNotDeclaredException."""
-        return self._graphflow_told([self._graphflow.parameters.set_all(parameter_list)], parameter_list)[0]
+        return self._graphflow_log_failures([self._graphflow.parameters.set_all(parameter_list)], parameter_list)[0]
 
-    def _graphflow_told(
-        self, results: list[SetParametersResult], given: Sequence[Parameter[Any]]
+    def _graphflow_log_failures(
+        self, results: list[SetParametersResult], given: Sequence[Parameter]
     ) -> list[SetParametersResult]:
         """Log the parameters that were not set, if the calling code drops the result."""
         faults = [result.reason or "(the callback gave no reason)" for result in results if not result.successful]
         asked = caller(3) if faults else None
         if asked is not None and asked.drops_result:
             names = ", ".join(p.name for p in given) if len(results) == 1 else "some parameters"
-            text = "%s: %s was not set, and the result, which says so, is not looked at: %s"
+            text = "%s: %s was not set, and the result that reports it is ignored: %s"
             logger.warning(text, asked.place, names, "; ".join(faults))
         return results
 
@@ -158,17 +162,17 @@ class ParameterMethods:
         return self._graphflow.parameters.listed(prefixes, depth)
 
     @explained
-    def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], list[Parameter[Any]]]) -> None:
+    def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
         """Register `callback`, which may change the list of parameters before they are set."""
         self._graphflow.parameters.before.insert(0, callback)
 
     @explained
-    def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], SetParametersResult]) -> None:
+    def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], SetParametersResult]) -> None:
         """Register `callback`, which decides whether parameters may be set."""
         self._graphflow.parameters.checks.insert(0, callback)
 
     @explained
-    def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], None]) -> None:
+    def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
         """Register `callback`, which is notified after parameters were set."""
         self._graphflow.parameters.after.insert(0, callback)
 
@@ -212,7 +216,7 @@ class ParameterMethods:
         found: ParameterValue = self._graphflow.parameters.set_descriptor(name, descriptor, alternative_value)
         return found
 
-    def _graphflow_parameters_changed(self, parameters: list[Parameter[Any]], former: Any) -> None:
+    def _graphflow_parameters_changed(self, parameters: list[Parameter], former: Mapping[str, Parameter]) -> None:
         from rcl_interfaces.msg import ParameterEvent
 
         events = self._graphflow.events
@@ -230,20 +234,24 @@ class ParameterMethods:
                 event.new_parameters.append(message)
         events.publish(event)
 
-    def _graphflow_asked_to_set(self, request: Any, response: Any) -> Any:
-        response.results = [self._graphflow_asked([parameter]) for parameter in request.parameters]
+    def _graphflow_serve_set(
+        self, request: SetParameters.Request, response: SetParameters.Response
+    ) -> SetParameters.Response:
+        response.results = [self._graphflow_set_messages([parameter]) for parameter in request.parameters]
         return response
 
-    def _graphflow_asked_to_set_all(self, request: Any, response: Any) -> Any:
-        response.result = self._graphflow_asked(request.parameters)
+    def _graphflow_serve_set_all(
+        self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
+    ) -> SetParametersAtomically.Response:
+        response.result = self._graphflow_set_messages(request.parameters)
         return response
 
-    def _graphflow_asked(self, given: Sequence[Any]) -> Any:
+    def _graphflow_set_messages(self, given: Sequence[ParameterMessage]) -> SetParametersResult:
         from rcl_interfaces.msg import SetParametersResult
 
         try:
             return self.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in given])
-        except Exception as error:  # whatever a user's check raises is told to who asked, and here
+        except Exception as error:  # a user's check may raise anything: the client gets its text, the log its place
             if place := place_in(error):
                 note = hint(error)
                 text = f"{Path(place).name}: {type(error).__name__}: {error}{note and '; '}{note}"

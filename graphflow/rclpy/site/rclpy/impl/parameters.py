@@ -26,7 +26,13 @@ from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_val
 from rclpy.validate_parameter_name import validate_parameter_name
 
 if TYPE_CHECKING:
-    from rcl_interfaces.msg import ListParametersResult, ParameterDescriptor, SetParametersResult
+    from rcl_interfaces.msg import (
+        FloatingPointRange,
+        IntegerRange,
+        ListParametersResult,
+        ParameterDescriptor,
+        SetParametersResult,
+    )
 
 Kind = Parameter.Type
 TRUTHS = {"on": True, "yes": True, "y": True, "off": False, "no": False, "n": False}
@@ -34,7 +40,7 @@ TRUTHS = {"on": True, "yes": True, "y": True, "off": False, "no": False, "n": Fa
 RELATIVE_TOLERANCE = 1e-6
 """The greatest relative distance of a value from a step."""
 
-Told = Callable[[list[Parameter[Any]], Mapping[str, Parameter[Any]]], None]
+OnChange = Callable[[list[Parameter], Mapping[str, Parameter]], None]
 """Called after parameters were set, with them and with their former values by name."""
 
 
@@ -44,22 +50,22 @@ class NodeParameters:
     Args:
         overrides: Values from the command line, files or the constructor, by name.
         allows_undeclared: Whether undeclared parameters may be set and read.
-        told: Called after each change.
+        on_change: Called after each change.
     """
 
-    def __init__(self, overrides: Mapping[str, Parameter[Any]], told: Told, *, allows_undeclared: bool) -> None:
+    def __init__(self, overrides: Mapping[str, Parameter], on_change: OnChange, *, allows_undeclared: bool) -> None:
         self.overrides = dict(overrides)
         self.sources: dict[str, str] = {}
         """The sources of the overrides from the command line or a file."""
         self.allows_undeclared = allows_undeclared
-        self.values: dict[str, Parameter[Any]] = {}
+        self.values: dict[str, Parameter] = {}
         self.descriptors: dict[str, ParameterDescriptor] = {}
         self.names: set[str] = set()
         """All names that were ever declared, successfully or not."""
-        self.before: list[Callable[[list[Parameter[Any]]], Iterable[Parameter[Any]]]] = []
-        self.checks: list[Callable[[list[Parameter[Any]]], Any]] = []
-        self.after: list[Callable[[list[Parameter[Any]]], object]] = []
-        self._told = told
+        self.before: list[Callable[[list[Parameter]], Iterable[Parameter]]] = []
+        self.checks: list[Callable[[list[Parameter]], SetParametersResult]] = []
+        self.after: list[Callable[[list[Parameter]], object]] = []
+        self._on_change = on_change
         self.lock = threading.RLock()
 
     def _undeclared(self, names: Iterable[str] | str) -> ParameterNotDeclaredException:
@@ -74,11 +80,11 @@ class NodeParameters:
     # declaring
 
     def declare(
-        self, namespace: str, parameters: Sequence[Any], *, ignore_override: bool = False
-    ) -> list[Parameter[Any]]:
+        self, namespace: str, parameters: Sequence[Sequence[object]], *, ignore_override: bool = False
+    ) -> list[Parameter]:
         """Declare parameters, each given as (name,), (name, type or value) or (name, type or value, descriptor)."""
-        wanted: list[Parameter[Any]] = []
-        descriptors: dict[str, Any] = {}
+        wanted: list[Parameter] = []
+        descriptors: dict[str, ParameterDescriptor] = {}
         for index, given in enumerate(parameters):
             name, value, descriptor = self._read(given, index)
             full = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}" if namespace else name
@@ -112,7 +118,7 @@ class NodeParameters:
         return [self.values[p.name] for p in wanted]
 
     @staticmethod
-    def _read(given: Any, index: int) -> tuple[str, object, Any]:
+    def _read(given: Sequence[object], index: int) -> tuple[str, object, ParameterDescriptor]:
         from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
         if not 1 <= len(given) <= 3:
@@ -167,11 +173,11 @@ class NodeParameters:
                 raise ParameterImmutableException(name)
             former = {name: self.values.pop(name)}
             del self.descriptors[name]
-        self._told([Parameter(name, Kind.NOT_SET, None)], former)
+        self._on_change([Parameter(name, Kind.NOT_SET, None)], former)
 
     # getting
 
-    def get(self, name: str) -> Parameter[Any]:
+    def get(self, name: str) -> Parameter:
         with self.lock:
             found = self.values.get(name)
             if found is None:
@@ -182,7 +188,7 @@ class NodeParameters:
                 raise ParameterUninitializedException(name)
             return found
 
-    def with_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+    def with_prefix(self, prefix: str) -> dict[str, Parameter]:
         start = f"{prefix}{PARAMETER_SEPARATOR_STRING}" if prefix else ""
         with self.lock:
             return {n.removeprefix(start): p for n, p in self.values.items() if n.startswith(start)}
@@ -218,17 +224,17 @@ class NodeParameters:
 
     # setting
 
-    def refuse_undeclared(self, parameters: Iterable[Parameter[Any]]) -> None:
+    def refuse_undeclared(self, parameters: Iterable[Parameter]) -> None:
         missing = [p.name for p in parameters if p.name not in self.values]
         if missing and not self.allows_undeclared:
             raise self._undeclared(missing)
 
-    def set_each(self, parameters: Sequence[Parameter[Any]]) -> list[SetParametersResult]:
+    def set_each(self, parameters: Sequence[Parameter]) -> list[SetParametersResult]:
         for parameter in parameters:
             _refuse_others(parameter)
         return [self.set_all([parameter]) for parameter in parameters]
 
-    def set_all(self, parameters: Sequence[Parameter[Any]]) -> SetParametersResult:
+    def set_all(self, parameters: Sequence[Parameter]) -> SetParametersResult:
         """Set all parameters or none."""
         from rcl_interfaces.msg import SetParametersResult
 
@@ -245,7 +251,7 @@ class NodeParameters:
         return self._set(changed, {})
 
     def _set(
-        self, parameters: list[Parameter[Any]], declared: Mapping[str, Any], *, allows_not_set: bool = False
+        self, parameters: list[Parameter], declared: Mapping[str, ParameterDescriptor], *, allows_not_set: bool = False
     ) -> SetParametersResult:
         from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 
@@ -262,7 +268,7 @@ class NodeParameters:
                 raise AttributeError(must_return(check, "SetParametersResult(successful=True)", result))
             if not result.successful:
                 return SetParametersResult(successful=result.successful, reason=result.reason)
-        former: dict[str, Parameter[Any]] = {}
+        former: dict[str, Parameter] = {}
         with self.lock:
             for parameter in parameters:
                 name = parameter.name
@@ -277,12 +283,12 @@ class NodeParameters:
                 if self.descriptors[name].dynamic_typing:
                     self.descriptors[name].type = parameter.type_.value
                 self.values[name] = parameter
-        self._told(parameters, former)
+        self._on_change(parameters, former)
         for hook in list(self.after):
             hook(parameters)
         return SetParametersResult(successful=True)
 
-    def set_descriptor(self, name: str, descriptor: Any, alternative: object) -> object:
+    def set_descriptor(self, name: str, descriptor: ParameterDescriptor, alternative: object) -> object:
         """Change a parameter's descriptor, and its value to `alternative` if given."""
         if name not in self.values:
             if not self.allows_undeclared:
@@ -328,7 +334,7 @@ def _is_listed(name: str, prefixes: Sequence[str], depth: int) -> bool:
     return False
 
 
-def _fault(parameter: Parameter[Any], descriptor: Any, *, is_new: bool, allows_not_set: bool = False) -> str:
+def _fault(parameter: Parameter, descriptor: ParameterDescriptor, *, is_new: bool, allows_not_set: bool = False) -> str:
     """Describe the mismatch of a value and its descriptor; empty if there is none."""
     name = parameter.name
     if descriptor.read_only and not is_new:
@@ -344,14 +350,14 @@ def _fault(parameter: Parameter[Any], descriptor: Any, *, is_new: bool, allows_n
     return ""
 
 
-def _out_of_range(parameter: Parameter[Any], bounds: Any) -> str:
+def _out_of_range(parameter: Parameter, bounds: IntegerRange | FloatingPointRange) -> str:
     return (
         f"Parameter {parameter.name} out of range. Min: {bounds.from_value}, Max: {bounds.to_value}, "
         f"value: {parameter.value}"
     )
 
 
-def _integer_fault(parameter: Parameter[Any], bounds: Any) -> str:
+def _integer_fault(parameter: Parameter, bounds: IntegerRange) -> str:
     low, high = sorted((bounds.from_value, bounds.to_value))
     if parameter.value in (bounds.from_value, bounds.to_value):
         return ""
@@ -365,7 +371,7 @@ def _integer_fault(parameter: Parameter[Any], bounds: Any) -> str:
     return ""
 
 
-def _double_fault(parameter: Parameter[Any], bounds: Any) -> str:
+def _double_fault(parameter: Parameter, bounds: FloatingPointRange) -> str:
     def same(a: float, b: float) -> bool:
         return math.isclose(a, b, rel_tol=RELATIVE_TOLERANCE)
 
@@ -379,7 +385,7 @@ def _double_fault(parameter: Parameter[Any], bounds: Any) -> str:
         distance = math.fabs((value - bounds.from_value) / bounds.step)
         if not same(distance, round(distance)):
             return (
-                f"The parameter value for {parameter.name} is close enough to no valid step. "
+                f"The parameter value for {parameter.name} is not close enough to a valid step. "
                 f"Min: {bounds.from_value}, max: {bounds.to_value}, value: {value}, step: {bounds.step}"
             )
     return ""

@@ -6,6 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.handle import Handle
+from rclpy.impl.mistakes.origins import Created
 from rclpy.qos import to_graphflow
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from rclpy.service_introspection import ServiceIntrospectionState
 
 
-class ServiceEnd:
+class ServiceEnd(Created):
     """A client or server of a service."""
 
     _endpoint: Any

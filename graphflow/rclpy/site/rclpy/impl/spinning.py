@@ -6,7 +6,7 @@ import threading
 import time
 import weakref
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Protocol
 
 from graphflow.rclpy.wake import SharedWake
@@ -16,6 +16,9 @@ from rclpy.task import Task
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
+    from rclpy.node import Node
+    from rclpy.timer import Timer
+    from rclpy.waitable import Waitable
 
 POLL = 0.001
 """Seconds between two steps of a coroutine that yields without naming a future."""
@@ -44,7 +47,8 @@ for _kind in (TimeoutException, ShutdownException, ExternalShutdownException, Co
 class Entity(Protocol):
     """An object with callbacks, such as a timer or subscription."""
 
-    callback_group: Any
+    @property
+    def callback_group(self) -> Any: ...
 
     def has_work(self) -> bool:
         """Whether there is work to take."""
@@ -60,10 +64,10 @@ class SpunNode(Protocol):
     _graphflow: Any
 
     @property
-    def timers(self) -> Any: ...
+    def timers(self) -> Iterator[Timer]: ...
 
     @property
-    def waitables(self) -> Any: ...
+    def waitables(self) -> Iterator[Waitable]: ...
 
 
 class Spins(Protocol):
@@ -72,12 +76,12 @@ class Spins(Protocol):
     @property
     def spinning(self) -> Spinning: ...
 
-    def can_execute(self, entity: Any) -> bool: ...
+    def can_execute(self, entity: Entity) -> bool: ...
 
     def create_task(self, callback: Any, *args: Any) -> Any: ...
 
 
-class Run(Task[Any]):
+class Run(Task):
     """A task, or one run of a callback, which holds a place in its group until it has ended.
 
     Attributes:
@@ -91,8 +95,8 @@ class Run(Task[Any]):
     ) -> None:
         super().__init__(handler, args, kwargs, executor=executor)
         self.executor, self.called = executor, handler
-        self.entity: Any = None
-        self.node: Any = None
+        self.entity: Entity | None = None
+        self.node: Node | None = None
         self.group: CallbackGroup | None = None
         self.thread = 0
         self.stepped_ns = 0
@@ -131,7 +135,7 @@ class Spinning:
     def __init__(self, executor: Spins, context: Context) -> None:
         self._executor, self.context = weakref.ref(executor), context
         self.wake = SharedWake()
-        self.nodes: dict[Any, None] = {}
+        self.nodes: dict[Node, None] = {}
         self.is_shutdown = False
         self.running: dict[Run, None] = {}
         """Tasks and runs of callbacks that have not ended, including suspended ones."""
@@ -140,7 +144,7 @@ class Spinning:
         self._round: deque[tuple[Any, Any]] = deque()
         """Entities found to have work, with their nodes; tasks have none."""
         self._tasks_were_last = False
-        self._asking: list[tuple[Any, Any, Any]] = []
+        self._asking: list[tuple[float | None, object, Callable[[], bool]]] = []
         """The arguments with which each waiting thread requested its next work."""
         self.turns = 0
         """The number of requests for work."""
@@ -187,7 +191,9 @@ class Spinning:
 
     # what is next
 
-    def next(self, timeout: float | None, nodes: object, condition: Callable[[], bool]) -> tuple[Run, object, object]:
+    def next(
+        self, timeout: float | None, nodes: Iterable[Node] | None, condition: Callable[[], bool]
+    ) -> tuple[Run, Entity | None, Node | None]:
         """Return the next piece of work with its entity and node, waiting for one if necessary.
 
         Raises:
@@ -224,21 +230,23 @@ class Spinning:
         finally:
             self._asking.remove(asked)
 
-    def _find(self, nodes: object, *, is_hurried: bool) -> tuple[Run, object, object] | None:
+    def _find(self, nodes: Iterable[Node] | None, *, is_hurried: bool) -> tuple[Run, Entity | None, Node | None] | None:
         with self._looking:
             return self._found(nodes, is_hurried=is_hurried) if self.has_room() else None
 
-    def _found(self, nodes: object, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
+    def _found(
+        self, nodes: Iterable[Node] | None, *, is_hurried: bool
+    ) -> tuple[Run, Entity | None, Node | None] | None:
         for _ in range(3):  # what the last look has found, then new ones, for tasks and for the rest
             while self._round:
                 what, node = self._round.popleft()
                 found = what if isinstance(what, Run) else self._begin(what, node)
                 if found is not None and not found.ended():
                     return found, found.entity, found.node
-            self._look(nodes, is_hurried=is_hurried)
+            self._fill_round(nodes, is_hurried=is_hurried)
         return None
 
-    def _look(self, nodes: Any, *, is_hurried: bool) -> None:
+    def _fill_round(self, nodes: Iterable[Node] | None, *, is_hurried: bool) -> None:
         """Fill the round: tasks, newest first, then timers, and arrivals by kind."""
         now_ns = time.monotonic_ns()
         for _ in range(len(self._polled)):
@@ -267,7 +275,7 @@ class Spinning:
                 else:
                     del ready[entity]
 
-    def _begin(self, entity: Any, node: Any) -> Run | None:
+    def _begin(self, entity: Entity, node: Node) -> Run | None:
         """Take a piece of work, and reserve a place in its group; None if there is none."""
         if node not in self.nodes and self.nodes:
             return None
@@ -286,7 +294,7 @@ class Spinning:
         self.running[run] = None
         return run
 
-    def _next_timer(self, nodes: Any) -> float | None:
+    def _next_timer(self, nodes: Iterable[Node] | None) -> float | None:
         """Return the seconds until a timer is due by this machine's clock."""
         soonest: float | None = POLL if self._polled else None
         for node in list(self.nodes) if nodes is None else list(nodes):
@@ -301,6 +309,6 @@ def _shorter(a: float | None, b: float | None) -> float | None:
     return b if a is None else a if b is None else min(a, b)
 
 
-def _order(entity: Any) -> int:
+def _order(entity: Entity) -> int:
     """Return an entity's rank in a round: subscriptions, guard conditions, clients, services, then the rest."""
     return getattr(type(entity), "turn", 9)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import traceback
 import weakref
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from graphflow.machines.lifecycle import (
     TRANSITIONS,
@@ -25,7 +25,12 @@ from rclpy.lifecycle.publisher import LifecyclePublisher
 from rclpy.node import Node
 
 if TYPE_CHECKING:
+    from lifecycle_msgs import srv
+    from lifecycle_msgs.msg import TransitionDescription
+
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.publisher import Publisher
+    from rclpy.service import Service
 
 __all__ = ["LifecycleNode", "LifecycleNodeMixin", "LifecycleState", "TransitionCallbackReturn"]
 
@@ -86,30 +91,30 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("enable_communication_interface must be a bool")
         self._managed_entities: dict[ManagedEntity, None] = {self: None}
         self._state_machine = _StateMachine(has_services=enable_communication_interface)
-        self._graphflow_transition_event: Any = None
+        self._graphflow_transition_event: Publisher | None = None
         if enable_communication_interface:
             self._graphflow_open_services(callback_group)
 
     def _graphflow_open_services(self, group: CallbackGroup | None) -> None:
         from lifecycle_msgs import msg, srv
 
-        node: Any = self
+        node = cast("Node", self)
         group = group or node.default_callback_group
         self._graphflow_transition_event = node.create_publisher(msg.TransitionEvent, "~/transition_event", 10)
 
-        def service(type_: Any, name: str, callback: Callable[[Any, Any], Any]) -> Any:
+        def service(type_: type, name: str, callback: Callable[..., object]) -> Service:
             return node.create_service(type_, f"~/{name}", callback, callback_group=group)
 
-        self._service_change_state = service(srv.ChangeState, "change_state", self._graphflow_asked_to_change)
-        self._service_get_state = service(srv.GetState, "get_state", self._graphflow_asked_for_state)
+        self._service_change_state = service(srv.ChangeState, "change_state", self._graphflow_serve_change)
+        self._service_get_state = service(srv.GetState, "get_state", self._graphflow_serve_state)
         self._service_get_available_states = service(
-            srv.GetAvailableStates, "get_available_states", self._graphflow_asked_for_states
+            srv.GetAvailableStates, "get_available_states", self._graphflow_serve_states
         )
         self._service_get_available_transitions = service(
-            srv.GetAvailableTransitions, "get_available_transitions", self._graphflow_asked_for_transitions
+            srv.GetAvailableTransitions, "get_available_transitions", self._graphflow_serve_transitions
         )
         self._service_get_transition_graph = service(
-            srv.GetAvailableTransitions, "get_transition_graph", self._graphflow_asked_for_graph
+            srv.GetAvailableTransitions, "get_transition_graph", self._graphflow_serve_graph
         )
 
     # transitions
@@ -153,7 +158,7 @@ class LifecycleNodeMixin(ManagedEntity):
             try:
                 answer = getattr(entity, hook)(state)
             except Exception as error:  # it counts as an error of the node's, as in ROS 2, and is told
-                node: Any = self
+                node = cast("Node", self)
                 if isinstance(error, TypeError) and error.__traceback__ is not None and not error.__traceback__.tb_next:
                     way = f"write def {hook}(self, state):"
                     node.get_logger().error(f"{described(getattr(entity, hook))}: {error}; {way}")
@@ -179,9 +184,10 @@ class LifecycleNodeMixin(ManagedEntity):
         event.transition = TransitionMessage(id=transition.id, label=transition.label)
         event.start_state = StateMessage(id=int(transition.start), label=transition.start.label)
         event.goal_state = StateMessage(id=int(transition.goal), label=transition.goal.label)
-        node: Any = self
+        node = cast("Node", self)
         if hasattr(event, "timestamp"):
             event.timestamp = node.get_clock().now().nanoseconds
+        assert self._graphflow_transition_event is not None
         self._graphflow_transition_event.publish(event)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
@@ -216,7 +222,7 @@ class LifecycleNodeMixin(ManagedEntity):
         """Create a publisher that sends only while the node is active. Arguments as for `create_publisher`."""
         if "publisher_class" in kwargs:
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
-        node: Any = self
+        node = cast("Node", self)
         made: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
         self._managed_entities[made] = None
         made._graphflow_node = weakref.ref(node)
@@ -224,13 +230,13 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
         """Destroy a lifecycle publisher."""
-        node: Any = self
+        node = cast("Node", self)
         self._managed_entities.pop(publisher, None)
         return bool(node.destroy_publisher(publisher))
 
     # what others ask
 
-    def _graphflow_asked_to_change(self, request: Any, response: Any) -> object:
+    def _graphflow_serve_change(self, request: srv.ChangeState.Request, response: srv.ChangeState.Response) -> object:
         wanted = request.transition
         state = self._state_machine.state
         known = asked(state, wanted.label) if wanted.label else asked(state, wanted.id)
@@ -239,27 +245,27 @@ class LifecycleNodeMixin(ManagedEntity):
             response.success = self._graphflow_trigger(known.id) is TransitionCallbackReturn.SUCCESS
         return response
 
-    def _graphflow_asked_for_state(self, request: object, response: Any) -> object:
+    def _graphflow_serve_state(self, request: object, response: srv.GetState.Response) -> object:
         response.current_state.id, response.current_state.label = self._state_machine.current_state
         return response
 
-    def _graphflow_asked_for_states(self, request: object, response: Any) -> object:
+    def _graphflow_serve_states(self, request: object, response: srv.GetAvailableStates.Response) -> object:
         from lifecycle_msgs.msg import State as StateMessage
 
         rows = self._state_machine.available_states
         response.available_states = [StateMessage(id=number, label=label) for number, label in rows]
         return response
 
-    def _graphflow_asked_for_transitions(self, request: object, response: Any) -> object:
+    def _graphflow_serve_transitions(self, request: object, response: srv.GetAvailableTransitions.Response) -> object:
         response.available_transitions = _described(available(self._state_machine.state))
         return response
 
-    def _graphflow_asked_for_graph(self, request: object, response: Any) -> object:
+    def _graphflow_serve_graph(self, request: object, response: srv.GetAvailableTransitions.Response) -> object:
         response.available_transitions = _described(TRANSITIONS)
         return response
 
 
-def _described(transitions: Any) -> list[object]:
+def _described(transitions: Iterable[Transition]) -> list[TransitionDescription]:
     from lifecycle_msgs.msg import TransitionDescription
 
     found = []

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
 from rclpy.impl.reexports import passed_on
 from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.publisher import Publisher
+
+if TYPE_CHECKING:
+    from rclpy.lifecycle.node import LifecycleState
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher):
@@ -20,19 +23,19 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         Publisher.__init__(self, *args, **kwargs)
 
         self._graphflow_node: Callable[[], Any] = _none
-        self._graphflow_is_told = False
+        self._graphflow_has_warned = False
 
-    def on_activate(self, state: Any) -> TransitionCallbackReturn:
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Send from now on, and warn again after the next deactivation."""
-        self._graphflow_is_told = False
+        self._graphflow_has_warned = False
         return super().on_activate(state)
 
-    def _graphflow_tell(self, msg: Any) -> None:
+    def _graphflow_warn(self, msg: Any) -> None:
         """Warn, with rclcpp's text, that a message is not sent; once per deactivation."""
         node = self._graphflow_node()
-        if node is None or self._graphflow_is_told:
+        if node is None or self._graphflow_has_warned:
             return
-        self._graphflow_is_told = True
+        self._graphflow_has_warned = True
         name, state = node.get_fully_qualified_name(), node._state_machine.state
         steps = {State.UNCONFIGURED: ("configure", "activate"), State.INACTIVE: ("activate",)}.get(state, ())
         way = " && ".join(f"graphflow lifecycle set {name} {step}" for step in steps)
@@ -41,7 +44,7 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
             f"{name} is {state.label}{f', to activate it: {way}' if way else ''}"
         )
 
-    @SimpleManagedEntity.when_enabled(when_not_enabled=_graphflow_tell)
+    @SimpleManagedEntity.when_enabled(when_not_enabled=_graphflow_warn)
     def publish(self, msg: Any) -> None:
         """Publish a message if the node is active."""
         Publisher.publish(self, msg)

@@ -52,7 +52,7 @@ def test_rotations_are_about_fixed_axes() -> None:
         (LINKS + joint(child="leg"), "the child of the joint 'j' is 'leg', and there is no such link"),
         (LINKS + joint() + joint(), "there are two joints 'j'"),
         (LINKS + joint() + joint(name="k"), "the link 'arm' has two joints above it: j, k"),
-        (LINKS + joint() + joint(name="k", parent="arm", child="base"), "no root: its joints go in a circle"),
+        (LINKS + joint() + joint(name="k", parent="arm", child="base"), "no root: its joints form a cycle"),
         (LINKS + joint("springy"), "of no known type: 'springy'"),
         (LINKS + joint(more='<axis xyz="0 0 0"/>'), "has no direction"),
         (LINKS + joint(more='<origin xyz="1 2"/>'), "expected three numbers"),

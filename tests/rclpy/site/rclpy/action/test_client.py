@@ -163,5 +163,5 @@ def test_the_result_of_a_goal_that_was_rejected(node: Node, spin: Spinner, caplo
     [text] = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
     assert text.startswith("test_client.py:")
     assert text.endswith(
-        ": the goal was rejected, and has no result: look at goal_handle.accepted before get_result_async()"
+        ": the goal was rejected and has no result: check goal_handle.accepted before get_result_async()"
     )

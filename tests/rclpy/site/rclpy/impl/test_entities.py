@@ -22,7 +22,7 @@ def test_each_is_called_by_its_callback(node: Node) -> None:
         """Does nothing."""
 
     rate = node.create_rate(1.0)
-    made = [
+    made: list[tuple[Any, str]] = [
         (node.create_timer(1.0, heard), "timer heard"),
         (node.create_subscription(String, "news", heard, 1), "subscription heard"),
         (node.create_service(Trigger, "ask", heard), "service heard"),

@@ -83,15 +83,15 @@ def test_changes_are_published(node: Node, spin: Spinner) -> None:
     node.set_parameters([Parameter("a", value=2)])
     node.undeclare_parameter("a")
     spin(lambda: len(events) == 3)
-    told = [(e.new_parameters, e.changed_parameters, e.deleted_parameters) for e in events]
-    assert [[p.name for p in part] for event in told for part in event if part] == [["a"], ["a"], ["a"]]
+    on_change = [(e.new_parameters, e.changed_parameters, e.deleted_parameters) for e in events]
+    assert [[p.name for p in part] for event in on_change for part in event if part] == [["a"], ["a"], ["a"]]
     assert events[0].node == "/node"
 
 
 def test_values_that_are_refused_while_nobody_looks(
     node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Told with the line; not where the result is used, or was asked for by another node."""
+    """OnChange with the line; not where the result is used, or was asked for by another node."""
     node.declare_parameter("n", 5)
     wrong: Parameter[Any] = Parameter("n", value="seven")
     node.set_parameters([wrong])
@@ -102,23 +102,23 @@ def test_values_that_are_refused_while_nobody_looks(
     answer = node.create_client(SetParametersAtomically, "node/set_parameters_atomically").call_async(asked)
     spin(answer.done)
     line = test_values_that_are_refused_while_nobody_looks.__code__.co_firstlineno + 6
-    why = "was not set, and the result, which says so, is not looked at: Wrong parameter type, expected 'Type.INTEGER'"
+    why = "was not set, and the result that reports it is ignored: Wrong parameter type, expected 'Type.INTEGER'"
     first, second = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
     assert first.startswith(f"test_parameter_methods.py:{line}: n {why}")
     assert second.startswith(f"test_parameter_methods.py:{line + 1}: n, n {why}")
 
 
 def test_values_that_are_refused_without_a_reason(node: Node, caplog: pytest.LogCaptureFixture) -> None:
-    """Told to be so."""
+    """OnChange to be so."""
     node.declare_parameter("n", 5)
     node.add_on_set_parameters_callback(lambda parameters: SetParametersResult(successful=False))
     node.set_parameters([Parameter("n", value=6)])
     (text,) = [record.getMessage() for record in caplog.records if record.name == "graphflow"]
-    assert text.endswith("is not looked at: (the callback gave no reason)")
+    assert text.endswith("is ignored: (the callback gave no reason)")
 
 
 def test_callbacks_that_raise_for_others(node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture) -> None:
-    """Are told in the node's own log, too, with the line; what the caller has done wrong is not."""
+    """Are on_change in the node's own log, too, with the line; what the caller has done wrong is not."""
     node.declare_parameter("n", 5)
 
     def check(parameters: Any) -> Any:

@@ -41,7 +41,7 @@ _POOL = concurrent.futures.thread.__file__
 class Blocked(NamedTuple):
     """The object of a wait: one of these fields, or nothing known."""
 
-    future: Future[Any] | None = None
+    future: Future | None = None
     timer: Timer | None = None
     lock: Entering | None = None
     thread: int | None = None
@@ -115,24 +115,24 @@ def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
 # a loop that asks a future whether it is done
 
 
-def _polled(frame: Frame) -> Future[Any] | None:
+def _polled(frame: Frame) -> Future | None:
     """Return the future that the innermost loop around a line polls, if nothing else ends the loop."""
     loop = _loop_around(frame)
     if loop is None:
         return None
-    asked = [*_asked(loop.test)]
+    asked = [*_polled_object(loop.test)]
     if asked:
-        return _future(asked[0], frame) if len(asked) == 1 and _asks_alone(loop) else None
+        return _future(asked[0], frame) if len(asked) == 1 and _is_only_exit(loop) else None
     if not (isinstance(loop.test, ast.Constant) or ast.unparse(loop.test) in ("rclpy.ok()", "ok()")):
         return None
-    choices = [n for n in loop.body if isinstance(n, ast.If) and [*_asked(n.test)]]
+    choices = [n for n in loop.body if isinstance(n, ast.If) and [*_polled_object(n.test)]]
     if (
         len(choices) != 1
         or isinstance(choices[0].test, ast.BoolOp)
         or _leaves([n for n in loop.body if n is not choices[0]])
     ):
         return None
-    return _future(next(_asked(choices[0].test)), frame)
+    return _future(next(_polled_object(choices[0].test)), frame)
 
 
 def _loop_around(frame: Frame) -> ast.While | None:
@@ -145,7 +145,7 @@ def _loop_around(frame: Frame) -> ast.While | None:
     return loops[-1] if loops else None
 
 
-def _asked(test: ast.expr) -> Iterator[ast.expr]:
+def _polled_object(test: ast.expr) -> Iterator[ast.expr]:
     """Return the object whose `done()` a condition calls."""
     for node in ast.walk(test):
         match node:
@@ -159,11 +159,11 @@ def _asked(test: ast.expr) -> Iterator[ast.expr]:
                 yield owner
 
 
-def _asks_alone(loop: ast.While) -> bool:
+def _is_only_exit(loop: ast.While) -> bool:
     """Whether only the polled answer, or the end of the program, ends a loop: no clock and no counter."""
     is_both = isinstance(loop.test, ast.BoolOp) and isinstance(loop.test.op, ast.And)
     parts = loop.test.values if is_both else [loop.test]  # type: ignore[attr-defined]
-    others = [part for part in parts if not ast.unparse(part).endswith("ok()") and not [*_asked(part)]]
+    others = [part for part in parts if not ast.unparse(part).endswith("ok()") and not [*_polled_object(part)]]
     nested = [node for part in parts for node in ast.walk(part) if isinstance(node, ast.BoolOp)]
     return not (others or nested or _leaves(loop.body))
 
@@ -173,7 +173,7 @@ def _leaves(body: list[ast.stmt]) -> bool:
     return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
 
 
-def _future(expression: ast.expr, frame: Frame) -> Future[Any] | None:
+def _future(expression: ast.expr, frame: Frame) -> Future | None:
     found = _value(expression, frame)
     return found if isinstance(found, Future) else None
 

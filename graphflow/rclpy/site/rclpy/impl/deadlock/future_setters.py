@@ -6,7 +6,7 @@ import ast
 import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, Syntax, syntax_of
@@ -33,7 +33,7 @@ def programs_files() -> list[str]:
     return [file for file in files if is_users(file) and file.endswith(".py") and not is_installed(file)]
 
 
-def may_be_ended(future: Future[Any], nodes: Iterable[object], files: Iterable[str]) -> bool:
+def may_be_ended(future: Future, nodes: Iterable[object], files: Iterable[str]) -> bool:
     """Whether some code may complete an awaited future, according to its source.
 
     Args:
@@ -56,7 +56,7 @@ def _classes_of_nodes(nodes: list[object]) -> set[str]:
     return names
 
 
-def _may_end(ending: _Ending, future: Future[Any], nodes: list[object], classes: set[str]) -> bool:
+def _may_end(ending: _Ending, future: Future, nodes: list[object], classes: set[str]) -> bool:
     of_class = [node for node in nodes if any(cls.__name__ == ending.cls for cls in type(node).__mro__)]
     if ending.cls in classes and not of_class:
         return False  # there is no such node
@@ -80,15 +80,15 @@ def _endings_in(syntax: Syntax) -> Iterator[_Ending]:
             within = next((parent for parent in parents if isinstance(parent, ast.ClassDef)), None)
             cls = within.name if within is not None else ""
             if isinstance(owner, ast.Attribute) and is_own(owner):
-                if not _is_another(owner, [syntax.module]):
+                if not _is_other_object(owner, [syntax.module]):
                     yield _Ending(owner.attr, cls)
             else:
                 functions = [parent for parent in parents if isinstance(parent, FunctionNode)]
-                if not (isinstance(owner, ast.Name) and _is_another(owner, functions or [syntax.module])):
+                if not (isinstance(owner, ast.Name) and _is_other_object(owner, functions or [syntax.module])):
                     yield _Ending("", cls)
 
 
-def _is_another(owner: ast.Name | ast.Attribute, scopes: Iterable[ast.AST]) -> bool:
+def _is_other_object(owner: ast.Name | ast.Attribute, scopes: Iterable[ast.AST]) -> bool:
     """Whether a name or attribute is not an answer's future, judged by its constructor or else by its name."""
     word = ast.unparse(owner)
     made = (n for scope in scopes for n in ast.walk(scope) if isinstance(n, ast.Assign | ast.AnnAssign) and n.value)

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.executors import Executor
 from rclpy.impl.deadlock.groups import called, is_exclusive, threads_of
 from rclpy.impl.entities import Role, arrived, entities_of
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.spinning import Run
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.impl.spinning import Entity
+    from rclpy.node import Node
 
 
 def group_rows(
-    nodes: Iterable[Any], roles: Mapping[Any, Role], runs: Collection[Run], spun: Collection[Executor]
+    nodes: Iterable[Node], roles: Mapping[Entity, Role], runs: Collection[Run], spun: Collection[Executor]
 ) -> dict[str, list[dict[str, Any]]]:
     """Return the callback groups of each node, with their callbacks.
 
@@ -38,11 +44,11 @@ def group_rows(
         else:
             limit, name = 0, "no executor"
         about = {"name": name, "limit": limit, "when_full": "wait", "thread": False, "sort": "executor"}
-        found[str(node._graphflow.node.full_name)] = [*rows.values(), {**about, "handlers": []}]
+        found[str(internals_of(node).node.full_name)] = [*rows.values(), {**about, "handlers": []}]
     return found
 
 
-def _row(group: Any, node: Any) -> dict[str, Any]:
+def _row(group: CallbackGroup, node: Node) -> dict[str, Any]:
     """Return a callback group as plain data, without callbacks."""
     about = {"name": called(group, node), "limit": 1 if is_exclusive(group) else None, "when_full": "wait"}
     return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
+
+if TYPE_CHECKING:
+    from rclpy.impl.spinning import Spins
+    from rclpy.node import Node
+
 
 ATTEMPTS = 5
 """Attempts to read a collection that other threads change meanwhile."""
@@ -21,7 +26,7 @@ def executors() -> list[Executor]:
     return []
 
 
-def called(group: Any, node: Any) -> str:
+def called(group: CallbackGroup, node: Node | None) -> str:
     """Return a callback group's name: the node's attribute that holds it."""
     if node is not None and group is node.default_callback_group:
         return "default callback group"
@@ -30,17 +35,17 @@ def called(group: Any, node: Any) -> str:
     return f"{kind} '{attribute}'" if attribute else kind
 
 
-def is_exclusive(group: Any) -> bool:
+def is_exclusive(group: CallbackGroup) -> bool:
     """Whether a group runs one callback at a time; unknown for groups with a `can_execute` of their own."""
     kind = MutuallyExclusiveCallbackGroup
     return isinstance(group, kind) and type(group).beginning_execution is kind.beginning_execution
 
 
-def threads_of(executor: Executor) -> int | None:
+def threads_of(executor: Spins) -> int | None:
     """Return the number of an executor's threads; None for a user-defined one."""
-    way = type(executor).spin_once
-    if isinstance(executor, SingleThreadedExecutor) and way is SingleThreadedExecutor.spin_once:
+    single, multi = SingleThreadedExecutor, MultiThreadedExecutor
+    if isinstance(executor, single) and type(executor).spin_once is single.spin_once:
         return 1
-    if isinstance(executor, MultiThreadedExecutor) and way is MultiThreadedExecutor.spin_once:
+    if isinstance(executor, multi) and type(executor).spin_once is multi.spin_once:
         return executor._executor._max_workers
     return None

@@ -42,6 +42,7 @@ from graphflow.rclpy.messages.classes import StrictMessage
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
 from rclpy.action.client import ActionClient
+from rclpy.action.server import ActionServer
 from rclpy.client import Client
 from rclpy.impl.deadlock.blocking import blocked, is_private, limit_of
 from rclpy.impl.deadlock.buffers import BufferWait
@@ -51,7 +52,7 @@ from rclpy.impl.deadlock.groups import ATTEMPTS, called, executors, is_exclusive
 from rclpy.impl.deadlock.later_servers import opening_of, tries_forever
 from rclpy.impl.deadlock.locks import Entering, holds, only_holder
 from rclpy.impl.deadlock.stacks import Level, Stack, stacks, standing
-from rclpy.impl.deadlock.subjects import Subject
+from rclpy.impl.deadlock.subjects import subject_of
 from rclpy.impl.entities import (
     Role,
     after_answers,
@@ -61,18 +62,24 @@ from rclpy.impl.entities import (
     full_name,
     goal_of,
     name_of,
-    results_asked,
+    result_requests,
     role_of,
     served,
 )
+from rclpy.impl.nodes import nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.impl.watches.watches import Watches
 from rclpy.task import Future
 from rclpy.timer import Timer
 
 if TYPE_CHECKING:
+    from graphflow.deadlock.protocols import Subject
     from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.context import Context
+    from graphflow.runtime.endpoints.threaded import ThreadedClient
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.impl.spinning import Entity, Spins
+    from rclpy.node import Node
 
 LOOK_EVERY = 0.15
 """Seconds between two checks whether a thread or callback is stuck."""
@@ -90,12 +97,12 @@ class Waiting:
         self._life, self.context = life, context
         self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._count, self._lock = count(1), threading.RLock()
-        self._stood: dict[int, tuple[int, float]] = {}
+        self._positions: dict[int, tuple[int, float]] = {}
         """The position of each thread, and the time since which it has been there."""
         self._known: dict[tuple[int, int], float] = {}
         """The time of the last examination of each stuck position: a frame and a line, or a run and its step."""
-        self.watches = Watches(life, context, self._is_told)
-        LOOP.soon(self._look)
+        self.watches = Watches(life, context, self._is_reported)
+        LOOP.soon(self._check)
 
     def number_of(self, thing: object) -> int:
         """Return a number that no other object ever has."""
@@ -106,9 +113,9 @@ class Waiting:
 
     def stands_since(self, thread: int) -> float:
         """Return the monotonic time since which a thread has been in its innermost user function."""
-        return self._stood.get(thread, (0, time.monotonic()))[1]
+        return self._positions.get(thread, (0, time.monotonic()))[1]
 
-    def _is_told(self, thing: object, prefix: str, title: str) -> bool:
+    def _is_reported(self, thing: object, prefix: str, title: str) -> bool:
         """Whether a run or thread is part of a reported deadlock, or waits behind one."""
         return self.context.search.has_reported(f"{self.context.session.zid}:{prefix}{self.number_of(thing)}", title)
 
@@ -119,7 +126,7 @@ class Waiting:
     def waits(self) -> WaitGraph:
         """Return the waits. An activity that a second reading finds changed counts as running."""
         with self._lock:
-            first, second = _Look(self).graph(), _Look(self).graph()
+            first, second = _Reading(self).graph(), _Reading(self).graph()
         activities = {}
         for name, now in second.activities.items():
             then = first.activities.get(name)
@@ -132,23 +139,23 @@ class Waiting:
         with self._lock:
             for _ in range(ATTEMPTS):
                 with suppress(RuntimeError):  # something changed its size meanwhile
-                    return _Look(self).rows()
+                    return _Reading(self).rows()
         return {}
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         """Request a search for deadlocks if something is stuck, and reschedule itself. Runs on the loop."""
         if not self._life.is_ok:
             return
         clock = self.context.clock
-        clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
-        self.watches.look()
+        clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._check)
+        self.watches.check()
         now, places = time.monotonic(), standing()
-        self._stood = {
-            thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
+        self._positions = {
+            thread: known if (known := self._positions.get(thread)) is not None and known[0] == frame else (frame, now)
             for thread, (frame, _) in places.items()
         }
         runs: list[Run] = [run for executor in executors() for run in list(executor.spinning.running)]
-        still = {places[thread] for thread, (_, since) in self._stood.items() if now - since >= 0.9 * LOOK_EVERY}
+        still = {places[thread] for thread, (_, since) in self._positions.items() if now - since >= 0.9 * LOOK_EVERY}
         still |= {(id(run), run.stepped_ns) for run in runs if 0 < run.stepped_ns < (now - LOOK_EVERY) * 1e9}
         lasting = {thing for thing, _ in still}  # a loop that polls has several lines
         self._known = {known: when for known, when in self._known.items() if known[0] in lasting}
@@ -158,13 +165,13 @@ class Waiting:
             self.context.ledger.alert()
 
 
-class _Look:
+class _Reading:
     """One reading of all activities."""
 
     def __init__(self, waiting: Waiting) -> None:
         self._waiting, self._context = waiting, waiting.context
         self._zid, self._now = self._context.session.zid, time.monotonic()
-        self._nodes: list[object] = list(waiting._life.nodes)
+        self._nodes = nodes_of(waiting._life)
         self._owners = {entity: node for node in self._nodes for entity in entities_of(node)}
         self._roles = {entity: role_of(entity) for entity in self._owners}
         self._groups: dict[str, GroupView] = {}
@@ -172,7 +179,7 @@ class _Look:
         self._activities: dict[str, ActivityView] = {}
         self._pause: Pause | None = None
         """The point of the event loop at which the examined run is suspended."""
-        self._asker: object = None
+        self._client_node: Node | None = None
         """The node whose client waits for the answer that the examined activity needs."""
         self._stacks = list(stacks())
         self._spun = {executor for stack in self._stacks for executor in stack.spins}
@@ -207,7 +214,7 @@ class _Look:
 
     # groups
 
-    def _callback_group(self, group: Any, node: Any) -> tuple[str, ...]:
+    def _callback_group(self, group: CallbackGroup, node: Node | None) -> tuple[str, ...]:
         """Return the id of a callback group, if it excludes anything."""
         if not is_exclusive(group):
             return ()
@@ -215,14 +222,14 @@ class _Look:
         self._groups[name] = GroupView(name, called(group, node), full_name(node), 1, sort="callback")
         return (name,)
 
-    def _executor(self, executor: Any, node: Any) -> tuple[str, ...]:
+    def _executor(self, executor: Spins, node: Node | None) -> tuple[str, ...]:
         """Return the id of an executor as a group of threads."""
         limit = threads_of(executor)
         name = self._id(executor, "e")
         self._groups.setdefault(name, GroupView(name, type(executor).__name__, full_name(node), limit, sort="executor"))
         return (name,)
 
-    def _spinner(self, node: Any) -> tuple[str, ...]:
+    def _spinner(self, node: Node) -> tuple[str, ...]:
         """Return the id of what a node needs if nothing spins it: one of the program's own threads."""
         threads = [stack for stack in self._stacks if stack.may_spin]
         if not threads:
@@ -231,7 +238,7 @@ class _Look:
         self._groups.setdefault(name, GroupView(name, "spinner", full_name(node), len(threads), sort="spinner"))
         return (name,)
 
-    def _needs(self, group: Any, node: Any) -> tuple[str, ...]:
+    def _needs(self, group: CallbackGroup, node: Node) -> tuple[str, ...]:
         """Return the slots that the next callback of a group and node takes."""
         own, executor = self._callback_group(group, node), node.executor
         if executor is None or node not in executor.spinning.nodes:
@@ -242,7 +249,7 @@ class _Look:
 
     # queues
 
-    def _add_queue(self, entity: Any, node: Any) -> None:
+    def _add_queue(self, entity: Entity, node: Node) -> None:
         name, role = self._id(entity, "q"), self._roles[entity]
         calls, waiting = arrived(entity)
         if isinstance(entity, Timer):  # a rate's tick is asked for like an answer
@@ -252,9 +259,10 @@ class _Look:
             name, role.label, full_name(node), needs, calls, waiting, process=self._zid, is_declared=False
         )
 
-    def _add_results(self, entity: Any, node: Any) -> None:
+    def _add_results(self, entity: Entity, node: Node) -> None:
         """Add the clients that wait for the result of a goal."""
-        for call, goal in results_asked(entity):
+        for call, goal in result_requests(entity):
+            assert isinstance(entity, ActionServer)
             name, label = f"{call}:r", f"service {self._roles[entity].handler} get_result"
             wait = Call(goal, entity._graphflow_goals.name.partition("/_action/")[0])
             self._activities[name] = ActivityView(name, label, full_name(node), (), wait, call, process=self._zid)
@@ -317,22 +325,12 @@ class _Look:
         selves = [frame.f_locals.get("self") for frame in level.frames]
         node = next((n for n in self._nodes if any(own is n for own in selves)), first)
         wait, left = self._wait(level, node, None)
-        node = node if self._asker is None else self._asker
-        age, name = self._age(stack), self._id(stack.thread, "t")
-        found = where(level.frames, node, self._pause)
+        node = node if self._client_node is None else self._client_node
+        age, name, title = self._age(stack), self._id(stack.thread, "t"), f"thread {stack.thread.name}"
+        found, left = where(level.frames, node, self._pause), left if left is None else max(0.0, left - age)
+        place, function = found.place, found.function
         self._activities[name] = ActivityView(
-            name,
-            f"thread {stack.thread.name}",
-            full_name(node),
-            holding,
-            wait,
-            "",
-            found.place,
-            found.function,
-            age,
-            left if left is None else max(0.0, left - age),
-            self._zid,
-            is_async=False,
+            name, title, full_name(node), holding, wait, "", place, function, age, left, self._zid, is_async=False
         )
 
     def _add_idle(self, stack: Stack, holding: tuple[str, ...]) -> None:
@@ -354,7 +352,7 @@ class _Look:
         age = self._now - run.stepped_ns / 1e9 if run.stepped_ns else 0.0
         self._add_run(run, level, group, wait, age, None)
 
-    def _node_of(self, run: Run) -> object:
+    def _node_of(self, run: Run) -> Node | None:
         """Return the node of a run's callback; for a task, one of its executor's nodes."""
         goal = goal_of(run)
         if goal is not None:
@@ -368,22 +366,22 @@ class _Look:
         goal = goal_of(run)
         if goal is not None:
             return Role("action", name_of(run._args[0]) or "execute")
-        known = self._roles.get(run.entity)
+        known = None if run.entity is None else self._roles.get(run.entity)
         if known is None:
             return Role("task", name_of(run.called) or "task")
         return known
 
     # conditions
 
-    def _wait(self, level: Level, node: Any, run: Run | None) -> tuple[Condition, float | None]:
+    def _wait(self, level: Level, node: Node | None, run: Run | None) -> tuple[Condition, float | None]:
         """Return the wait of a thread's code, and its time limit in seconds."""
-        self._pause = self._asker = None
+        self._pause = self._client_node = None
         found = blocked(level)
         if found.future is not None:
             return self._of_future(found.future, level, node, run), found.timeout
         if found.timer is not None:
             turn = self._closed_world(level, None, node, run)  # of a loop that polls at that rate
-            executor: Any = None if run is None else run.executor
+            executor = None if run is None else run.executor
             is_alone = executor is None or threads_of(executor) == 1  # then there will be no tick at all
             return Call(self._tick(found.timer), "rate") if turn == FREE or is_alone else turn, None
         if node is None or (level.waiting is not None and run is None):
@@ -400,7 +398,7 @@ class _Look:
             return self._of_opening(found.service, level, node, run, gives_up=left is not None), left
         return self._closed_world(level, None, node, run), limit_of(level)
 
-    def _of_future(self, future: Future[Any], level: Level, node: Any, run: Run | None) -> Condition:
+    def _of_future(self, future: Future, level: Level, node: Node | None, run: Run | None) -> Condition:
         if future.done() or future.cancelled():
             return FREE
         if isinstance(future, Run):
@@ -409,16 +407,16 @@ class _Look:
             if isinstance(entity, Client):
                 sequence = next((n for n, f in list(entity._pending.items()) if f is future), None)
                 if sequence is not None:
-                    self._asker = self._owners[entity]
+                    self._client_node = self._owners[entity]
                     return self._of_call(entity._endpoint, sequence, future, level)
             elif isinstance(entity, ActionClient):
                 found = next((key for key, (f, _) in list(entity._graphflow_waiting.items()) if f is future), None)
                 if found is not None:
-                    self._asker = self._owners[entity]
+                    self._client_node = self._owners[entity]
                     return self._of_call(*found, future, level)
         return self._closed_world(level, future, node, run)
 
-    def _of_call(self, endpoint: Any, sequence: int, future: Future[Any], level: Level) -> Condition:
+    def _of_call(self, endpoint: ThreadedClient, sequence: int, future: Future, level: Level) -> Condition:
         if not is_private(level) and may_be_ended(future, self._nodes, programs_files()):
             return FREE
         try:
@@ -448,7 +446,7 @@ class _Look:
         queues, active = (self._id(e, "q") for e in fillers), (self._id(r) for r in self._runs if r.entity in fillers)
         return SetBy(wait.what, tuple(sorted(queues)), tuple(sorted(active)), verb="hears", gives_up=True)
 
-    def _of_opening(self, service: str, level: Level, node: Any, run: Run | None, *, gives_up: bool) -> Condition:
+    def _of_opening(self, service: str, level: Level, node: Node, run: Run | None, *, gives_up: bool) -> Condition:
         """Return the wait for a server that, according to the source, only blocked code creates."""
         (own, tasks, subject), others = self._world(node), [other for other in self._nodes if other is not node]
         found = None if self._servers[service] else opening_of(service, level.frames, subject, others, programs_files())
@@ -462,26 +460,32 @@ class _Look:
         mine = self._id(run) if run is not None else self._id(stack.thread, "t") if stack is not None else ""
         return replace(condition, activities=(*condition.activities, mine))
 
-    def _world(self, node: Any) -> tuple[list[tuple[object, str]], list[Run], Any]:
+    def _world(self, node: Node) -> tuple[list[tuple[Entity, str]], list[Run], Subject]:
         """Return a node's callbacks by entity, the tasks that run its methods, and the node as a subject."""
         own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
         own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
         tasks = [task for task in self._runs if getattr(task.called, "__self__", None) is node]
-        return own, tasks, Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
+        return (
+            own,
+            tasks,
+            subject_of(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)]),
+        )
 
-    def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
+    def _closed_world(self, level: Level, future: Future | None, node: Node | None, run: Run | None) -> Condition:
         """Return the wait for something that, according to the source, only the node's callbacks bring about."""
+        if node is None:
+            return FREE
         own, tasks, subject = self._world(node)
         found = setters(level.frames, future, subject)
-        others = [Subject(other) for other in self._nodes if other is not node]
+        others = [subject_of(other) for other in self._nodes if other is not node]
         is_known = found is not None and found.handlers and found.lock is None and not found.parts
-        if found is None or not is_known or found.is_shared(subject, others):  # type: ignore[arg-type]
+        if found is None or not is_known or found.is_shared(subject, others):
             return FREE
         self._pause = found.pause
         return self._set_by(found, own, tasks, node, run)
 
     def _set_by(
-        self, found: Setters, own: list[tuple[object, str]], tasks: list[Run], node: Any, run: Run | None
+        self, found: Setters, own: list[tuple[Entity, str]], tasks: list[Run], node: Node | None, run: Run | None
     ) -> SetBy:
         queues = {self._id(entity, "q") for entity, handler in own if handler in found.handlers}
         others_runs = [r for r in self._runs if r is not run and (r.node is node or r in tasks)]

@@ -10,7 +10,7 @@ import logging
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from itertools import combinations, permutations
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from graphflow.analysis.user_code import short_place
 from graphflow.msgs import registry
@@ -18,6 +18,10 @@ from graphflow.msgs.registry import KINDS
 from rclpy.impl.callers import caller
 from rclpy.impl.mistakes import repeats
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyEnum, QoSProfile, ReliabilityPolicy
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -74,7 +78,7 @@ def explained(call: Callable[P, T]) -> Callable[P, T]:
             _warn(name)
         if "qos_profile" in signature.parameters:
             _check_depth(name, signature.bind(*args, **kwargs).arguments.get("qos_profile"))
-        repeats.count(args[0], name, made)
+        repeats.count(cast("Node", args[0]), name, made)
         return made
 
     return checked
@@ -92,18 +96,18 @@ def _fault(name: str, given: Mapping[str, object], needed: list[str]) -> str:
         return ""
     for order in permutations(given.values()) if len(given) == len(needed) else ():
         if all(map(_fits, needed, order)):
-            return f"the arguments of {name} are in another order: {name}({', '.join(map(_shown, order))})"
+            return f"the arguments of {name} are in the wrong order: {name}({', '.join(map(_shown, order))})"
     if any("callback" in word for word in wrong):
         return _no_callback(name, next(given[word] for word in wrong if "callback" in word))
     word = wrong[0]
-    way = _class_meant(word, given[word])
+    way = _class_advice(word, given[word])
     if way:
         return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: {way}"
     expected = f"{name}({', '.join(_WRITTEN.get(word, word) for word in needed)})"
     return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: write {expected}"
 
 
-def _class_meant(word: str, value: object) -> str:
+def _class_advice(word: str, value: object) -> str:
     """Show how to pass the class of an interface instead of something else; empty if unknown."""
     if not word.endswith("_type"):
         return ""
@@ -129,8 +133,8 @@ _USES = {
 def _no_callback(name: str, value: object) -> str:
     given = "None" if value is None else _shown(value)
     return (
-        f"{name} was given {given} as its callback: give it the method itself, without parentheses, as in self.method; "
-        "self.method() calls it at once, and gives what it returns"
+        f"{name} was given {given} as its callback: pass the method itself, without parentheses, as in self.method; "
+        "self.method() calls it at once and passes its result"
     )
 
 
@@ -140,7 +144,7 @@ def _no_group(name: str, value: object) -> str:
         return ""
     if isinstance(value, (int, QoSProfile)):
         thing = name.removeprefix("create_")
-        return f"a {thing} has no depth: leave out {_shown(value)}, which is taken for its callback group"
+        return f"a {thing} has no depth: leave out {_shown(value)}, which is read as its callback group"
     made = value.__name__ if isinstance(value, type) else "MutuallyExclusiveCallbackGroup"
     given = f"the class {made}" if isinstance(value, type) else repr(value)
     return f"callback_group of {name} must be a callback group, got {given}: make one, as in {made}()"
@@ -181,27 +185,27 @@ def _check_depth(name: str, qos: object) -> None:
         logger.warning(text, name, policy, int(qos), word, policy, asked.place)
 
 
-class Unmade:
+class NotConstructed:
     """The class-level value of a node's internals, which `Node.__init__` replaces."""
 
-    def __get__(self, node: Any, owner: type) -> Any:
+    def __get__(self, node: Node, owner: type) -> Any:
         if node is None:
             return self
         code = getattr(owner.__init__, "__code__", None)  # type: ignore[misc]  # which class it is does not matter
         place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
         name = owner.__name__
         raise AttributeError(
-            f"{name} is no node yet: {name}.__init__{place} must call super().__init__('node_name') before all else"
+            f"{name} is not a node yet: {name}.__init__{place} must call super().__init__('node_name') first"
         )
 
 
-def must_return(callback: Any, what: str, value: object) -> str:
+def must_return(callback: object, what: str, value: object) -> str:
     """Return the sentence for a callback that returned something other than `what`."""
     given = "None" if value is None else type(value).__name__
     return f"{described(callback)} must return {what}, and returned {given}"
 
 
-def described(callback: Any) -> str:
+def described(callback: object) -> str:
     """Format a callback with its line: `tick (lamp.py:12)`."""
     code = getattr(callback, "__code__", None)
     place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""

@@ -9,41 +9,50 @@ import dis
 import logging
 from collections.abc import Iterator
 from types import CodeType, FunctionType, MethodType
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.analysis.user_code import is_users, short_place
 from rclpy.constants import S_TO_NS
+from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
-_told: set[CodeType] = set()
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.service import Service
+
+
+_reported: set[CodeType] = set()
 """The callbacks that have been reported."""
 _STUBS = {"NotImplementedError", "NotImplemented", "ABC"}
 """The names that a callback meant to be overridden uses, at most."""
 logger = logging.getLogger("graphflow")
 
 
-def tell_hidden(node: Any, made: Any, asker: CodeType, others: list[Any]) -> None:
+def warn_of_hiding(
+    node: Node, made: Timer | Subscription | Service, caller: CodeType, others: list[Timer | Subscription | Service]
+) -> None:
     """Warn if a base class and its subclass each gave an entity a method of the same name.
 
     Args:
         made: The new entity, with the callback.
-        asker: The function that created it.
-        others: The node's entities; each one's `made_at` has the function that created it.
+        caller: The function that created it.
+        others: The node's entities with callbacks.
     """
     callback = made.callback
     if not isinstance(callback, MethodType) or callback.__self__ is not node:
         return
     method = callback.__func__
-    if not isinstance(method, FunctionType) or method.__code__ in _told:
+    if not isinstance(method, FunctionType) or method.__code__ in _reported:
         return
     for other in others:
         is_gone = isinstance(other, Timer) and (other.handle.is_destroyed or other.is_canceled())
-        if other is made or is_gone or other.callback != callback or not hasattr(other, "made_at"):
+        if other is made or is_gone or other.callback != callback or other.made_at is None:
             continue
-        for first, first_by, by in ((other, other.made_at[1], asker), (made, asker, other.made_at[1])):
+        outer = other.made_at.code
+        for first, first_by, by in ((other, outer, caller), (made, caller, outer)):
             found = _hidden(type(node), method, first_by, by)
             if found is not None and _is_missed(type(node), method, found[1], first, made, other):
-                _told.add(method.__code__)
+                _reported.add(method.__code__)
                 logger.warning("%s", _text(method, *found, first, _kinds(made, other)))
                 return
 
@@ -78,7 +87,9 @@ def _owner(cls: type, code: CodeType) -> type | None:
     return next((c for c in cls.__mro__ if any(getattr(v, "__code__", None) is code for v in vars(c).values())), None)
 
 
-def _is_missed(cls: type, method: FunctionType, former: FunctionType, first: object, made: Any, other: object) -> bool:
+def _is_missed(
+    cls: type, method: FunctionType, former: FunctionType, first: object, *entities: Timer | Subscription | Service
+) -> bool:
     """Whether the parent's method was meant to be called as well.
 
     A method that is a stub, or that the new one calls, is meant to be overridden. Where both entities have messages of
@@ -86,12 +97,17 @@ def _is_missed(cls: type, method: FunctionType, former: FunctionType, first: obj
     """
     if method.__name__ in method.__code__.co_names or set(former.__code__.co_names) <= _STUBS:
         return False
-    types = [getattr(one, "msg_type", None) or getattr(one, "srv_type", None) for one in (made, other)]
-    if isinstance(first, Timer) or types[0] is not types[1]:
+    if isinstance(first, Timer) or len({_type(entity) for entity in entities}) > 1:
         return True
     lost = _named(former.__code__, "STORE_ATTR") - _named(method.__code__, "STORE_ATTR")
     codes = (c for c in _codes(cls) if c not in (former.__code__, method.__code__))
     return any(lost & _named(code, "LOAD_ATTR") for code in codes)
+
+
+def _type(entity: Timer | Subscription | Service) -> object:
+    if isinstance(entity, Timer):
+        return None
+    return entity.msg_type if isinstance(entity, Subscription) else entity.srv_type
 
 
 def _codes(cls: type) -> Iterator[CodeType]:
@@ -107,7 +123,14 @@ def _named(code: CodeType, operation: str) -> set[str]:
     return {str(step.argval) for step in dis.get_instructions(code) if step.opname == operation}
 
 
-def _text(method: FunctionType, owner: type, former: FunctionType, parent: type, first: object, kinds: str) -> str:
+def _text(
+    method: FunctionType,
+    owner: type,
+    former: FunctionType,
+    parent: type,
+    first: Timer | Subscription | Service,
+    kinds: str,
+) -> str:
     name = method.__name__
     own, its = (short_place(f.__code__.co_filename, f.__code__.co_firstlineno) for f in (method, former))
     return (
@@ -116,17 +139,17 @@ def _text(method: FunctionType, owner: type, former: FunctionType, parent: type,
     )
 
 
-def _use(entity: Any) -> str:
+def _use(entity: Timer | Subscription | Service) -> str:
     """Describe an entity's use of its callback, to follow `which`."""
     if isinstance(entity, Timer):
         return f"is called every {entity.timer_period_ns / S_TO_NS:g} s"
-    if hasattr(entity, "topic_name"):
+    if isinstance(entity, Subscription):
         return f"is subscribed to {entity.topic_name}"
     return f"answers {entity.service_name}"
 
 
 def _kinds(*entities: object) -> str:
     words = {
-        "timers" if isinstance(e, Timer) else "topics" if hasattr(e, "topic_name") else "services" for e in entities
+        "timers" if isinstance(e, Timer) else "topics" if isinstance(e, Subscription) else "services" for e in entities
     }
     return f"both {words.pop()}" if len(words) == 1 else "both"

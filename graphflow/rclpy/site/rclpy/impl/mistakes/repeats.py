@@ -6,13 +6,21 @@ ROS 2 keeps them all silently, until memory or processor time runs out.
 from __future__ import annotations
 
 import logging
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import Place
 from rclpy.impl.callers import caller
 from rclpy.impl.deadlock.stacks import is_in_run
-from rclpy.impl.mistakes.hidden_callbacks import tell_hidden
+from rclpy.impl.mistakes.hidden_callbacks import warn_of_hiding
+from rclpy.impl.mistakes.origins import Origin
+from rclpy.impl.nodes import internals_of
 from rclpy.timer import Timer
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.service import Service
+    from rclpy.subscription import Subscription
+
 
 MANY = 10
 """The number of live entities of one kind, name and line that is reported."""
@@ -23,12 +31,12 @@ _KINDS = {
     "create_service": "services",
     "create_timer": "timers",
 }
-_told: set[Place] = set()
+_reported: set[Place] = set()
 """The lines that have been reported."""
 logger = logging.getLogger("graphflow")
 
 
-def count(node: Any, call: str, made: Any) -> None:
+def count(node: Node, call: str, made: Any) -> None:
     """Warn if a node has many entities like the one that a call has just created.
 
     Args:
@@ -39,45 +47,46 @@ def count(node: Any, call: str, made: Any) -> None:
         return
     kind, place = _KINDS[call], asked.place
     if call == "create_service":
-        _tell_twin(node, made, place)
+        _warn_of_twin(node, made, place)
     elif call == "create_subscription":
-        _tell_same(node, made, place)
-    made.made_at = key = (place, asked.frame.f_code, _name(made, is_again=is_in_run(asked.frame)))
-    if hasattr(made, "callback"):
-        tell_hidden(node, made, asked.frame.f_code, _with_callbacks(node))
-    alike = sum(getattr(other, "made_at", None) == key and _is_alive(other) for other in getattr(node._graphflow, kind))
-    if alike >= MANY and place not in _told:
-        _told.add(place)
+        _warn_of_same(node, made, place)
+    origin = Origin(place, asked.frame.f_code, _name(made, is_again=is_in_run(asked.frame)))
+    made.made_at = origin
+    if call in ("create_subscription", "create_service", "create_timer"):
+        warn_of_hiding(node, made, asked.frame.f_code, _with_callbacks(node))
+    alike = sum(other.made_at == origin and _is_alive(other) for other in getattr(internals_of(node), kind))
+    if alike >= MANY and place not in _reported:
+        _reported.add(place)
         what = f"{kind}{_of(made)}"
-        text = "%s has %d %s by now that were made in %s: make one in __init__, and keep it in an attribute"
+        text = "%s has %d %s created in %s: create one in __init__, and keep it in an attribute"
         logger.warning(text, node.get_fully_qualified_name(), alike, what, place)
 
 
-def _with_callbacks(node: Any) -> list[object]:
-    own = node._graphflow
+def _with_callbacks(node: Node) -> list[Timer | Subscription | Service]:
+    own = internals_of(node)
     return [*own.subscriptions, *own.timers, *own.services]
 
 
-def _tell_twin(node: Any, made: Any, place: Place) -> None:
+def _warn_of_twin(node: Node, made: Service, place: Place) -> None:
     """Warn if a node already has a service of that name: both servers are called, and one answer wins by chance."""
-    same = [other for other in node._graphflow.services if other is not made and _topic(other) == _topic(made)]
-    former = getattr(same[0], "made_at", None) if same else None
-    if former is not None and place not in _told:
-        _told.add(place)
+    same = [other for other in internals_of(node).services if other is not made and _topic(other) == _topic(made)]
+    former = same[0].made_at if same else None
+    if former is not None and place not in _reported:
+        _reported.add(place)
         text = "%s offers %s twice, in %s and in %s: each call reaches both, and the first answer counts; keep one"
-        logger.warning(text, node.get_fully_qualified_name(), _topic(made), former[0], place)
+        logger.warning(text, node.get_fully_qualified_name(), _topic(made), former.place, place)
 
 
-def _tell_same(node: Any, made: Any, place: Place) -> None:
+def _warn_of_same(node: Node, made: Any, place: Place) -> None:
     """Warn if a node already has a subscription with that topic and callback: each message is handled twice."""
-    for other in node._graphflow.subscriptions:
+    for other in internals_of(node).subscriptions:
         is_same = other is not made and _topic(other) == _topic(made) and other.callback == made.callback
-        former = getattr(other, "made_at", None) if is_same and other.raw is made.raw else None
-        if former is not None and former[0] != place and place not in _told:
-            _told.add(place)
-            text = "%s subscribes %s to %s twice, in %s and in %s: each message comes twice; keep one"
+        former = other.made_at if is_same and other.raw is made.raw else None
+        if former is not None and former.place != place and place not in _reported:
+            _reported.add(place)
+            text = "%s subscribes %s to %s twice, in %s and in %s: each message is handled twice; keep one"
             called = getattr(made.callback, "__name__", repr(made.callback))
-            logger.warning(text, node.get_fully_qualified_name(), called, _topic(made), former[0], place)
+            logger.warning(text, node.get_fully_qualified_name(), called, _topic(made), former.place, place)
 
 
 def _name(made: Any, *, is_again: bool) -> object:

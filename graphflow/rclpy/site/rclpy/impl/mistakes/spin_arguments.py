@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import logging
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import Place
 from rclpy.impl.callers import caller
 from rclpy.task import Future
 
-_told: set[Place] = set()
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+_reported: set[Place] = set()
 """The lines whose executor has been reported."""
 logger = logging.getLogger("graphflow")
 
@@ -27,7 +31,7 @@ def check_node(node: Any, call: str) -> None:
     elif isinstance(node, (list, tuple)):
         text = f"{call} needs one node, got a {type(node).__name__}: add each to an executor by executor.add_node(node)"
     elif isinstance(node, Future):
-        text = f"{call} needs a node first, got a {type(node).__name__}: the future comes behind the node"
+        text = f"{call} needs a node first, got a {type(node).__name__}: the future comes after the node"
     elif node is None:
         text = f"{call} needs a node, got None: the function that makes the node must return it"
     elif hasattr(node, "add_node"):
@@ -51,13 +55,13 @@ def check_executor(executor: object, call: str) -> None:
         return
     if is_node(executor):
         text = (
-            f"{call} takes one node, got another Node in the place of its executor: "
+            f"{call} takes one node, got another node as its executor: "
             "add each node to one executor by executor.add_node(node), and then call executor.spin()"
         )
     elif isinstance(executor, (int, float)) and call != "spin":
-        text = f"{call} takes an executor in this place, got {executor!r}: write timeout_sec={executor!r}"
+        text = f"{call} takes an executor here, got {executor!r}: write timeout_sec={executor!r}"
     else:
-        text = f"{call} takes an executor in this place, got {executor!r}"
+        text = f"{call} takes an executor here, got {executor!r}"
     raise TypeError(text)
 
 
@@ -77,7 +81,7 @@ def check_future(future: Any, call: str) -> None:
     )
 
 
-def tell(call: str, thing: object) -> None:
+def warn_no_node(call: str, thing: object) -> None:
     """Warn that a call on an executor has no effect because its argument is not a node; ROS 2 does not."""
     asked = caller(2)
     if asked is not None and thing is not None:
@@ -85,7 +89,7 @@ def tell(call: str, thing: object) -> None:
         logger.warning(text, asked.place, call, thing.__name__ if isinstance(thing, type) else repr(thing), call)
 
 
-def tell_unused(node: Any, used: object) -> None:
+def warn_of_unused(node: Node, used: object) -> None:
     """Warn of an unused executor that the function which calls `rclpy.spin(node)` has created."""
     asked = caller(2)
     if asked is None:
@@ -96,8 +100,8 @@ def tell_unused(node: Any, used: object) -> None:
         spinning = None if isinstance(value, type) else getattr(value, "_graphflow", None)
         if not hasattr(type(value), "add_node") or spinning is None or spinning.turns or spinning.is_spun:
             continue
-        if asked.place not in _told and set(spinning.nodes) <= {node}:
-            _told.add(asked.place)
+        if asked.place not in _reported and set(spinning.nodes) <= {node}:
+            _reported.add(asked.place)
             text = "%s: rclpy.spin does not use the %s in %s: write rclpy.spin(node, %s)"
             logger.warning(text, asked.place, type(value).__name__, name, name)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.uncalled import uncalled_methods
@@ -16,9 +16,11 @@ from graphflow.analysis.user_code import is_users, short_place
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from rclpy.impl.entities import entities_of
+from rclpy.impl.nodes import internals_of, nodes_of
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from rclpy.node import Node
 
 logger = logging.getLogger("graphflow")
 
@@ -33,18 +35,18 @@ class Uncalled:
         self._files: set[str] = set()
         life.on_leaving.append(self._leaves)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Check the files of nodes that are spun for the first time."""
-        for node in list(self._life.nodes):
-            if node._graphflow.times_added and node._graphflow.core.id not in self._nodes:  # type: ignore[attr-defined]
+        for node in nodes_of(self._life):
+            if internals_of(node).times_added and internals_of(node).core.id not in self._nodes:
                 self._read(node)
 
-    def _leaves(self, node: Any) -> None:
+    def _leaves(self, node: Node) -> None:
         self._read(node)
-        self._nodes.discard(node._graphflow.core.id)
+        self._nodes.discard(internals_of(node).core.id)
 
-    def _read(self, node: Any) -> None:
-        self._nodes.add(node._graphflow.core.id)
+    def _read(self, node: Node) -> None:
+        self._nodes.add(internals_of(node).core.id)
         for file in set(_files_of(node)) - self._files:
             self._files.add(file)
             with suppress(OSError, SyntaxError, ValueError):  # no source to be read
@@ -54,7 +56,7 @@ class Uncalled:
                     logger.warning("%s: %s", short_place(file, line), text)
 
 
-def _files_of(node: Any) -> Iterator[str]:
+def _files_of(node: Node) -> Iterator[str]:
     """Return the user's files that define a node's class and callbacks."""
     functions = [value for cls in type(node).__mro__ for value in vars(cls).values()]
     functions += [getattr(e, "callback", None) or getattr(e, "_execute_callback", None) for e in entities_of(node)]

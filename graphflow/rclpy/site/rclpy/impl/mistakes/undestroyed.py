@@ -6,16 +6,21 @@ Entities that are destroyed already, or another node's, are not reported; neithe
 from __future__ import annotations
 
 import logging
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import Place
 from rclpy.client import Client
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.callers import caller
+from rclpy.impl.nodes import internals_of
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Rate, Timer
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
 
 _KINDS: dict[str, tuple[type, str]] = {
     "destroy_publisher": (Publisher, "publishers"),
@@ -27,12 +32,12 @@ _KINDS: dict[str, tuple[type, str]] = {
     "destroy_rate": (Rate, ""),
 }
 """The class that each call destroys, and the node's list of them."""
-_told: set[Place] = set()
+_reported: set[Place] = set()
 """The lines that have been reported."""
 logger = logging.getLogger("graphflow")
 
 
-def tell(node: Any, thing: object, call: str, depth: int) -> None:
+def warn(node: Node, thing: object, call: str, depth: int) -> None:
     """Warn, once per line, if a call has destroyed nothing because its argument is of another kind.
 
     Args:
@@ -40,11 +45,11 @@ def tell(node: Any, thing: object, call: str, depth: int) -> None:
         depth: The number of frames between the caller's and the program's.
     """
     kind, asked = _KINDS[call][0], caller(depth + 1)
-    if thing is None or asked is None or isinstance(thing, kind) or asked.place in _told:
+    if thing is None or asked is None or isinstance(thing, kind) or asked.place in _reported:
         return
-    _told.add(asked.place)
+    _reported.add(asked.place)
     text = "%s: %s destroys nothing, since it takes a %s and got %s; write %s"
-    logger.warning(text, asked.place, call, kind.__name__, _shown(thing), _way(node, thing, call))
+    logger.warning(text, asked.place, call, kind.__name__, _shown(thing), _right_call(node, thing, call))
 
 
 def _shown(thing: object) -> str:
@@ -58,7 +63,7 @@ def _shown(thing: object) -> str:
     return f"{'an' if name[:1] in 'AEIOU' else 'a'} {name}"
 
 
-def _way(node: Any, thing: object, call: str) -> str:
+def _right_call(node: Node, thing: object, call: str) -> str:
     """Return the call that was probably meant."""
     other = next((name for name, (kind, _) in _KINDS.items() if isinstance(thing, kind)), None)
     if other is not None:
@@ -72,11 +77,11 @@ def _way(node: Any, thing: object, call: str) -> str:
     return f"{call}(self.{what}), with what create_{what} has returned"
 
 
-def _owned(node: Any, call: str) -> list[object]:
-    return list(getattr(node._graphflow, _KINDS[call][1], ()))
+def _owned(node: Node, call: str) -> list[object]:
+    return list(getattr(internals_of(node), _KINDS[call][1], ()))
 
 
-def _belongs(node: Any, own: object, thing: Any) -> bool:
+def _belongs(node: Node, own: object, thing: Any) -> bool:
     """Whether an entity of the node's has that callback, or that name."""
     if not isinstance(thing, str):
         return bool(getattr(own, "callback", None) == thing)
@@ -85,7 +90,7 @@ def _belongs(node: Any, own: object, thing: Any) -> bool:
     return bool(getattr(own, "service_name", None) == thing)
 
 
-def _attribute(node: Any, thing: object) -> str:
+def _attribute(node: Node, thing: object) -> str:
     """Return the node's attribute that holds a value, as `self.timer`; empty if there is none."""
     found = next((name for name, value in vars(node).items() if value is thing and thing is not None), "")
     return f"self.{found}" if found else ""

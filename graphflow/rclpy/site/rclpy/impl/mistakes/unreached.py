@@ -58,7 +58,7 @@ class Unreached:
         self._read: set[tuple[CodeType, int]] = set()
         """The lines whose functions have been analysed."""
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Report the calls after spins that have lasted long enough."""
         now = time.monotonic()
         if now < self._next:
@@ -70,7 +70,7 @@ class Unreached:
             if now - since >= TELL_AFTER and line not in self._read:
                 # The source may be gone, or not what runs, and objects of the program's may raise when they are asked.
                 with suppress(Exception):
-                    _tell(frames[line])
+                    _report(frames[line])
                 self._read.add(line)
 
 
@@ -88,7 +88,7 @@ def _is_spin(code: CodeType) -> bool:
     return code.co_name == "spin" and is_ours(code.co_filename)
 
 
-def _tell(frame: Frame) -> None:
+def _report(frame: Frame) -> None:
     file = frame.f_code.co_filename
     function = _function_of(frame)
     if function is None:

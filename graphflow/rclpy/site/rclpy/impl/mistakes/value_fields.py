@@ -7,9 +7,15 @@ from __future__ import annotations
 
 import logging
 from types import CodeType
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rclpy.impl.callers import Caller, caller
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import ParameterValue
+
+    from rclpy.parameter import Parameter
+
 
 FIELDS = (
     *("", "bool_value", "integer_value", "double_value", "string_value", "byte_array_value", "bool_array_value"),
@@ -24,7 +30,7 @@ SEEN_BOUND = 1000
 logger = logging.getLogger("graphflow")
 
 
-def check(parameter: object, message: Any) -> None:
+def check(parameter: Parameter, message: ParameterValue) -> None:
     """Warn, once per line and type, if the code that gets a value reads a field that does not match its type.
 
     Args:
@@ -36,10 +42,10 @@ def check(parameter: object, message: Any) -> None:
     call = (asked.frame.f_code, asked.frame.f_lasti, message.type)
     if call not in _seen:
         _seen.add(call)
-        _tell(asked, parameter, message)
+        _warn(asked, parameter, message)
 
 
-def _tell(asked: Caller, parameter: Any, message: Any) -> None:
+def _warn(asked: Caller, parameter: Parameter, message: ParameterValue) -> None:
     read, own = asked.reads, FIELDS[message.type]
     if "type" in read or own in read:  # the code distinguishes types
         return

@@ -7,19 +7,30 @@ from __future__ import annotations
 
 import logging
 import time
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakSet
 
 from graphflow.runtime.node_clock import TIMELESS
 from rclpy.constants import S_TO_NS
 from rclpy.impl.deadlock.stacks import stacks
 from rclpy.impl.entities import full_name, role_of
+from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
-from rclpy.impl.watches.starvation import OWN_GROUP, RETURN, HeldUp, kept_by, label_of, node_of, place_of, word_and_line
+from rclpy.impl.watches.starvation import (
+    OWN_GROUP,
+    RETURN,
+    HeldUp,
+    kept_by,
+    label_of,
+    label_with_line,
+    node_of,
+    place_of,
+)
 from rclpy.timer import Timer
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from rclpy.node import Node
 
 TELL_AFTER = 3.0
 """Seconds for which a period of zero, or a clock that stands still, is tolerated."""
@@ -54,18 +65,20 @@ class LateTimers:
         self._known: WeakSet[object] = WeakSet()
         """The timers and nodes that have been reported."""
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Report what has become due."""
         now = time.monotonic()
-        runs = {(run, run.stepped_ns): run for run in self._held_up.runs() if run.thread}
-        nodes: list[Any] = list(self._life.nodes)
-        restless = {timer: node for node in nodes for timer in list(node.timers) if _is_restless(timer)}
-        timeless = {node: node for node in nodes if _is_timeless(node)}
+        runs: dict[object, Run] = {(run, run.stepped_ns): run for run in self._held_up.runs() if run.thread}
+        nodes = nodes_of(self._life)
+        restless: dict[object, Node] = {
+            timer: node for node in nodes for timer in list(node.timers) if _is_restless(timer)
+        }
+        timeless: dict[object, Node] = {node: node for node in nodes if _is_timeless(node)}
         seen = {*runs, *restless, *timeless}
         for key in [key for key in self._since if key not in seen]:
             seconds, slow = now - self._since.pop(key), self._slow.pop(key, None)
             if slow is not None:
-                self._tell_slow(slow, seconds)
+                self._report_slow(slow, seconds)
         for key in seen:
             seconds = now - self._since.setdefault(key, now)
             if key in runs:
@@ -74,9 +87,9 @@ class LateTimers:
             elif seconds >= TELL_AFTER and key not in self._known:
                 self._known.add(key)
                 if key in timeless:
-                    key.get_logger().warning(f"{full_name(key)}: {TIMELESS}")
-                else:
-                    _tell_restless(key, restless[key])
+                    timeless[key].get_logger().warning(f"{full_name(timeless[key])}: {TIMELESS}")
+                elif isinstance(key, Timer):
+                    _report_restless(key, restless[key])
 
     def _slow_one(self, run: Run, seconds: float) -> _Slow | None:
         """Return a report on a run of that many seconds; None if it delays no timer."""
@@ -92,10 +105,10 @@ class LateTimers:
             return None
         return _Slow(title, place_of(level, node), own or late[0], own is not None)
 
-    def _tell_slow(self, slow: _Slow, seconds: float) -> None:
+    def _report_slow(self, slow: _Slow, seconds: float) -> None:
         if slow.title not in self._were_slow and seconds < SLOW_ONCE:
             self._were_slow.add(slow.title)
-        elif not self._held_up.is_known(slow.title):
+        elif not self._held_up.was_reported(slow.title):
             every = f"every {slow.late.timer_period_ns / S_TO_NS:g} s"
             if slow.is_own:
                 late, way = f"is due {every}", f"{RETURN}, or give it a longer period"
@@ -112,11 +125,11 @@ def _is_restless(timer: Timer) -> bool:
     return timer.timer_period_ns == 0 and not is_inner and not timer.handle.is_destroyed and not timer.is_canceled()
 
 
-def _tell_restless(timer: Timer, node: Any) -> None:
-    text = "%s of %s has a period of 0 s, and is called all the time: give it one, as in create_timer(0.1, ...)"
-    logger.warning(text, word_and_line(timer), full_name(node))
+def _report_restless(timer: Timer, node: Node) -> None:
+    text = "%s of %s has a period of 0 s, and is called continuously: give it one, as in create_timer(0.1, ...)"
+    logger.warning(text, label_with_line(timer), full_name(node))
 
 
-def _is_timeless(node: Any) -> bool:
-    source = node._graphflow.time_source
+def _is_timeless(node: Node) -> bool:
+    source = internals_of(node).time_source
     return source is not None and source.ros_time_is_active and source.last_ns == 0

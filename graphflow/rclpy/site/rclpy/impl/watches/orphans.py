@@ -8,14 +8,17 @@ from __future__ import annotations
 import logging
 import sys
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from graphflow.analysis.user_code import short_place, users_frame
 from graphflow.rclpy.context_state import LOOP
 from rclpy.impl.deadlock.stacks import is_in_run, stacks
+from rclpy.impl.nodes import internals_of
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from rclpy.executors import Executor
+    from rclpy.node import Node
 
 TELL_AFTER = 1.0
 """Seconds within which the node may be spun again, or the spin may end."""
@@ -23,7 +26,7 @@ _IN_A_CALLBACK = "do not spin in a callback: future.add_done_callback(...), or a
 logger = logging.getLogger("graphflow")
 
 
-def watch(node: Any, former: Any, what: str) -> None:
+def watch(node: Node, former: Executor, what: str) -> None:
     """Report a node that nothing spins again while its former executor continues without it.
 
     Args:
@@ -40,16 +43,16 @@ def watch(node: Any, former: Any, what: str) -> None:
         else f"spin the executor, with all its nodes: {what.replace('rclpy', 'executor')}(...)"
     )
     text = (
-        f"{node.get_fully_qualified_name()} is spun by nobody any more: {what}, called in {where}, took it out of its "
-        f"{type(former).__name__} and left it in none, as in ROS 2\nThis ends it:\n  {remedy}"
+        f"{node.get_fully_qualified_name()} is no longer spun: {what}, called in {where}, removed it from its "
+        f"{type(former).__name__}, as in ROS 2\nRemedy:\n  {remedy}"
     )
-    times = node._graphflow.times_added
+    times = internals_of(node).times_added
 
-    def look() -> None:
-        if node._graphflow.times_added == times and not node.handle.is_destroyed and _is_spun(former):
+    def check() -> None:
+        if internals_of(node).times_added == times and not node.handle.is_destroyed and _is_spun(former):
             logger.error("%s", text)
 
-    node._graphflow.life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, look), wait=False)
+    internals_of(node).life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, check), wait=False)
 
 
 def attend(life: ContextState) -> None:
@@ -57,20 +60,20 @@ def attend(life: ContextState) -> None:
     life.on_leaving.append(_destroyed)
 
 
-def _destroyed(node: Any) -> None:
+def _destroyed(node: Node) -> None:
     executor, begin = node.executor, sys._getframe()
     if executor is None or executor.spinning.nodes or not is_in_run(begin):
         return
     place, name = _users_place(begin), node.get_fully_qualified_name()
 
-    def look() -> None:
+    def check() -> None:
         spinning = executor.spinning
         if not spinning.nodes and spinning.waits_forever and _is_spun(executor):
             text = "%s destroyed %s, and its spin goes on without a node: to end it as well, raise SystemExit there"
             logger.warning(text, place, name)
 
     if place:
-        node._graphflow.life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, look), wait=False)
+        internals_of(node).life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, check), wait=False)
 
 
 def _users_place(begin: FrameType) -> str:
@@ -81,5 +84,5 @@ def _users_place(begin: FrameType) -> str:
     return f"{short_place(frame.f_code.co_filename, frame.f_lineno)} in {frame.f_code.co_name}"
 
 
-def _is_spun(executor: Any) -> bool:
+def _is_spun(executor: Executor) -> bool:
     return executor.context.ok() and any(executor in stack.spins for stack in stacks())

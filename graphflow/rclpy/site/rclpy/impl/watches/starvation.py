@@ -24,11 +24,14 @@ from rclpy.executors import Executor
 from rclpy.impl.deadlock.groups import executors, is_exclusive, threads_of
 from rclpy.impl.deadlock.stacks import Level, Stack, stacks
 from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, role_of
+from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.timer import Timer
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from rclpy.impl.spinning import Entity
+    from rclpy.node import Node
 
 TELL_AFTER = 3.0
 """Seconds for which work is held up before it is reported."""
@@ -40,7 +43,7 @@ _WAIT = Wake.wait.__code__
 logger = logging.getLogger("graphflow")
 
 
-class _Told(NamedTuple):
+class _Report(NamedTuple):
     text: str
     is_over: str
     """The phrase for its end, before its duration in seconds."""
@@ -50,14 +53,14 @@ class HeldUp:
     """The held-up work of one context.
 
     Args:
-        is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
+        is_reported: Whether a deadlock report covers a run, `"r"`, or a thread, `"t"`, by identity or by title.
     """
 
-    def __init__(self, life: ContextState, is_told: Callable[..., bool]) -> None:
-        self._life, self._is_told = life, is_told
+    def __init__(self, life: ContextState, is_reported: Callable[..., bool]) -> None:
+        self._life, self._is_reported = life, is_reported
         self._since: dict[object, float] = {}
         """The monotonic time at which each step of a run, and each node without a spin, was first seen."""
-        self._told: dict[object, _Told] = {}
+        self._reports: dict[object, _Report] = {}
         self._known: set[str] = set()
         """The callbacks and nodes that have been reported: a recurrence is not reported again."""
         self._begun: WeakSet[object] = WeakSet()
@@ -67,30 +70,30 @@ class HeldUp:
     @property
     def texts(self) -> list[str]:
         """Return the reports that still hold."""
-        return [told.text for told in list(self._told.values())]
+        return [told.text for told in list(self._reports.values())]
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Report work that has been held up for long, and work that is no longer held up."""
         now = time.monotonic()
         steps = {(run, run.stepped_ns): run for run in self.runs() if run.thread}
-        idle = {(node, _turns(node)): node for node in list(self._life.nodes) if not _is_spun(node)}
-        fresh = {(node, "made"): node for node in list(self._life.nodes) if node not in self._begun}
+        idle = {(node, _turns(node)): node for node in nodes_of(self._life) if not _is_spun(node)}
+        fresh = {(node, "made"): node for node in nodes_of(self._life) if node not in self._begun}
         for key in [key for key in self._since if key not in steps and key not in idle and key not in fresh]:
             seconds = now - self._since.pop(key)
-            if key in self._told:
-                logger.warning("%s after %.1f s", self._told.pop(key).is_over, seconds)
+            if key in self._reports:
+                logger.warning("%s after %.1f s", self._reports.pop(key).is_over, seconds)
         for key in [*steps, *idle]:
             seconds = now - self._since.setdefault(key, now)
-            if seconds < TELL_AFTER or key in self._told:
+            if seconds < TELL_AFTER or key in self._reports:
                 continue
             told = self._of_run(steps[key], seconds) if key in steps else self._of_node(key, seconds)
             if told is not None:
-                self._told[key] = told
+                self._reports[key] = told
                 logger.warning("%s", told.text)
         for key, node in fresh.items():
             if now - self._since.setdefault(key, now) >= TELL_AFTER:
                 self._begun.add(node)
-                self._tell_of_init(node)
+                self._report_init(node)
 
     def runs(self) -> Iterator[Run]:
         """Return all runs of the context's executors."""
@@ -98,17 +101,17 @@ class HeldUp:
             if executor.context.life is self._life:
                 yield from list(executor.spinning.running)
 
-    def is_known(self, name: str) -> bool:
+    def was_reported(self, name: str) -> bool:
         """Return whether something has been reported before, and note that it has."""
-        is_known = name in self._known
+        was_reported = name in self._known
         self._known.add(name)
-        return is_known
+        return was_reported
 
     def is_deadlocked(self, run: Run, title: str) -> bool:
         """Whether a deadlock report covers a run in more detail."""
-        return self._is_told(run, "r", title)
+        return self._is_reported(run, "r", title)
 
-    def _of_run(self, run: Run, seconds: float) -> _Told | None:
+    def _of_run(self, run: Run, seconds: float) -> _Report | None:
         """Return a report on a run; None if nothing waits for it, or a deadlock report covers it."""
         level = next((stack.levels[-1] for stack in stacks() if stack.levels[-1].run is run), None)
         node = node_of(run)
@@ -116,18 +119,18 @@ class HeldUp:
             return None
         kept = [_due_of(entity, run) for entity in kept_by(run, spins_on=level.waiting is not None)]
         title = f"{label_of(run)} of {full_name(node)}"
-        if not kept or self.is_deadlocked(run, title) or self.is_known(title):
+        if not kept or self.is_deadlocked(run, title) or self.was_reported(title):
             return None
         others, way = [word for word in kept if word != label_of(run)], RETURN
         keeps = "is due again"
         if others:
-            keeps, way = f"keeps {_words(others)} waiting", f"{RETURN}, or {OWN_GROUP}"
+            keeps, way = f"keeps {_joined(others)} waiting", f"{RETURN}, or {OWN_GROUP}"
         if level.waiting is not None:
-            way = "it spins there; have it return instead, and the spin that has called it goes on"
+            way = "it spins there; let it return instead, and the spin that called it continues"
         text = f"{title} has been running for {seconds:.1f} s, now in {place_of(level, node)}, and {keeps}: {way}"
-        return _Told(text, f"{title} has returned")
+        return _Report(text, f"{title} has returned")
 
-    def _tell_of_init(self, node: Any) -> None:
+    def _report_init(self, node: Node) -> None:
         """Report a node that is spun in its own `__init__` before it has any callbacks."""
         if any(_called(entity) for entity in entities_of(node)):
             return  # the spin may be the last thing there
@@ -135,13 +138,13 @@ class HeldUp:
             level = stack.levels[0]
             if _spins_on(level) and any(_is_init(frame, node) for frame in level.frames):
                 text = (
-                    "%s.__init__ does not return: it spins in %s, and %s has nothing to be called yet: make its timers "
+                    "%s.__init__ does not return: it spins in %s, and %s has no callbacks yet: create its timers "
                     "and subscriptions there, and call rclpy.spin(node) after it"
                 )
                 logger.warning(text, type(node).__name__, place_of(level, node), full_name(node))
                 return
 
-    def _of_node(self, key: tuple[Any, Any], seconds: float) -> _Told | None:
+    def _of_node(self, key: tuple[Any, Any], seconds: float) -> _Report | None:
         """Return a report on a node that is not spun; None if that holds nothing up, or a deadlock report covers it."""
         node, name = key[0], full_name(key[0])
         found = _program(list(stacks()), node)
@@ -154,7 +157,7 @@ class HeldUp:
         kept = [word for entity in entities_of(node) if _is_ready(entity) and (word := _called(entity))]
         is_begun = not any(_is_init(frame, node) for frame in level.frames)
         thread = f"thread {stack.thread.name}"
-        if (is_begun and not kept) or self._is_told(stack.thread, "t", thread) or self.is_known(name):
+        if (is_begun and not kept) or self._is_reported(stack.thread, "t", thread) or self.was_reported(name):
             return None
         for_long, place = f"for {seconds:.1f} s", place_of(level, node)
         if not is_begun:
@@ -165,29 +168,31 @@ class HeldUp:
         else:
             who = "the program" if stack.thread is threading.main_thread() else thread
             way = "add the node to the executor that is spun there" if stack.spins else "have it call rclpy.spin(node)"
-            text = f"nobody has spun {name} {for_long}, and {_words(kept)} should be called: {who} is in {place}; {way}"
-        return _Told(text, f"{name} is spun")
+            text = (
+                f"{name} has not been spun {for_long}, and {_joined(kept)} should be called: {who} is in {place}; {way}"
+            )
+        return _Report(text, f"{name} is spun")
 
-    def _leaves(self, node: Any) -> None:
+    def _leaves(self, node: Node) -> None:
         """Report a node that leaves without having been spun, unless reported before, or the program is failing."""
         is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
-        if node._graphflow.times_added or is_failing or full_name(node) in self._known:
+        if internals_of(node).times_added or is_failing or full_name(node) in self._known:
             return
-        kept = [word_and_line(e) for e in entities_of(node) if _called(e) and not isinstance(e, (Client, ActionClient))]
+        kept = [
+            label_with_line(e) for e in entities_of(node) if _called(e) and not isinstance(e, (Client, ActionClient))
+        ]
         if not kept:
             return
         place = _shut_down_in()
         if place is None:
-            text = (
-                "%s ends, and nobody has ever spun it, so that %s could not be called: rclpy.spin(node) calls callbacks"
-            )
-            logger.warning(text, full_name(node), _words(kept))
+            text = "%s ends and was never spun, so %s could not be called: rclpy.spin(node) calls callbacks"
+            logger.warning(text, full_name(node), _joined(kept))
         else:
             text = (
-                "rclpy is shut down in %s before anybody has spun %s, so that %s could not be called: "
+                "rclpy is shut down in %s before %s was spun, so %s could not be called: "
                 "call rclpy.spin(node) before it"
             )
-            logger.warning(text, place, full_name(node), _words(kept))
+            logger.warning(text, place, full_name(node), _joined(kept))
 
 
 def _shut_down_in() -> Place | None:
@@ -206,13 +211,13 @@ def _spins_on(level: Level) -> bool:
     return is_spin and level.waiting is not None
 
 
-def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Any]:
+def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Entity]:
     """Return the user's entities that have work and cannot run because of a run.
 
     Args:
         spins_on: Whether the run spins, so that it keeps no thread from others.
     """
-    executor: Any = run.executor
+    executor = run.executor
     limit = None if spins_on else threads_of(executor)
     is_full = limit is not None and sum(r.thread != 0 for r in list(executor.spinning.running)) >= limit
     for node in list(executor.spinning.nodes):
@@ -222,7 +227,7 @@ def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Any]:
                 yield entity
 
 
-def _due_of(entity: Any, run: Run) -> str:
+def _due_of(entity: Entity, run: Run) -> str:
     """Return the name of an entity that waits for a run to end; empty for none of the user's.
 
     A goal's client requests the result at once, and gets it when the run ends: it is not held up.
@@ -236,11 +241,11 @@ def _due_of(entity: Any, run: Run) -> str:
     return "a new goal" if entity._graphflow_goals.inbox.items else ""
 
 
-def _is_ready(entity: Any) -> bool:
+def _is_ready(entity: Entity) -> bool:
     return entity.has_work() if isinstance(entity, Timer) else arrived(entity)[1] > 0
 
 
-def _called(entity: Any) -> str:
+def _called(entity: Entity) -> str:
     """Return the name of an entity; empty for graphflow's own."""
     role = role_of(entity)
     if isinstance(entity, (Client, ActionClient)):
@@ -255,7 +260,7 @@ def label_of(run: Run) -> str:
     return f"action {name_of(run._args[0]) or 'execute'}" if goal_of(run) is not None else f"task {name_of(run.called)}"
 
 
-def node_of(run: Run) -> object:
+def node_of(run: Run) -> Node | None:
     """Return the node of a run's callback; for a task, one of its executor's nodes."""
     goal = goal_of(run)
     if goal is not None:
@@ -263,26 +268,26 @@ def node_of(run: Run) -> object:
     return run.node if run.node is not None else next(iter(run.executor.spinning.nodes), None)
 
 
-def place_of(level: Level, node: Any) -> str:
+def place_of(level: Level, node: Node) -> str:
     """Return the position of a thread's user code: `lamp.py:12 in tick`."""
     found = where(level.frames, node)
     return f"{short_place(found.place.file, found.place.line)} in {found.function}"
 
 
-def _words(kept: list[str]) -> str:
+def _joined(kept: list[str]) -> str:
     """Join the names of callbacks, at most as many as a sentence bears."""
     shown = list(dict.fromkeys(kept))
     rest = len(shown) - SHOWN
     return " and ".join(shown) if rest <= 0 else f"{', '.join(shown[:SHOWN])} and {rest} more"
 
 
-def _is_init(frame: Frame, node: Any) -> bool:
+def _is_init(frame: Frame, node: Node) -> bool:
     """Whether a frame is that of the node's own `__init__`."""
     code = frame.f_code
     return code.co_name == "__init__" and is_users(code.co_filename) and frame.f_locals.get("self") is node
 
 
-def _program(found: list[Stack], node: Any) -> tuple[Stack, Level] | None:
+def _program(found: list[Stack], node: Node) -> tuple[Stack, Level] | None:
     """Return the program's thread that constructs a node, or else could spin it, or else spins others."""
     own = [(stack, stack.levels[0]) for stack in found if stack.is_users and stack.levels[0].innermost is not None]
     making = [pair for pair in own if any(_is_init(frame, node) for frame in pair[1].frames)]
@@ -291,24 +296,24 @@ def _program(found: list[Stack], node: Any) -> tuple[Stack, Level] | None:
     return next(iter([*making, *able, *main, *own]), None)
 
 
-def _executor_of(node: Any) -> Executor | None:
+def _executor_of(node: Node) -> Executor | None:
     executor: Executor | None = node.executor
     return executor if executor is not None and node in executor.spinning.nodes else None
 
 
-def _turns(node: Any) -> tuple[int, int]:
+def _turns(node: Node) -> tuple[int, int]:
     """Return numbers that change when a node is spun."""
     executor = _executor_of(node)
-    return node._graphflow.times_added, 0 if executor is None else executor.spinning.turns
+    return internals_of(node).times_added, 0 if executor is None else executor.spinning.turns
 
 
-def _is_spun(node: Any) -> bool:
+def _is_spun(node: Node) -> bool:
     """Whether a thread is spinning a node: it waits for work, or does some."""
     executor = _executor_of(node)
     return executor is not None and executor.spinning.is_spun
 
 
-def word_and_line(entity: Any) -> str:
+def label_with_line(entity: Entity) -> str:
     """`timer tick (lamp.py:12)`."""
     code = getattr(getattr(entity, "callback", None), "__code__", None)
     line = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""

@@ -9,16 +9,18 @@ import gc
 import logging
 import time
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, WeakSet
 
 from graphflow.machines.goal import GoalStatus as Status
 from rclpy.action.server import ActionServer, ServerGoalHandle
 from rclpy.impl.entities import full_name
 from rclpy.impl.mistakes.arguments import described
+from rclpy.impl.nodes import nodes_of
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from rclpy.node import Node
 
 TELL_AFTER = 3.0
 """Seconds after which a goal is reported if nothing holds its handle to execute it later."""
@@ -36,16 +38,16 @@ class Unexecuted:
         """The monotonic time since which each goal has waited while no other was executed."""
         self._kept: WeakSet[ServerGoalHandle] = WeakSet()
         """The goals whose handle something holds."""
-        self._told: WeakSet[ActionServer] = WeakSet()
+        self._reported: WeakSet[ActionServer] = WeakSet()
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Report goals that have waited for long."""
-        for node in list(self._life.nodes):
-            for server in [w for w in list(node.waitables) if isinstance(w, ActionServer)]:  # type: ignore[attr-defined]
-                if server not in self._told:
-                    self._look_at(node, server)
+        for node in nodes_of(self._life):
+            for server in [w for w in list(node.waitables) if isinstance(w, ActionServer)]:
+                if server not in self._reported:
+                    self._check_server(node, server)
 
-    def _look_at(self, node: Any, server: ActionServer) -> None:
+    def _check_server(self, node: Node, server: ActionServer) -> None:
         now, goals = time.monotonic(), list(server._goal_handles.values())
         is_busy = any(goal._status in (Status.EXECUTING, Status.CANCELING) for goal in goals)
         has_searched = False
@@ -62,7 +64,7 @@ class Unexecuted:
                 if _is_kept(goal, server._goal_handles, goals):
                     self._kept.add(goal)
             if seconds >= (KEPT if goal in self._kept else TELL_AFTER):
-                self._told.add(server)
+                self._reported.add(server)
                 text = "%s accepted a goal of %s %.1f s ago, and its execute() was not called: end %s with %s"
                 callback = described(server._handle_accepted_callback)
                 way = "goal_handle.execute()"

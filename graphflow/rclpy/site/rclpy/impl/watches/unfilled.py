@@ -30,7 +30,7 @@ class Unfilled:
         """The remedy, once it has been reported."""
         self._since: float | None = None
 
-    def asked_in_vain(self, buffer: object) -> None:
+    def lookup_failed(self, buffer: object) -> None:
         """Note a failed lookup."""
         now = time.monotonic()
         if self._since is None:

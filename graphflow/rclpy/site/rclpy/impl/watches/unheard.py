@@ -8,10 +8,13 @@ from __future__ import annotations
 import logging
 import sys
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from rclpy.impl.nodes import internals_of
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from rclpy.node import Node
 
 BRIEF = 3.0
 """The lifetime in seconds below which a node is reported: one that lives longer had time to match."""
@@ -23,13 +26,15 @@ def attend(life: ContextState) -> None:
     life.on_leaving.append(_tell)
 
 
-def _tell(node: Any) -> None:
+def _tell(node: Node) -> None:
     is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
-    if is_failing or time.monotonic() - node._graphflow.begun > BRIEF:
+    if is_failing or time.monotonic() - internals_of(node).begun > BRIEF:
         return
-    for publisher in node._graphflow.publishers:
+    for publisher in internals_of(node).publishers:
         endpoint = publisher._endpoint
-        if hasattr(publisher, "made_at") and 0 < endpoint.published == endpoint.unheard:
+        if publisher.made_at is not None and 0 < endpoint.published == endpoint.unheard:
             many = "message that was published" if endpoint.published == 1 else "messages that were published"
-            text = "%s: nobody has heard the %d %s: publish when publisher.get_subscription_count() is not 0"
+            text = (
+                "%s: no subscription has received the %d %s: publish when publisher.get_subscription_count() is not 0"
+            )
             logger.warning(text, endpoint.name, endpoint.published, many)

@@ -19,6 +19,7 @@ from rclpy.client import Client
 from rclpy.impl.deadlock.later_servers import comes_after
 from rclpy.impl.deadlock.stacks import Level, stacks
 from rclpy.impl.entities import full_name, role_of
+from rclpy.impl.nodes import nodes_of
 from rclpy.impl.watches.starvation import label_of, place_of
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.context import Context
     from graphflow.runtime.endpoints.threaded import ThreadedClient
+    from rclpy.node import Node
 
 _WAIT = Wake.wait.__code__
 logger = logging.getLogger("graphflow")
@@ -35,24 +37,24 @@ class Unserved:
     """The clients of one context that wait for a server, or have called without one.
 
     Args:
-        is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
+        is_reported: Whether a deadlock report covers a run, `"r"`, or a thread, `"t"`, by identity or by title.
     """
 
-    def __init__(self, life: ContextState, context: Context, is_told: Callable[..., bool]) -> None:
-        self._life, self._context, self._is_told = life, context, is_told
-        self._since: dict[Any, float] = {}
+    def __init__(self, life: ContextState, context: Context, is_reported: Callable[..., bool]) -> None:
+        self._life, self._context, self._is_reported = life, context, is_reported
+        self._since: dict[Client | ActionClient, float] = {}
         """The monotonic time at which each client was first seen to wait; a loop may wait repeatedly."""
-        self._last: dict[Any, float] = {}
+        self._last: dict[Client | ActionClient, float] = {}
         """The time at which each of them was last seen to wait."""
-        self._served: set[Any] = set()
+        self._served: set[Client | ActionClient] = set()
         """The clients that have had a server: their names are right."""
         self._known: set[tuple[object, bool]] = set()
         """The clients that have been reported, here or elsewhere, each with whether it ever had a server."""
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Report waits that have lasted for long, and calls that were lost."""
         now = time.monotonic()
-        clients = {client: node for node in list(self._life.nodes) for client in _clients(node)}
+        clients = {client: node for node in nodes_of(self._life) for client in _clients(node)}
         self._served = {client for client in clients if client in self._served or _is_served(client)}
         self._known = {known for known in self._known if known[0] in clients}
         self._last = {c: last for c, last in self._last.items() if c in clients and now - last <= GAP}
@@ -65,12 +67,12 @@ class Unserved:
                 if now - self._since.setdefault(client, now) >= TELL_AFTER:
                     due.setdefault(wakes[0], client)  # one thread may wait for several
             if any(endpoint.lost for endpoint in _endpoints(client)):
-                self._tell_lost(client, node)
+                self._report_lost(client, node)
         for wake, client in due.items():
             if (client, client in self._served) not in self._known:
-                self._tell_waiting(client, clients[client], wake, now - self._since[client])
+                self._report_waiting(client, clients[client], wake, now - self._since[client])
 
-    def _tell_lost(self, client: Any, node: Any) -> None:
+    def _report_lost(self, client: Client | ActionClient, node: Node) -> None:
         for endpoint in _endpoints(client):
             endpoint.lost = 0
         known = (client, client in self._served)
@@ -82,20 +84,20 @@ class Unserved:
             why = f"the server of {role_of(client).handler} came after it, or went away before it answered"
         else:
             why = nobody(client, self._context.cache)
-        text = "a call of %s is never answered, nor its future done, for want of a server (%s waits for one): %s"
+        text = "a call of %s will never be answered, since it has no server (%s waits for one): %s"
         logger.warning(text, full_name(node), wait, why)
 
-    def _tell_waiting(self, client: Any, node: Any, wake: Wake, seconds: float) -> None:
+    def _report_waiting(self, client: Client | ActionClient, node: Node, wake: Wake, seconds: float) -> None:
         found = next(((s, s.levels[-1]) for s in stacks() if _is_in(s.levels[-1], wake)), None)
         if found is None:
             return
         stack, level = found
         self._known.add((client, client in self._served))
         if level.run is None:
-            is_told = self._is_told(stack.thread, "t", f"thread {stack.thread.name}")
+            is_reported = self._is_reported(stack.thread, "t", f"thread {stack.thread.name}")
         else:
-            is_told = self._is_told(level.run, "r", f"{label_of(level.run)} of {full_name(node)}")
-        if not is_told:
+            is_reported = self._is_reported(level.run, "r", f"{label_of(level.run)} of {full_name(node)}")
+        if not is_reported:
             text = "%s has waited for %.1f s in %s: %s"
             why = nobody(client, self._context.cache) + comes_after(level.frames)
             logger.warning(text, full_name(node), seconds, place_of(level, node), why)
@@ -108,7 +110,7 @@ def nobody(client: Client | ActionClient, cache: GraphCache) -> str:
     return nobody_acts(cache, role_of(client).handler, classes.type_name(client._action_type))
 
 
-def _clients(node: Any) -> Iterator[Any]:
+def _clients(node: Node) -> Iterator[Client | ActionClient]:
     yield from list(node.clients)
     yield from [waitable for waitable in list(node.waitables) if isinstance(waitable, ActionClient)]
 

@@ -23,16 +23,16 @@ class Watches:
     """The watches over one context's nodes.
 
     Args:
-        is_told: Whether a report of a deadlock has named a run, `"r"`, or a thread, `"t"`, by itself or by its title.
+        is_reported: Whether a deadlock report covers a run, `"r"`, or a thread, `"t"`, by identity or by title.
     """
 
-    def __init__(self, life: ContextState, context: Context, is_told: Callable[..., bool]) -> None:
-        self._held_up = HeldUp(life, is_told)
+    def __init__(self, life: ContextState, context: Context, is_reported: Callable[..., bool]) -> None:
+        self._held_up = HeldUp(life, is_reported)
         self.each = (
             self._held_up,
             LateTimers(life, self._held_up),
             Unused(life),
-            Unserved(life, context, is_told),
+            Unserved(life, context, is_reported),
             Unexecuted(life),
             Uncalled(life),
             Unreached(),
@@ -40,10 +40,10 @@ class Watches:
         unheard.attend(life)
         orphans.attend(life)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Run all watches. Runs on the loop."""
         for watch in self.each:
-            watch.look()
+            watch.check()
 
     @property
     def texts(self) -> list[str]:

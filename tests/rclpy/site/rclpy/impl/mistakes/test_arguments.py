@@ -32,7 +32,7 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
     (
         lambda n: n.create_publisher("chat", String, 10),
         AttributeError,
-        "the arguments of create_publisher are in another order: create_publisher(String, 'chat', 10)",
+        "the arguments of create_publisher are in the wrong order: create_publisher(String, 'chat', 10)",
     ),
     (lambda n: n.create_publisher(String, 10, "chat"), TypeError, "create_publisher(String, 'chat', 10)"),
     (lambda n: n.create_publisher(String, "chat"), TypeError, "create_publisher needs qos_profile, too"),
@@ -60,7 +60,7 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
     (
         lambda n: n.create_timer(1.0, n.tick, 10),
         AttributeError,
-        "a timer has no depth: leave out 10, which is taken for its callback group",
+        "a timer has no depth: leave out 10, which is read as its callback group",
     ),
     (lambda n: n.create_subscription(String, "a", 10, n.tick), TypeError, "(String, 'a', self.tick, 10)"),
     (
@@ -71,7 +71,7 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
     (
         lambda n: n.create_subscription(String, "a", None, 10),
         RuntimeError,
-        "create_subscription was given None as its callback: give it the method itself, without parentheses",
+        "create_subscription was given None as its callback: pass the method itself, without parentheses",
     ),
     (lambda n: n.create_timer(n.tick, 1.0), TypeError, "create_timer(1.0, self.tick)"),
     (lambda n: n.create_service("a", Trigger, n.tick), AttributeError, "create_service(Trigger, 'a', self.tick)"),
@@ -87,12 +87,12 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
         TypeError,
         "must be a list of parameters, got Parameter: write set_parameters([Parameter('name', value=...)])",
     ),
-    (lambda _: Trigger(), NotImplementedError, "a request is made by Trigger.Request()"),
-    (lambda _: Fibonacci(), NotImplementedError, "a goal is made by Fibonacci.Goal()"),
+    (lambda _: Trigger(), NotImplementedError, "create a request with Trigger.Request()"),
+    (lambda _: Fibonacci(), NotImplementedError, "create a goal with Fibonacci.Goal()"),
     (
         lambda n: n.create_client(Trigger, "a").call_async(Trigger.Request),
         TypeError,
-        "a request is made by Trigger.Request()",
+        "create a request with Trigger.Request()",
     ),
 ]
 
@@ -135,7 +135,7 @@ def test_no_callback_where_ros_takes_it(node: Node, caplog: pytest.LogCaptureFix
     getattr(node, what)(*arguments.get(what, (None,)))
     node.create_rate(1.0)
     [text] = [record.getMessage() for record in caplog.records if "callback" in record.getMessage()]
-    assert text.startswith(f"{what} was given None as its callback: give it the method itself")
+    assert text.startswith(f"{what} was given None as its callback: pass the method itself")
     assert re.search(r"\(test_arguments\.py:\d+\)$", text)
 
 
@@ -148,7 +148,7 @@ def test_a_policy_where_a_depth_belongs(node: Node, caplog: pytest.LogCaptureFix
     assert re.search(r"\(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT\) \(test_arguments\.py:\d+\)$", text)
 
 
-class Unmade(Node):
+class NotConstructed(Node):
     """Is no node."""
 
     def __init__(self) -> None:
@@ -165,7 +165,7 @@ class Left(Node):
 def test_a_node_whose_init_was_not_called(node: Node) -> None:
     """Says so, with the line where that is missing, whatever is done with it first."""
     uses: list[tuple[type[Node], Callable[[], Any]]] = [
-        (Unmade, Unmade),
+        (NotConstructed, NotConstructed),
         (Left, lambda: rclpy.spin(Left())),
         (Left, lambda: Left().get_logger()),
     ]

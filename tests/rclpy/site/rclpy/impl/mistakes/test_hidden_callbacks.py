@@ -152,7 +152,7 @@ class Inherited(Base):
 @pytest.fixture(autouse=True)
 def ros() -> Iterator[None]:
     """rclpy, and nothing told as yet."""
-    hidden_callbacks._told.clear()
+    hidden_callbacks._reported.clear()
     rclpy.init()
     yield
     rclpy.shutdown()

@@ -18,7 +18,7 @@ Caplog = pytest.LogCaptureFixture
 
 
 def told(caplog: Caplog) -> list[str]:
-    return [r.getMessage() for r in caplog.records if "by now" in r.getMessage()]
+    return [r.getMessage() for r in caplog.records if " created in " in r.getMessage()]
 
 
 def nothing(*_: object) -> None:
@@ -37,11 +37,11 @@ def test_what_a_callback_makes(node: Node, spin: Spinner, caplog: Caplog) -> Non
     node.create_timer(0.001, tick)
     spin(lambda: len(runs) > MANY + 5)
     first, line = "test_repeats.py:", tick.__code__.co_firstlineno
-    way = "make one in __init__, and keep it in an attribute"
+    way = "create one in __init__, and keep it in an attribute"
     assert told(caplog) == [
-        f"/node has 10 publishers of /chat by now that were made in {first}{line + 1}: {way}",
-        f"/node has 10 clients of /switch by now that were made in {first}{line + 2}: {way}",
-        f"/node has 10 timers of <lambda> by now that were made in {first}{line + 3}: {way}",
+        f"/node has 10 publishers of /chat created in {first}{line + 1}: {way}",
+        f"/node has 10 clients of /switch created in {first}{line + 2}: {way}",
+        f"/node has 10 timers of <lambda> created in {first}{line + 3}: {way}",
     ]
 
 
@@ -91,6 +91,6 @@ def test_a_callback_that_is_subscribed_twice(node: Node, caplog: Caplog) -> None
     file, line = "test_repeats.py:", inspect.currentframe().f_lineno - 1  # type: ignore[union-attr]
     former = subscribe.__code__.co_firstlineno + 1
     assert caplog.messages == [
-        f"/node subscribes nothing to /chat twice, in {file}{former} and in {file}{line}: each message comes twice; "
-        "keep one"
+        f"/node subscribes nothing to /chat twice, in {file}{former} and in {file}{line}: each message is handled "
+        "twice; keep one"
     ]

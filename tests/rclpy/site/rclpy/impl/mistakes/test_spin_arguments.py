@@ -42,7 +42,7 @@ class Bulb:
         ),
         (lambda n: None, "spin needs a node, got None: the function that makes the node must return it"),
         (lambda n: "lamp", "spin needs a node, got 'lamp'"),
-        (lambda n: rclpy.Future(), "spin needs a node first, got a Future: the future comes behind the node"),
+        (lambda n: rclpy.Future(), "spin needs a node first, got a Future: the future comes after the node"),
     ],
 )
 def test_what_is_no_node(node: Node, given: Any, text: str) -> None:
@@ -55,7 +55,7 @@ def test_what_is_no_node(node: Node, given: Any, text: str) -> None:
 @pytest.mark.parametrize("call", ["spin_once", "spin_until_future_complete", "add_node"])
 def test_all_that_takes_nodes(node: Node, call: str) -> None:
     """Each says its own name."""
-    takes = SingleThreadedExecutor().add_node if call == "add_node" else getattr(ROS, call)
+    takes: Any = SingleThreadedExecutor().add_node if call == "add_node" else getattr(ROS, call)
     arguments: tuple[Any, ...] = (rclpy.Future(),) if call == "spin_until_future_complete" else ()
     with pytest.raises(TypeError, match=f"^{call} needs a node, got the class Lamp"):
         takes(Lamp, *arguments)
@@ -68,13 +68,13 @@ def test_what_is_no_executor(node: Node, call: str) -> None:
     with pytest.raises(TypeError) as caught:
         getattr(ROS, call)(node, **arguments, executor=node)
     assert str(caught.value) == (
-        f"{call} takes one node, got another Node in the place of its executor: "
+        f"{call} takes one node, got another node as its executor: "
         "add each node to one executor by executor.add_node(node), and then call executor.spin()"
     )
     with pytest.raises(TypeError) as caught:
         getattr(ROS, call)(node, **arguments, executor=0.5)
     way = "" if call == "spin" else ": write timeout_sec=0.5"
-    assert str(caught.value) == f"{call} takes an executor in this place, got 0.5{way}"
+    assert str(caught.value) == f"{call} takes an executor here, got 0.5{way}"
 
 
 def test_executors_of_all_kinds(node: Node) -> None:
@@ -125,13 +125,13 @@ def test_threads_that_are_no_number(node: Any) -> None:
     """They are refused: it may be a node."""
     with pytest.raises(TypeError) as caught:
         MultiThreadedExecutor("4")  # type: ignore[arg-type]
-    text = "num_threads must be a number of threads, got '4': nodes are added by executor.add_node(node)"
+    text = "num_threads must be a number of threads, got '4': add nodes with executor.add_node(node)"
     assert str(caught.value) == text
 
 
 def told_of(spin: Callable[[Node], None], node: Node, caplog: pytest.LogCaptureFixture) -> list[str]:
     """What is told of an executor while a function spins a node, until it is shut down."""
-    spin_arguments._told.clear()
+    spin_arguments._reported.clear()
     timer = node.create_timer(0.01, rclpy.shutdown)
     spin(node)
     timer.cancel()

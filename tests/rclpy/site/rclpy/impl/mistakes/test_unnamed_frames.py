@@ -9,7 +9,7 @@ from tf2_ros import StaticTransformBroadcaster, TransformBroadcaster
 
 from rclpy.node import Node
 
-REFUSED = "and every listener leaves it out"
+REFUSED = "and every listener drops it"
 
 
 def test_it_is_told_at_the_sender(node: Node, caplog: pytest.LogCaptureFixture) -> None:

@@ -41,7 +41,7 @@ def told(caplog: Caplog) -> list[str]:
         ("-r level:=3", "the remap level:=3 matches no name of /lamp; to set the parameter: -p level:=3"),
         ("-r lamp:lihgt:=sun", "the remap lamp:lihgt:=sun matches no name of /lamp; did you mean 'light'?"),
         ("-p levle:=3", "-p levle:=3 sets nothing: /lamp declares no such parameter; did you mean 'level'?"),
-        ("-p lmap:level:=3", "-p lmap:level is for no node here; did you mean 'lamp'?"),
+        ("-p lmap:level:=3", "-p lmap:level matches no node; did you mean 'lamp'?"),
         ("--params-file {file}", "{file}:1:1: there is no node /lmap; did you mean '/lamp'?"),
         ("-r light:=sun -r switch:=knob -p level:=3 -p lamp:level:=2 -r __ns:=/attic", ""),
     ],
@@ -63,11 +63,11 @@ def test_it_is_told_while_nodes_run(caplog: Caplog, monkeypatch: pytest.MonkeyPa
     life = one.context.life
     assert life is not None
     found = Unused(life)
-    found.look()
+    found.check()
     assert told(caplog) == []
     rclpy.spin_once(other, timeout_sec=0)
-    found.look()
-    found.look()
+    found.check()
+    found.check()
     assert told(caplog).count("the remap lihgt:=sun matches no name of /one or /other; did you mean 'light'?") >= 1
     assert not [text for text in told(caplog) if "one:light" in text]
 

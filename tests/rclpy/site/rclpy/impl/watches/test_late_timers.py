@@ -78,7 +78,7 @@ def test_a_period_of_zero(node: Node, spin: Spinner, caplog: Caplog) -> None:
     timer.cancel()
     line = test_a_period_of_zero.__code__.co_firstlineno + 3
     place = f"timer <lambda> (test_late_timers.py:{line}) of /node"
-    way = "is called all the time: give it one, as in create_timer(0.1, ...)"
+    way = "is called continuously: give it one, as in create_timer(0.1, ...)"
     assert told(caplog) == [f"{place} has a period of 0 s, and {way}"]
 
 
@@ -95,11 +95,11 @@ def test_time_that_does_not_begin(network: Any, capfd: pytest.CaptureFixture[str
     spinner.executor.add_node(heard)
     found = []
 
-    def is_told() -> bool:
+    def is_reported() -> bool:
         found.append(capfd.readouterr().err)
         return TIMELESS in "".join(found)
 
-    spinner(is_told)
+    spinner(is_reported)
     clock.publish(message)
     text = "".join(found)
     assert text.count(TIMELESS) == 1

@@ -37,7 +37,7 @@ def spun(node: Node) -> Iterator[SingleThreadedExecutor]:
 
 
 def told(caplog: pytest.LogCaptureFixture) -> list[str]:
-    return [record.getMessage() for record in caplog.records if "spun by nobody" in record.getMessage()]
+    return [record.getMessage() for record in caplog.records if "no longer spun" in record.getMessage()]
 
 
 def until(condition: Callable[[], Any]) -> None:
@@ -63,8 +63,8 @@ def test_a_spin_in_a_callback(node: Node, caplog: pytest.LogCaptureFixture, monk
     [text] = told(caplog)
     line = tick.__code__.co_firstlineno + 2
     assert text.startswith(
-        f"/{node.get_name()} is spun by nobody any more: rclpy.spin_until_future_complete, called in "
-        f"test_orphans.py:{line} in tick, took it out of its SingleThreadedExecutor and left it in none"
+        f"/{node.get_name()} is no longer spun: rclpy.spin_until_future_complete, called in "
+        f"test_orphans.py:{line} in tick, removed it from its SingleThreadedExecutor"
     )
     assert "do not spin in a callback: future.add_done_callback(...)" in text
 

@@ -199,7 +199,7 @@ def test_a_callback_that_spins(network: Any, caplog: Caplog) -> None:
         rclpy.shutdown()
     [text] = told(caplog)
     line = Spins.tick.__code__.co_firstlineno + 1
-    assert f", now in test_starvation.py:{line} in tick, and is due again: it spins there; have it return" in text
+    assert f", now in test_starvation.py:{line} in tick, and is due again: it spins there; let it return" in text
 
 
 def test_an_init_that_spins(network: Any, caplog: Caplog) -> None:
@@ -239,7 +239,7 @@ def test_a_node_that_nobody_spins(node: Node, caplog: Caplog) -> None:
     with spun(node):
         until(lambda: len(told(caplog)) > 1)
     text, over = told(caplog)
-    assert text.startswith(f"nobody has spun /{node.get_name()} for ")
+    assert text.startswith(f"/{node.get_name()} has not been spun for ")
     assert "timer <lambda> should be called: the program is in test_starvation.py:" in text
     assert text.endswith("; have it call rclpy.spin(node)")
     assert over.startswith("/node is spun after ")
@@ -252,7 +252,7 @@ def test_a_node_beside_the_one_that_is_spun(node: Node, caplog: Caplog) -> None:
     node.create_timer(0.01, lambda: rclpy.try_shutdown() if told(caplog) else None)
     rclpy.spin(node)
     [text] = told(caplog)
-    assert text.startswith("nobody has spun /other for ")
+    assert text.startswith("/other has not been spun for ")
     assert text.endswith("; add the node to the executor that is spun there")
 
 
@@ -294,9 +294,9 @@ def test_a_node_that_ends_without_having_been_spun(node: Node, caplog: Caplog) -
     rclpy.shutdown()
     ended, line = own.f_lineno - 1, answer.__code__.co_firstlineno
     assert [text.partition(" could")[0] for text in told(caplog)] == [
-        f"{why}, so that service answer (test_starvation.py:{line})"
+        f"{why}, so service answer (test_starvation.py:{line})"
         for why in (
-            "/destroyed ends, and nobody has ever spun it",
-            f"rclpy is shut down in test_starvation.py:{ended} before anybody has spun /left",
+            "/destroyed ends and was never spun",
+            f"rclpy is shut down in test_starvation.py:{ended} before /left was spun",
         )
     ]

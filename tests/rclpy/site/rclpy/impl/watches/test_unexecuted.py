@@ -96,6 +96,6 @@ def test_many_goals_that_may_be_executed_yet(node: Node, spin: Spinner, monkeypa
         send(node, spin)
     watch = unexecuted.Unexecuted(node._graphflow.life)
     for count in (1, 2, 3, 3):
-        watch.look()
+        watch.check()
         assert len(searched) == count
     server.destroy()

@@ -13,7 +13,7 @@ Caplog = pytest.LogCaptureFixture
 
 
 def told(caplog: Caplog) -> list[str]:
-    return [record.getMessage() for record in caplog.records if "heard" in record.getMessage()]
+    return [record.getMessage() for record in caplog.records if "has received" in record.getMessage()]
 
 
 def publish(node: Node, times: int = 1) -> None:
@@ -28,10 +28,10 @@ def test_what_nobody_has_heard(node: Node, caplog: Caplog) -> None:
     publish(node)
     node.create_publisher(String, "still", 10)
     node.destroy_node()
-    assert told(caplog) == [f"/chat: nobody has heard the 1 message that was published: {way}"]
+    assert told(caplog) == [f"/chat: no subscription has received the 1 message that was published: {way}"]
     publish(Node("other"), times=2)
     rclpy.shutdown()
-    assert told(caplog)[1:] == [f"/chat: nobody has heard the 2 messages that were published: {way}"]
+    assert told(caplog)[1:] == [f"/chat: no subscription has received the 2 messages that were published: {way}"]
 
 
 def test_what_was_heard_or_had_the_time(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -147,7 +147,7 @@ def test_a_call_that_nobody_answers(
     until(lambda: told(caplog))
     call()
     time.sleep(0.1)
-    lost = "a call of /node is never answered, nor its future done, for want of a server"
+    lost = "a call of /node will never be answered, since it has no server"
     assert told(caplog) == [f"{lost} {text}"]
 
 

@@ -25,7 +25,7 @@ def test_they_look_and_keep_what_still_holds(node: Node, monkeypatch: pytest.Mon
     while not watches.texts and time.monotonic() < until:
         time.sleep(0.01)
     [text] = watches.texts
-    assert text.startswith("nobody has spun /node for ")
+    assert text.startswith("/node has not been spun for ")
     timer.cancel()
     node.destroy_node()
     while watches.texts and time.monotonic() < until:
