@@ -6,7 +6,7 @@ import sys
 
 
 def _end(*_: object) -> None:
-    os._exit(0)  # nothing of the user's has run yet
+    os._exit(0)  # no user code has run yet
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ class ContextState:
         for pause in ASK_AGAIN:
             try:
                 return await Context.open(self.domain)
-            except TransportError as error:  # where others find each other, somebody may just be leaving
+            except TransportError as error:  # the process that hosts the rendezvous may just be leaving
                 logger.debug("joining the network: %s", error)
                 await asyncio.sleep(pause)
         return await Context.open(self.domain)
@@ -103,10 +103,10 @@ class ContextState:
         self._wakes.pop(wake, None)
 
     def leave(self, node: object) -> None:
-        """Note that a node was destroyed; None closes them all. Idempotent."""
+        """Note that a node was destroyed, or that the context has ended. Idempotent."""
         if self.nodes.pop(node, None) is not None:
-            for told in self.on_leaving:
-                told(node)
+            for notify in self.on_leaving:
+                notify(node)
 
     def end(self) -> bool:
         """Mark the context as ended and wake all waiting threads; return whether it was still running. Signal-safe."""
@@ -123,7 +123,7 @@ class ContextState:
     def end_daemon(self) -> None:
         """End a daemon thread quietly once the program has ended. Raises SystemExit in such a thread."""
         if self._ends_with_process and threading.current_thread().daemon:
-            raise SystemExit  # which threads end by
+            raise SystemExit  # threading ends the thread without a traceback
 
     def close(self) -> None:
         """Leave the network; if another thread is already doing so, wait for it."""
@@ -137,7 +137,7 @@ class ContextState:
             try:
                 LOOP.wait(self._leave, context, timeout=CLOSE_LIMIT)
             except TimeoutError:
-                pass  # a peer holds it; the process that ends takes the session with it
+                pass  # a peer blocks the close; the session ends with the process
         with suppress(ValueError):  # at last: the process must not end meanwhile
             LOOP.at_exit.remove(self.end_with_process)
 

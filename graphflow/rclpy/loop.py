@@ -66,7 +66,7 @@ class LoopThread:
         def work() -> None:
             try:
                 outcome.set_result(fn(*args))
-            except BaseException as error:  # the caller, in its thread, is the one to handle it
+            except BaseException as error:  # whatever it is, the caller handles it in its own thread
                 outcome.set_exception(error)
 
         loop.call_soon_threadsafe(work)

@@ -121,7 +121,7 @@ def make_importable(workspace: Workspace) -> bool:
             registry.add_package(name, folder)
         for name, folder in workspace.replaced.items():
             finder.prefer_own()
-            sys.stderr.write(f"note: {folder} is not imported: graphflow has {name} itself\n")
+            sys.stderr.write(f"note: {folder} is ignored: graphflow provides {name} itself\n")
     offer_ros2()
     sys.path[:0] = [str(folder) for folder in workspace.import_roots if str(folder) not in sys.path]
     return is_ours
@@ -135,7 +135,7 @@ def run(program: Program) -> None:
         UsageFault: Its module lacks the entry point's function.
     """
     if make_importable(program.workspace):
-        import_module("rclpy")  # which takes long, and would be interrupted by Ctrl-C in the middle of ours
+        import_module("rclpy")  # slow, and Ctrl-C would otherwise interrupt it in graphflow's code
     # A shell starts jobs with SIGINT ignored; rclpy ends all the same.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
@@ -143,8 +143,8 @@ def run(program: Program) -> None:
     hook = sys.excepthook
     try:
         _begin(program)
-    except BaseException:  # SystemExit and KeyboardInterrupt are shown by a hook, too
-        if sys.excepthook is hook:  # not before: some libraries look whether it is Python's own
+    except BaseException:  # a hook may show SystemExit and KeyboardInterrupt, too
+        if sys.excepthook is hook:  # not before: some libraries check for Python's own hook
             sys.excepthook = partial(_print_error, program.workspace)
         raise
 
@@ -202,27 +202,13 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
     Args:
         wanted: The name imported from it; empty if unknown.
     """
-    name, _, kind = module.partition(".")
+    name = module.partition(".")[0]
     package = workspace.packages.get(name)
-    if package is not None and name in of_ros():
-        return f"your package {package.folder} hides ROS 2's {name}; rename yours, there and in its files"
-    if package is not None and kind in KINDS:
-        for file, right in package.misplaced_interfaces.items():
-            if right.suffix == f".{kind}":
-                return f"{file} must be {right}"
-        others = [p.name for p in workspace.packages.values() if p.has_kind(kind)]
-        owners = [other for other in others if wanted in registry.names_in(other, kind)]
-        if owners:
-            return f"{wanted} is in {owners[0]}.{kind}: from {owners[0]}.{kind} import {wanted}"
-        near = nearest(name, others, cutoff=SLIP) or next((o for o in others if o.startswith(name)), None)
-        if near is not None:
-            return f"{name} has no .{kind} file; they are in {near}: from {near}.{kind} import ..."
-        return f"{name} has no .{kind} file: {package.folder / kind} does not exist or is empty"
     if package is not None:
-        return f"{name} has no module {module}; the package is {package.folder}"
-    there = sys.modules.get(name)
-    if there is not None:
-        return _no_module_in(there, module)
+        return _not_in_package(package, module, workspace, wanted)
+    imported = sys.modules.get(name)
+    if imported is not None:
+        return _no_module_in(imported, module)
     owner = next((p for p in workspace.packages.values() if _has_module(p, name)), None)
     if owner is not None:
         return f"{name}.py is in the package {owner.name}; write: from {owner.name}.{module} import ..."
@@ -236,6 +222,26 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
     if name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
         return f"there is no {name} here: {into}{meant}"
     return f"there is no {name} here{meant or f': {into} if it is a ROS package, or pip install it if it is on PyPI'}"
+
+
+def _not_in_package(package: Package, module: str, workspace: Workspace, wanted: str) -> str:
+    """Suggest where to get a module that a package of the workspace lacks."""
+    name, _, kind = module.partition(".")
+    if name in of_ros():
+        return f"your package {package.folder} hides ROS 2's {name}; rename yours, there and in its files"
+    if kind not in KINDS:
+        return f"{name} has no module {module}; the package is {package.folder}"
+    for file, right in package.misplaced_interfaces.items():
+        if right.suffix == f".{kind}":
+            return f"{file} must be {right}"
+    others = [p.name for p in workspace.packages.values() if p.has_kind(kind)]
+    owners = [other for other in others if wanted in registry.names_in(other, kind)]
+    if owners:
+        return f"{wanted} is in {owners[0]}.{kind}: from {owners[0]}.{kind} import {wanted}"
+    near = nearest(name, others, cutoff=SLIP) or next((o for o in others if o.startswith(name)), None)
+    if near is not None:
+        return f"{name} has no .{kind} file; they are in {near}: from {near}.{kind} import ..."
+    return f"{name} has no .{kind} file: {package.folder / kind} does not exist or is empty"
 
 
 def _no_module_in(package: ModuleType, module: str) -> str:
@@ -280,7 +286,7 @@ _ON_PYPI = {
 
 
 def _warn_of_build_faults(program: Program, name: str) -> None:
-    """Warn about what would keep ROS 2 from running the program, and about stale copies of its entry points."""
+    """Warn about what keeps ROS 2 from running the program, and about a copied line of setup.py."""
     if program.entry is not None:
         for package in program.workspace.packages.values():
             if program.file.is_relative_to(package.folder):

@@ -22,7 +22,7 @@ class Wake:
 
     def set(self) -> None:
         """Wake the thread. Callable from any thread, and from signal handlers."""
-        if self._queue.empty():
+        if self._queue.empty():  # a second signal before the wait would only cause a spurious wake-up
             self._queue.put(None)
 
     def wait(self, timeout: float | None = None) -> bool:
@@ -68,7 +68,7 @@ class SharedWake(Wake):
     def for_one(self) -> Iterator[Wake]:
         """Return the wake for one thread: this one, or another if this is in use."""
         with self._taking:
-            wake = Wake() if self._is_taken else self
+            wake = Wake() if self._is_taken else self  # a queue wakes only one of the threads that wait on it
             self._is_taken = True
             if wake is not self:
                 self._others[wake] = None

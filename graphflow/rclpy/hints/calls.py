@@ -146,7 +146,7 @@ def _function(name: str) -> Callable[..., object] | None:
 def _of_callback(text: str, frame: FrameType, name: str) -> str:
     """Describe how graphflow calls the callback whose call failed."""
     if text.endswith("object is not callable") and frame.f_code.co_qualname == "Task._step":
-        return "a callback is given as the function itself: add_done_callback(self.done), without parentheses"
+        return "pass the callback as the function itself: add_done_callback(self.done), without parentheses"
     found = next(((fn, args) for fn, args in _callbacks(frame) if name in ("", fn.__qualname__)), None)
     if found is None or not is_users(found[0].__code__.co_filename):
         return ""

@@ -78,15 +78,20 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
         if error.name in ("cancel", "reset", "destroy"):
             return _of_callback(path, error.name, users[-1])
         return f"{path} is a function: call it, as in {path}().{error.name}"
-    for method in _functions(type(error.obj)):
-        inner = next((c for c in method.co_consts if isinstance(c, CodeType) and c.co_name == error.name), None)
+    return _inside_method(error.name, type(error.obj))
+
+
+def _inside_method(name: str, cls: type) -> str:
+    """Show how to make an attribute of a function or variable that a class has only inside one of its methods."""
+    for method in _functions(cls):
+        inner = next((c for c in method.co_consts if isinstance(c, CodeType) and c.co_name == name), None)
         if inner is not None:
             place = short_place(inner.co_filename, inner.co_firstlineno)
-            return f"{error.name} ({place}) is inside {method.co_name}: indent it as {method.co_name} itself is"
-    for method in _functions(type(error.obj)):
-        if error.name in method.co_varnames[method.co_argcount :]:
+            return f"{name} ({place}) is inside {method.co_name}: indent it like {method.co_name} itself"
+    for method in _functions(cls):
+        if name in method.co_varnames[method.co_argcount :]:
             place = short_place(method.co_filename, method.co_firstlineno)
-            return f"{error.name} is a local variable of {method.co_name} ({place}): write self.{error.name} there"
+            return f"{name} is a local variable of {method.co_name} ({place}): write self.{name} there"
     return ""
 
 

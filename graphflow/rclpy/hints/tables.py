@@ -120,6 +120,7 @@ GIVEN = {
     "_type_of": "message",
     "await_or_execute": "goal_handle",
     "NodeParameters._set": "parameters",
+    "NodeParameters._verdict": "parameters",
     "NodeParameters.set_all": "parameters",
 }
 """Arguments that graphflow passes to callbacks."""

@@ -1,7 +1,7 @@
 """Checks of the values that fields of strict messages accept, with rosidl's error texts.
 
-A sequence of numbers accepts anything that Python converts to them, as in ROS 2: integers become floats. A single
-number is not converted: ROS 2 aborts the process when it publishes a message with a wrong one.
+A sequence of numbers accepts anything that Python converts to them, as in ROS 2: integers become floats. A field of one
+number accepts only its own type: ROS 2 aborts the process when it publishes a message with any other.
 
 Source: the setters that rosidl_generator_py generates, and their error texts.
 """
@@ -176,16 +176,22 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
     if type_.array == "fixed":
         return lambda value: _fixed(type_, value, plain)
 
+    return _numbers(code, fits, plain)
+
+
+def _numbers(code: str, fits: Callable[[int], bool], plain: Callable[[object], list[Any]]) -> Check:
+    """Return the check for a sequence of numbers of variable length, stored as an `array` of a type code."""
+
     def numbers(value: Any) -> array[Any]:
         if isinstance(value, array) and value.typecode == code and fits(len(value)):
             return value
         if isinstance(value, (str, *(() if code in "bB" else (bytes, bytearray)))):
-            plain(value)  # of which `array` would take each character, or the memory
+            plain(value)  # raises: `array` would take each character, or the memory
         made: array[Any] | None = None
         with suppress(TypeError, ValueError, OverflowError):
             made = array(code, value)
         if made is None:
-            made = array(code, plain(value))  # which says what does not fit
+            made = array(code, plain(value))  # raises for the element that does not fit
         if not fits(len(made)) or (code == "f" and any(map(math.isinf, made))):
             plain(value)
         return made

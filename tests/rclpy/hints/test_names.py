@@ -62,7 +62,7 @@ LAMPS = [
     ("def tick(self):\n    print(None.x)", ""),
     (
         "def tick(self):\n    def blink(self):\n        pass\n    self.blink",
-        "blink (lamp.py:12) is inside tick: indent it as tick itself is",
+        "blink (lamp.py:12) is inside tick: indent it like tick itself",
     ),
     (
         "def tick(self):\n    self.set()\n    self.pub.publish(1)\ndef set(self):\n    pub = 1",

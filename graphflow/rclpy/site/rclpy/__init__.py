@@ -102,7 +102,7 @@ def init(
     tracebacks.install()
     try:
         chosen.init(args, domain_id=domain_id)
-    except BaseException:  # Ctrl-C included: signals must do what they did before
+    except BaseException:  # Ctrl-C included: restore the signal handlers
         if context is None:
             uninstall_signal_handlers()
         raise

@@ -146,7 +146,7 @@ class Client(ServiceEnd):
             response = classes.decode(self.srv_type.Response, answered.payload)
             self._endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)
             future.set_result(response)
-        elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
+        elif not isinstance(answered.error, ServerLost):  # ROS 2 leaves such a future pending
             future.set_exception(answered.error)
 
 

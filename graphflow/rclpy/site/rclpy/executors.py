@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 from weakref import WeakSet
 
 from rclpy.impl.mistakes.spin_arguments import check_node, is_node, warn_no_node
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.impl.spinning import (
     POLL,
@@ -137,7 +138,7 @@ class Executor(AbstractContextManager["Executor"]):
             return False
         spinning.nodes[node] = None
         node.executor = self
-        node._graphflow.times_added += 1
+        internals_of(node).times_added += 1
         spinning.wake.set()
         return True
 
@@ -347,7 +348,7 @@ class MultiThreadedExecutor(Executor):
         try:
             handler()
             error = handler.exception()
-        except BaseException as leaving:  # SystemExit and the like, which the spinning thread is to see
+        except BaseException as leaving:  # SystemExit and others: the spinning thread re-raises them
             error = leaving
         if error is not None:
             self._graphflow_failures.append(error)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.logging_severity import SEVERITIES
 from rclpy.impl.reexports import passed_on
 from rclpy.logging import get_logger_level, set_logger_level
 
@@ -36,7 +36,7 @@ class LoggingService:
         from rcl_interfaces.msg import SetLoggerLevelsResult
 
         for wanted in request.levels:
-            is_level = wanted.level in LoggingSeverity._value2member_map_
+            is_level = wanted.level in SEVERITIES
             if is_level:
                 set_logger_level(wanted.name, wanted.level)
             reason = "" if is_level else "Failed reason: Invalid logger level."

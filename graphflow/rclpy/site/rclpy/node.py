@@ -450,7 +450,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             self.destroy_timer(timer)
         for guard in list(inner.guards):
             self.destroy_guard_condition(guard)
-        # What is on the network goes with the node, all at once.
+        # Closing the node withdraws all its endpoints at once.
         self.handle.destroy_when_not_in_use()
         kinds: tuple[list[Any], ...] = (inner.publishers, inner.subscriptions, inner.clients, inner.services)
         for things in kinds:

@@ -104,7 +104,7 @@ def _caught(number: int, frame: FrameType | None) -> None:
         if is_ending:  # there can be no new thread, and this one holds nothing
             context.finish()
         else:
-            # What it calls may take long, or wait for what this thread holds; so does `Thread.start`.
+            # The callbacks may take long, or wait for a lock that this thread holds; even `Thread.start` may.
             _thread.start_new_thread(context.finish, ())
     former = _former.get(number)
     if callable(former) and not is_ending:

@@ -69,6 +69,7 @@ class Future(Generic[T]):
         self._runs = _none if executor is None else weakref.ref(executor)
 
     def __await__(self) -> Generator[object, None, T]:
+        # Outside an executor's task, asyncio is awaiting: it accepts only futures of its own loop.
         if not (self._is_done or self._is_cancelled) and _stepping.task is None and asyncio._get_running_loop():
             yield from self._of_asyncio().__await__()
         while not (self._is_done or self._is_cancelled):
@@ -150,7 +151,7 @@ class Future(Generic[T]):
             else:
                 try:
                     callback(self)
-                except Exception as error:  # it is not the setter's
+                except Exception as error:  # a user's callback may raise anything; it is not the setter's fault
                     warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
     def add_done_callback(self, callback: Callable[[Any], Any]) -> None:
@@ -252,7 +253,7 @@ class Task(Future[T]):
             self._end(None, leaving)
             self._was_raised = True
             raise
-        except BaseException as error:
+        except BaseException as error:  # whatever it is, it becomes the task's result
             self._end(None, error)
         finally:
             _stepping.task = around

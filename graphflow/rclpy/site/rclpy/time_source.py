@@ -18,6 +18,7 @@ from graphflow.runtime.endpoints.threaded import ThreadedSubscription
 from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy, to_graphflow
@@ -162,7 +163,7 @@ class _Hearing:
             made.is_inner = True
             return made
 
-        self._endpoint = node_bridge.add(node._graphflow.node, make)
+        self._endpoint = node_bridge.add(internals_of(node).node, make)
         threading.Thread(target=self._listen, name="graphflow-clock", daemon=True).start()
 
     def _listen(self) -> None:

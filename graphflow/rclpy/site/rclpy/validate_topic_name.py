@@ -29,13 +29,16 @@ def fault_of(name: str) -> tuple[str, int] | None:
     number = re.search(r"(?:^|/)([0-9])", name)
     if number:
         return "topic name token must not start with a number", number.start(1)
+    brace = _unbalanced_brace(name)
+    return None if brace is None else ("topic name must not have unbalanced curly braces '{}'", brace)
+
+
+def _unbalanced_brace(name: str) -> int | None:
     for index in (i for i, letter in enumerate(name) if letter in "{}"):
         before = name[:index]
         if (name[index] == "{") == (before.count("{") > before.count("}")):
-            return "topic name must not have unbalanced curly braces '{}'", index
-    if name.count("{") != name.count("}"):
-        return "topic name must not have unbalanced curly braces '{}'", name.rindex("{")
-    return None
+            return index
+    return name.rindex("{") if name.count("{") != name.count("}") else None
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:

@@ -8,6 +8,7 @@ from graphflow.rclpy import node_bridge
 from graphflow.rclpy.node_bridge import NodeBell
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.threaded import ThreadedSubscription
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, to_graphflow, validated
 from rclpy.serialization import deserialize_message
@@ -45,7 +46,7 @@ def wait_for_message(
     assert life is not None  # a node has joined it
     bell, qos = _Waking(wake), to_graphflow(validated(qos_profile))
     endpoint = node_bridge.add(
-        node._graphflow.node, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing)
+        internals_of(node).node, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing)
     )
     life.on_end(wake)
 

@@ -90,7 +90,7 @@ class Waitable:
         """Add to a wait set whatever becomes ready."""
         raise NotImplementedError("Must be implemented by subclass")
 
-    # what executors ask of everything that they look after
+    # the executor's interface to entities
 
     def has_work(self) -> bool:
         return bool(self.is_ready(None))

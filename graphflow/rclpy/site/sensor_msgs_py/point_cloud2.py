@@ -147,7 +147,7 @@ def create_cloud(
         width = len(dtype.names or ())
         array = array.reshape(0, width) if array.size == 0 else array
         if array.shape[-1] != width:
-            raise ValueError(f"points have {array.shape[-1]} numbers each, and the cloud {width} fields")
+            raise ValueError(f"points have {array.shape[-1]} values each, but the cloud has {width} fields")
         array = unstructured_to_structured(array, dtype)
     elif array.dtype != dtype:
         array = array.astype(dtype)

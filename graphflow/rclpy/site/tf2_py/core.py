@@ -199,7 +199,7 @@ def _fault(frame: str, parent: str, pose: Pose) -> str | None:
     if max(len(frame), len(parent)) > NAME_BOUND:
         return f"the name of a frame is longer than {NAME_BOUND} characters"
     if not all(map(math.isfinite, (*pose.translation, *pose.rotation))):
-        return f"a number of {frame!r} is infinite or none"
+        return f"a number of {frame!r} is infinite or not a number"
     if abs(sum(q * q for q in pose.rotation) - 1) > TOLERANCE:
         return f"the quaternion of {frame!r} is not normalized"
     return None

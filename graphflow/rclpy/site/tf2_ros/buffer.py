@@ -132,7 +132,7 @@ class Buffer(BufferCore, BufferInterface):
                 is_over = self._graphflow_node is not None and not self._graphflow_node.context.ok()
                 if answer[0] or left <= 0 or is_over:
                     break
-                self._graphflow_changed.wait(min(left, 0.1))  # the end of a context tells nobody
+                self._graphflow_changed.wait(min(left, 0.1))  # the end of a context wakes nobody
         if not answer[0]:
             self._graphflow_unfilled.lookup_failed(self)
         return answer

@@ -42,7 +42,7 @@ class BufferClient(BufferInterface):
         node: The node of the client.
         ns: The name of the server's action.
         check_frequency: Ignored: answers are not polled.
-        timeout_padding: Seconds that the server may take beyond its own time limit.
+        timeout_padding: The time that the server may take beyond its own limit.
     """
 
     def __init__(

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias, TypeVar
 
 from rclpy.duration import Duration
 from rclpy.time import Time
 
+K = TypeVar("K")
+Conversion: TypeAlias = Callable[..., Any]
+"""A function that converts or transforms objects; only its caller knows their types."""
 AT_ONCE = Duration()
 """The timeout that does not wait."""
 
@@ -26,19 +29,19 @@ class TypeException(Exception):
 class Stamped:
     """An object with its time and frame."""
 
-    def __init__(self, obj: object, stamp: Any, frame_id: str) -> None:
+    def __init__(self, obj: object, stamp: object, frame_id: str) -> None:
         self.obj, self.stamp, self.frame_id = obj, stamp, frame_id
 
 
 class TransformRegistration:
     """The functions that transform objects, by type: `fn(object, transform_stamped)` each."""
 
-    _known: ClassVar[dict[type, Callable[..., object]]] = {}
+    _known: ClassVar[dict[type, Conversion]] = {}
 
-    def add(self, key: type, callback: Callable[..., object]) -> None:
+    def add(self, key: type, callback: Conversion) -> None:
         self._known[key] = callback
 
-    def get(self, key: type) -> Callable[..., Any]:
+    def get(self, key: type) -> Conversion:
         """Return the function for a type. Raises TypeException if there is none."""
         try:
             return self._known[key]
@@ -51,30 +54,30 @@ class TransformRegistration:
 class ConvertRegistration:
     """The functions that convert objects to messages and back, and between messages; by type."""
 
-    _to: ClassVar[dict[type, Callable[..., Any]]] = {}
-    _from: ClassVar[dict[type, Callable[..., Any]]] = {}
-    _between: ClassVar[dict[tuple[type, type], Callable[..., Any]]] = {}
+    _to: ClassVar[dict[type, Conversion]] = {}
+    _from: ClassVar[dict[type, Conversion]] = {}
+    _between: ClassVar[dict[tuple[type, type], Conversion]] = {}
 
-    def add_to_msg(self, key: type, callback: Callable[..., object]) -> None:
+    def add_to_msg(self, key: type, callback: Conversion) -> None:
         self._to[key] = callback
 
-    def add_from_msg(self, key: type, callback: Callable[..., object]) -> None:
+    def add_from_msg(self, key: type, callback: Conversion) -> None:
         self._from[key] = callback
 
-    def add_convert(self, key: tuple[type, type], callback: Callable[..., object]) -> None:
+    def add_convert(self, key: tuple[type, type], callback: Conversion) -> None:
         self._between[key] = callback
 
-    def get_to_msg(self, key: type) -> Callable[[Any], Any]:
+    def get_to_msg(self, key: type) -> Conversion:
         return _found(self._to, key)
 
-    def get_from_msg(self, key: type) -> Callable[[Any], Any]:
+    def get_from_msg(self, key: type) -> Conversion:
         return _found(self._from, key)
 
-    def get_convert(self, key: tuple[type, type]) -> Callable[[Any], Any]:
+    def get_convert(self, key: tuple[type, type]) -> Conversion:
         return _found(self._between, key)
 
 
-def _found(known: dict[Any, Callable[..., object]], key: Any) -> Callable[[Any], Any]:
+def _found(known: dict[K, Conversion], key: K) -> Conversion:
     try:
         return known[key]
     except KeyError:
@@ -104,7 +107,7 @@ class BufferInterface:
         """Transform an object to another frame, at the time of its own stamp.
 
         Raises:
-            TransformException, TypeException: As their names say.
+            TransformException, TypeException: See their docstrings.
         """
         header = object_stamped.header
         found = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)

@@ -62,7 +62,7 @@ def test_what_is_wrong_is_told() -> None:
         point_cloud2.read_points(cloud, ["y"])
     with pytest.raises(ValueError, match="same datatype"):
         point_cloud2.read_points_numpy(cloud)
-    with pytest.raises(ValueError, match="have 2 numbers each, and the cloud 5 fields"):
+    with pytest.raises(ValueError, match="have 2 values each, but the cloud has 5 fields"):
         point_cloud2.create_cloud(Header(), FIELDS, [(1, 2)])
     cloud.width = 1000
     with pytest.raises(ValueError, match=r"1 x 1000 points has only 11 bytes"):

@@ -62,7 +62,7 @@ def test_between_two_times() -> None:
         ("", "base", (0.0, 0.0, 0.0, 1.0), "must not be empty"),
         ("base", "/base", (0.0, 0.0, 0.0, 1.0), "are both 'base'"),
         ("odom", "base", (0.0, 0.0, 0.0, 0.0), "the quaternion of 'base' is not normalized"),
-        ("odom", "base", (0.0, 0.0, 0.0, float("nan")), "a number of 'base' is infinite or none"),
+        ("odom", "base", (0.0, 0.0, 0.0, float("nan")), "a number of 'base' is infinite or not a number"),
         ("odom", "b" * 2000, (0.0, 0.0, 0.0, 1.0), "longer than 1000 characters"),
     ],
 )

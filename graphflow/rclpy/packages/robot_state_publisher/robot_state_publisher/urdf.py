@@ -81,11 +81,11 @@ def parse(text: str) -> Robot:
         joints[joint.name] = joint
         for end, link in (("parent", joint.parent), ("child", joint.child)):
             if link not in links:
-                raise URDFError(f"the {end} of the joint {joint.name!r} is {link!r}, and there is no such link")
+                raise URDFError(f"the {end} of the joint {joint.name!r} is {link!r}, which does not exist")
     _check_tree(links, joints)
     for joint in joints.values():
         if joint.mimic is not None and joint.mimic.joint not in joints:
-            raise URDFError(f"the joint {joint.name!r} mimics {joint.mimic.joint!r}, and there is no such joint")
+            raise URDFError(f"the joint {joint.name!r} mimics {joint.mimic.joint!r}, which does not exist")
     return Robot(links, joints)
 
 
@@ -93,9 +93,7 @@ def _check_tree(links: list[str], joints: dict[str, Joint]) -> None:
     above: dict[str, Joint] = {}
     for joint in joints.values():
         if joint.child in above:
-            raise URDFError(
-                f"the link {joint.child!r} has two joints above it: {above[joint.child].name}, {joint.name}"
-            )
+            raise URDFError(f"the link {joint.child!r} has two parent joints: {above[joint.child].name}, {joint.name}")
         above[joint.child] = joint
     roots = [link for link in links if link not in above]
     if len(roots) != 1:

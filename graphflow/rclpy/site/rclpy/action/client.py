@@ -20,6 +20,7 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
 from rclpy.impl.callers import caller
 from rclpy.impl.mistakes.arguments import explained
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
@@ -127,20 +128,20 @@ class ActionClient(Waitable):
         self._graphflow_is_open = False  # another thread may be spinning the node
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
-        mark = partial(node._graphflow.bell.mark, self)
+        mark = partial(internals_of(node).bell.mark, self)
 
         def client(carrier: type, part: str, qos: QoSProfile) -> ThreadedClient:
             type_ = registry.interface_class(classes.type_name(carrier))
             full = f"{name}/_action/{part}"
             return node_bridge.add(
-                node._graphflow.node,
+                internals_of(node).node,
                 lambda core: ThreadedClient(
-                    core, type_, full, to_graphflow(qos), node._graphflow.bell, mark, self._graphflow_server_changed
+                    core, type_, full, to_graphflow(qos), internals_of(node).bell, mark, self._graphflow_server_changed
                 ),
             )
 
         def subscription(carrier: type, part: str, qos: QoSProfile) -> ThreadedSubscription:
-            full, bell = f"{name}/_action/{part}", node._graphflow.bell
+            full, bell = f"{name}/_action/{part}", internals_of(node).bell
 
             def make(core: NodeCore) -> ThreadedSubscription:
                 made = ThreadedSubscription(
@@ -149,7 +150,7 @@ class ActionClient(Waitable):
                 made.in_order = part == "feedback"
                 return made
 
-            return node_bridge.add(node._graphflow.node, make)
+            return node_bridge.add(internals_of(node).node, make)
 
         self._graphflow_goals = client(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
         self._graphflow_cancels = client(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
@@ -164,7 +165,7 @@ class ActionClient(Waitable):
         for wake in list(self._graphflow_changed):
             wake.set()
 
-    # what executors ask
+    # the executor's interface
 
     def is_ready(self, wait_set: object) -> bool:
         if not self._graphflow_is_open:
@@ -213,7 +214,7 @@ class ActionClient(Waitable):
         future._is_set_here()
         if answered.error is None:
             future.set_result(made(answered.payload))
-        elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
+        elif not isinstance(answered.error, ServerLost):  # ROS 2 leaves such a future pending
             future.set_exception(answered.error)
 
     def _graphflow_heard_feedback(self, payload: bytes) -> None:

@@ -25,6 +25,7 @@ from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending
 from rclpy.impl.mistakes.arguments import described, explained, must_return
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
@@ -66,7 +67,7 @@ _STEPS = {
     (Status.CANCELING, GoalEvent.ABORT): Status.ABORTED,
     (Status.CANCELING, GoalEvent.CANCELED): Status.CANCELED,
 }
-"""What follows when something happens to a goal. Source: the ROS 2 design article "Actions"."""
+"""The status that follows each event of a goal. Source: the ROS 2 design article "Actions"."""
 
 
 class ServerGoalHandle:
@@ -206,21 +207,21 @@ class ActionServer(Waitable):
         self._logger = node.get_logger().get_child("action_server")
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
-        mark = partial(node._graphflow.bell.mark, self)
+        mark = partial(internals_of(node).bell.mark, self)
         self._graphflow_is_open = False  # another thread may be spinning the node
 
         def service(carrier: type, part: str, qos: QoSProfile) -> ThreadedService:
             type_ = registry.interface_class(classes.type_name(carrier))
             return node_bridge.add(
-                node._graphflow.node,
+                internals_of(node).node,
                 lambda core: ThreadedService(
-                    core, type_, f"{name}/_action/{part}", to_graphflow(qos), node._graphflow.bell, mark
+                    core, type_, f"{name}/_action/{part}", to_graphflow(qos), internals_of(node).bell, mark
                 ),
             )
 
         def publisher(carrier: type, part: str, qos: QoSProfile) -> ThreadedPublisher:
             return node_bridge.add(
-                node._graphflow.node,
+                internals_of(node).node,
                 lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos)),
             )
 
@@ -236,7 +237,7 @@ class ActionServer(Waitable):
     def action_type(self) -> Any:
         return self._action_type
 
-    # what executors ask
+    # the executor's interface
 
     def is_ready(self, wait_set: object) -> bool:
         return self._graphflow_is_open and any(
@@ -275,7 +276,7 @@ class ActionServer(Waitable):
         else:
             try:
                 answer = await await_or_execute(self._goal_callback, request.goal)
-            except Exception as error:
+            except Exception as error:  # a user's callback may raise anything: the goal is rejected first
                 self._logger.error(f"Error raised in goal callback: {error}")
                 shorten(error)
                 traceback.print_exception(error)
@@ -317,7 +318,7 @@ class ActionServer(Waitable):
         way = f": {described(execute_callback)} returned without goal_handle.succeed()"
         try:
             result = await await_or_execute(execute_callback, goal_handle)
-        except Exception as error:
+        except Exception as error:  # a user's callback may raise anything: the goal is aborted, as in ROS 2
             way, result = "", self._action_type.Result()
             self._logger.error(f"Error raised in execute callback: {error}")
             shorten(error)
@@ -355,7 +356,7 @@ class ActionServer(Waitable):
             if answer is CancelResponse.ACCEPT:
                 try:
                     goal._update_state(GoalEvent.CANCEL_GOAL)
-                except RCLError as error:  # it has ended meanwhile
+                except RCLError as error:  # it ended meanwhile
                     self._logger.debug(f"Failed to cancel goal in cancel callback: {error}")
                     continue
                 response.goals_canceling.append(msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp))

@@ -61,7 +61,7 @@ def role_of(entity: Entity) -> Role:
     is_inner = code is not None and is_ours(code.co_filename)
     is_inner |= kind == "waitable" and type(entity).__module__.startswith("rclpy.")
     if is_inner and isinstance(entity, (Service, Subscription)):
-        return Role(kind, entity._endpoint.name.rpartition("/")[2], is_inner=True)  # such as change_state, or tf
+        return Role(kind, entity._endpoint.name.rpartition("/")[2], is_inner=True)  # for example change_state, or tf
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 
@@ -112,7 +112,7 @@ def _requests(endpoint: ThreadedService) -> tuple[tuple[str, ...], int]:
 
 
 def _answers(endpoint: ThreadedClient) -> tuple[tuple[str, ...], int]:
-    # That a call is lost is no answer: whoever takes it, the future of the call is never done.
+    # A lost call is not an answer: its future is never done.
     items = [answered for answered in list(endpoint.inbox.items) if not isinstance(answered.error, ServerLost)]
     try:
         return tuple(endpoint.call_id(answered.sequence) for answered in items), len(items)

@@ -12,3 +12,7 @@ class LoggingSeverity(IntEnum):
     WARN = 30
     ERROR = 40
     FATAL = 50
+
+
+SEVERITIES = frozenset(map(int, LoggingSeverity))
+"""All severities as numbers."""

@@ -84,7 +84,7 @@ class ParameterMethods:
 
         Raises:
             ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException,
-            InvalidParameterValueException: As their names say.
+            InvalidParameterValueException: See their docstrings.
         """
         given: tuple[object, ...] = (name, value) if descriptor is None else (name, value, descriptor)
         given = (name,) if value is None and descriptor is None else given

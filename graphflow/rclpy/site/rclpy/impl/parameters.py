@@ -253,7 +253,19 @@ class NodeParameters:
     def _set(
         self, parameters: list[Parameter], declared: Mapping[str, ParameterDescriptor], *, allows_not_set: bool = False
     ) -> SetParametersResult:
-        from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+        result = self._verdict(parameters, declared, allows_not_set=allows_not_set)
+        if result.successful:
+            former = self._store(parameters, declared, allows_not_set=allows_not_set)
+            self._on_change(parameters, former)
+            for hook in list(self.after):
+                hook(parameters)
+        return result
+
+    def _verdict(
+        self, parameters: list[Parameter], declared: Mapping[str, ParameterDescriptor], *, allows_not_set: bool
+    ) -> SetParametersResult:
+        """Return whether parameters may be set, by their descriptors and by the node's callbacks."""
+        from rcl_interfaces.msg import SetParametersResult
 
         for parameter in parameters:
             descriptor = declared.get(parameter.name) or self.descriptors.get(parameter.name)
@@ -268,6 +280,14 @@ class NodeParameters:
                 raise AttributeError(must_return(check, "SetParametersResult(successful=True)", result))
             if not result.successful:
                 return SetParametersResult(successful=result.successful, reason=result.reason)
+        return SetParametersResult(successful=True)
+
+    def _store(
+        self, parameters: list[Parameter], declared: Mapping[str, ParameterDescriptor], *, allows_not_set: bool
+    ) -> dict[str, Parameter]:
+        """Store parameters, or remove those that are not set; return their former values."""
+        from rcl_interfaces.msg import ParameterDescriptor
+
         former: dict[str, Parameter] = {}
         with self.lock:
             for parameter in parameters:
@@ -283,10 +303,7 @@ class NodeParameters:
                 if self.descriptors[name].dynamic_typing:
                     self.descriptors[name].type = parameter.type_.value
                 self.values[name] = parameter
-        self._on_change(parameters, former)
-        for hook in list(self.after):
-            hook(parameters)
-        return SetParametersResult(successful=True)
+        return former
 
     def set_descriptor(self, name: str, descriptor: ParameterDescriptor, alternative: object) -> object:
         """Change a parameter's descriptor, and its value to `alternative` if given."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from graphflow.runtime.logs.logger import ROOT, node_logger
 from graphflow.runtime.logs.rosout import Console, setup_console
-from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.logging_severity import SEVERITIES, LoggingSeverity
 
 
 class _WallClock:
@@ -156,8 +156,8 @@ class RcutilsLogger:
         """Log a line; return whether it was logged.
 
         Args:
-            kwargs: `throttle_duration_sec=1.0` for at most once in that time, by another clock with
-                clock; `once=True`; `skip_first=True`; `name` of another logger.
+            kwargs: `throttle_duration_sec=1.0` for at most once in that time, with `throttle_time_source_type` by
+                another clock; `once=True`; `skip_first=True`; `name` of another logger.
 
         Raises:
             TypeError: An option is unknown.
@@ -209,7 +209,7 @@ class RcutilsLogger:
 
 
 def _severity(level: int) -> LoggingSeverity:
-    return LoggingSeverity(level) if level in LoggingSeverity._value2member_map_ else LoggingSeverity.INFO
+    return LoggingSeverity(level) if level in SEVERITIES else LoggingSeverity.INFO
 
 
 def _caller() -> FrameType:

@@ -197,7 +197,7 @@ class Spinning:
         """Return the next piece of work with its entity and node, waiting for one if necessary.
 
         Raises:
-            ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: By name.
+            ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: See there.
             ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
         self.turns += 1
@@ -237,7 +237,7 @@ class Spinning:
     def _found(
         self, nodes: Iterable[Node] | None, *, is_hurried: bool
     ) -> tuple[Run, Entity | None, Node | None] | None:
-        for _ in range(3):  # what the last look has found, then new ones, for tasks and for the rest
+        for _ in range(3):  # what the last check found, then new tasks, then new arrivals
             while self._round:
                 what, node = self._round.popleft()
                 found = what if isinstance(what, Run) else self._begin(what, node)
@@ -253,7 +253,7 @@ class Spinning:
             run = self._polled.popleft()
             is_due = is_hurried or now_ns - run.stepped_ns >= POLL * 1e9
             (self._runnable if is_due else self._polled).append(run)
-        if self._runnable and not self._tasks_were_last:  # what they bring about comes before what came before
+        if self._runnable and not self._tasks_were_last:  # their effects come before earlier arrivals
             self._tasks_were_last = True
             while self._runnable:
                 self._round.append((self._runnable.pop(), None))

@@ -157,7 +157,7 @@ class LifecycleNodeMixin(ManagedEntity):
         for entity in list(self._managed_entities):
             try:
                 answer = getattr(entity, hook)(state)
-            except Exception as error:  # it counts as an error of the node's, as in ROS 2, and is told
+            except Exception as error:  # a user's callback may raise anything: the transition fails, as in ROS 2
                 node = cast("Node", self)
                 if isinstance(error, TypeError) and error.__traceback__ is not None and not error.__traceback__.tb_next:
                     way = f"write def {hook}(self, state):"
@@ -234,7 +234,7 @@ class LifecycleNodeMixin(ManagedEntity):
         self._managed_entities.pop(publisher, None)
         return bool(node.destroy_publisher(publisher))
 
-    # what others ask
+    # services for others
 
     def _graphflow_serve_change(self, request: srv.ChangeState.Request, response: srv.ChangeState.Response) -> object:
         wanted = request.transition

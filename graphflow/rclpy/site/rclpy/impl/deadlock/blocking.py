@@ -1,4 +1,4 @@
-"""What a blocked callback or thread waits for: an answer, a future, an event, or a lock."""
+"""The object that a blocked callback or thread waits for: an answer, a future, an event, or a lock."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
     return None
 
 
-# a loop that asks a future whether it is done
+# a loop that polls a future
 
 
 def _polled(frame: Frame) -> Future | None:

@@ -35,7 +35,7 @@ class BufferWait(NamedTuple):
     def _is_named_in(self, file: str) -> bool:
         try:
             return any(getattr(node, "attr", "") in self.fillers for node, _ in syntax_of(file).parts)
-        except (OSError, SyntaxError, ValueError):  # no source to be read: who knows
+        except (OSError, SyntaxError, ValueError):  # its source is not available
             return True
 
 

@@ -68,7 +68,7 @@ def _may_end(ending: _Ending, future: Future, nodes: list[object], classes: set[
 def _endings(file: str) -> list[_Ending]:
     try:
         syntax = syntax_of(file)
-    except (OSError, SyntaxError, ValueError):  # no source to be read: who knows
+    except (OSError, SyntaxError, ValueError):  # its source is not available
         return [_Ending()]
     return list(_endings_in(syntax))
 

@@ -252,7 +252,7 @@ class _Reading:
     def _add_queue(self, entity: Entity, node: Node) -> None:
         name, role = self._id(entity, "q"), self._roles[entity]
         calls, waiting = arrived(entity)
-        if isinstance(entity, Timer):  # a rate's tick is asked for like an answer
+        if isinstance(entity, Timer):  # a rate waits for its tick like a call for its answer
             calls = (self._tick(entity),)
         needs = self._needs(entity.callback_group, node)
         self._queues[name] = QueueView(
@@ -359,7 +359,7 @@ class _Reading:
             return goal._action_server._node
         owner = getattr(run.called, "__self__", None)
         if run.node is None and any(node is owner for node in self._nodes):
-            return owner  # what follows an answer of its client's
+            return owner  # a callback after its client's answer
         return run.node if run.node is not None else next(iter(run.executor.spinning.nodes), None)
 
     def _role(self, run: Run) -> Role:
@@ -380,9 +380,9 @@ class _Reading:
         if found.future is not None:
             return self._of_future(found.future, level, node, run), found.timeout
         if found.timer is not None:
-            turn = self._closed_world(level, None, node, run)  # of a loop that polls at that rate
+            turn = self._closed_world(level, None, node, run)  # a loop that polls at that rate
             executor = None if run is None else run.executor
-            is_alone = executor is None or threads_of(executor) == 1  # then there will be no tick at all
+            is_alone = executor is None or threads_of(executor) == 1  # then no thread is left to run the tick
             return Call(self._tick(found.timer), "rate") if turn == FREE or is_alone else turn, None
         if node is None or (level.waiting is not None and run is None):
             return FREE, None
@@ -434,7 +434,7 @@ class _Reading:
         others = [(self._id(other), there.frames) for other, there in self._levels.items() if other is not run]
         others += [(self._id(s.thread, "t"), s.levels[0].frames) for s in self._stacks if s.levels[0] is not level]
         if run is not None:
-            others.append((self._id(run), level.frames[:-1]))  # it may be inside itself
+            others.append((self._id(run), level.frames[:-1]))  # it may hold the lock itself
         holder = only_holder(entering, level.frames, others)
         return FREE if holder is None else SetBy(entering.text, (), (holder,), True, "releases")
 

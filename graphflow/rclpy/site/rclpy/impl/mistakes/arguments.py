@@ -191,7 +191,7 @@ class NotConstructed:
     def __get__(self, node: Node, owner: type) -> Any:
         if node is None:
             return self
-        code = getattr(owner.__init__, "__code__", None)  # type: ignore[misc]  # which class it is does not matter
+        code = getattr(owner.__init__, "__code__", None)  # type: ignore[misc]  # any class will do
         place = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
         name = owner.__name__
         raise AttributeError(

@@ -49,7 +49,7 @@ class Uncalled:
         self._nodes.add(internals_of(node).core.id)
         for file in set(_files_of(node)) - self._files:
             self._files.add(file)
-            with suppress(OSError, SyntaxError, ValueError):  # no source to be read
+            with suppress(OSError, SyntaxError, ValueError):  # its source is not available
                 module = syntax_of(file).module
                 told = (*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module))
                 for line, text in told:

@@ -68,7 +68,7 @@ class Unreached:
         self._since = {line: self._since.get(line, now) for line in frames}
         for line, since in self._since.items():
             if now - since >= TELL_AFTER and line not in self._read:
-                # The source may be gone, or not what runs, and objects of the program's may raise when they are asked.
+                # The source may be gone or changed, and reading an attribute may run user code that raises.
                 with suppress(Exception):
                     _report(frames[line])
                 self._read.add(line)

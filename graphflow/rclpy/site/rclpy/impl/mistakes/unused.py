@@ -55,7 +55,7 @@ class Unused:
         if not self._is_reported:
             self._is_reported = True
             if isinstance(sys.exc_info()[1] or getattr(sys, "last_value", None), Exception):
-                return  # the program ends in an error, before it has made all that they are for
+                return  # a failing program may not have created the entities that they are for
             nodes = [*self._nodes(), *([] if leaving is None else [leaving])]
             for text in (*self._remaps(nodes), *self._params(nodes), *self._strays(nodes)):
                 logger.warning("%s", text)

@@ -47,13 +47,13 @@ def check(parameter: Parameter, message: ParameterValue) -> None:
 
 def _warn(asked: Caller, parameter: Parameter, message: ParameterValue) -> None:
     read, own = asked.reads, FIELDS[message.type]
-    if "type" in read or own in read:  # the code distinguishes types
+    if "type" in read or own in read:  # the code distinguishes types itself
         return
     for field in sorted(read & set(FIELDS[1:])):
         value = getattr(message, field)
         value = list(value) if field.endswith("_array_value") else value
         if own:
-            text = f"{parameter.name} is {_a(parameter.type_.name)}: .{own} has it, .{field} is {value!r}"
+            text = f"{parameter.name} is {_a(parameter.type_.name)}: .{own} has the value, .{field} is {value!r}"
         else:
             example = f"declare_parameter({parameter.name!r}, {_EXAMPLES[FIELDS.index(field)]!r})"
             text = f"{parameter.name} has no value, so that .{field} is {value!r}: give it one, as in {example}"

@@ -152,7 +152,9 @@ class HeldUp:
             return None
         stack, level = found
         if not stack.spins and any(frame.f_code is _WAIT for frame in level.frames):
-            self._since[key] = time.monotonic()  # it waits for something of ROS's, which it says or the search finds
+            self._since[key] = (
+                time.monotonic()
+            )  # it waits on rclpy, which reports that itself or by the deadlock search
             return None
         kept = [word for entity in entities_of(node) if _is_ready(entity) and (word := _called(entity))]
         is_begun = not any(_is_init(frame, node) for frame in level.frames)

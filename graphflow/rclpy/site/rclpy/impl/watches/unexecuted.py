@@ -49,10 +49,10 @@ class Unexecuted:
 
     def _check_server(self, node: Node, server: ActionServer) -> None:
         now, goals = time.monotonic(), list(server._goal_handles.values())
-        is_busy = any(goal._status in (Status.EXECUTING, Status.CANCELING) for goal in goals)
+        is_busy = any(goal.status in (Status.EXECUTING, Status.CANCELING) for goal in goals)
         has_searched = False
         for goal in goals:
-            if goal._status is not Status.ACCEPTED or is_busy:
+            if goal.status != Status.ACCEPTED or is_busy:
                 self._since.pop(goal, None)
                 continue
             seconds = now - self._since.setdefault(goal, now)

@@ -57,7 +57,7 @@ def _users_files() -> Iterator[str]:
 def _names_a_filler(file: str) -> bool:
     try:
         return any(getattr(node, "attr", "") in _FILLERS for node, _ in syntax_of(file).parts)
-    except (OSError, SyntaxError, ValueError):  # no source to be read: who knows
+    except (OSError, SyntaxError, ValueError):  # its source is not available
         return True
 
 

@@ -25,8 +25,9 @@ def test_a_field_of_another_type(caplog: pytest.LogCaptureFixture) -> None:
     assert kept.string_value == ""
     assert NONE.get_parameter_value().integer_array_value.tolist() == []
     assert told(caplog) == [
-        f"test_value_fields.py:{line + 4}: speed is an integer: .integer_value has it, .double_value is 0.0",
-        f"test_value_fields.py:{line + 5}: names is a string array: .string_array_value has it, .string_value is ''",
+        f"test_value_fields.py:{line + 4}: speed is an integer: .integer_value has the value, .double_value is 0.0",
+        f"test_value_fields.py:{line + 5}: names is a string array: .string_array_value has the value, "
+        ".string_value is ''",
         f"test_value_fields.py:{line + 7}: none has no value, so that .integer_array_value is []: give it one, as in "
         "declare_parameter('none', [0])",
     ]
