@@ -21,6 +21,7 @@ USERS_CHOICE = {
     "hypothesis": "the plugin imports it for tests that do",
     "pytest": "the plugin is imported by pytest only",
     "transforms3d": "tf_transformations names it; as in ROS 2, its users install it",
+    "typing_extensions": "only type checkers import it, and they bring it along",
 }
 """Packages that graphflow does not install for anybody."""
 

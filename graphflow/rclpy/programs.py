@@ -121,7 +121,7 @@ def make_importable(workspace: Workspace) -> bool:
             registry.add_package(name, folder)
         for name, folder in workspace.replaced.items():
             finder.prefer_own()
-            sys.stderr.write(f"note: {folder} is ignored: graphflow provides {name} itself\n")
+            sys.stderr.write(f"note: {folder} is not imported: graphflow has {name} itself\n")
     offer_ros2()
     sys.path[:0] = [str(folder) for folder in workspace.import_roots if str(folder) not in sys.path]
     return is_ours

@@ -261,7 +261,7 @@ def test_source_trees_of_what_graphflow_has(workspace: Path) -> None:
     ran = subprocess.run(command, cwd=workspace, capture_output=True, text=True, timeout=30, check=True)
     assert ran.stdout == "rclpy tf2_py\n"
     notes = [
-        f"{workspace}/src/{name}/{name} is ignored: graphflow provides {name} itself" for name in ("rclpy", "tf2_py")
+        f"{workspace}/src/{name}/{name} is not imported: graphflow has {name} itself" for name in ("rclpy", "tf2_py")
     ]
     assert ran.stderr.splitlines() == [f"note: {note}" for note in notes]
 
