@@ -75,7 +75,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
         lambda n: n.declare_parameter("gains", object()),
         "a parameter is a bool, an int, a float, a str, bytes, or a list",
     ),
-    (lambda n: n.declare_parameter("gains", [1, 2.5]), "all elements are of one type, as in [1.0, 2.5]"),
+    (lambda n: n.declare_parameter("gains", [1, 2.5]), "all elements must be of one type, as in [1.0, 2.5]"),
     (lambda n: n.declare_parameter("rate", 1.0, "the rate"), "is a ParameterDescriptor(description='the rate')"),
     (lambda n: n.set_parameters(Parameter("n", value=6)), ""),
     (lambda n: Parameter("n", 2.0), "pass the value by keyword: Parameter('name', value=2.0)"),  # type: ignore[arg-type]
@@ -86,7 +86,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: n.create_publisher(Twist, "drive", 1).publish("hello"), ""),
     (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter's value is in .value"),
     (lambda n: ActionClient(n, Fibonacci, "fib").send_goal_async(Fibonacci.Goal), "write Fibonacci.Goal()"),
-    (lambda n: (n.destroy_node(), n.get_name()), "it was destroyed before, by itself or with its node"),
+    (lambda n: (n.destroy_node(), n.get_name()), "it was already destroyed, by itself or with its node"),
     (lambda n: rclpy.init(), "call rclpy.init() once, before the first node is created"),
     # fields
     (lambda n: String().text, "String has data"),
