@@ -1,7 +1,7 @@
-"""A node's output on its way into its log: the file stays of bounded size, and a full disk costs lines, not the node.
+"""Log files of bounded size for the output of workers; a full disk costs lines, not the node.
 
-<node>.log       what the node has written last
-<node>.log.1     what it has written before, up to the same size
+<node>.log       the latest output
+<node>.log.1     the output before, up to the same size
 """
 
 from __future__ import annotations
@@ -13,23 +13,24 @@ import threading
 from collections.abc import Callable
 
 LIMIT = 50_000_000
-"""Bytes from which on a log is put aside and a new one begun."""
+"""Size in bytes at which a log is rotated."""
 
 
 class LogFile(io.RawIOBase):
-    """Where standard output and error of a worker go: descriptors 1 and 2, which are this file.
+    """The file behind standard output and error of a worker, that is, behind descriptors 1 and 2.
 
     Args:
-        told: Called with the reason when lines begin to be lost.
+        on_loss: Called with the reason when lines begin to be lost.
     """
 
-    def __init__(self, path: str, told: Callable[[str], object]) -> None:
+    def __init__(self, path: str, on_loss: Callable[[str], object]) -> None:
         super().__init__()
-        self._path, self._told = path, told
+        self._path, self._on_loss = path, on_loss
         self._lock = threading.Lock()
         self._lost = 0
+        """Bytes that could not be written."""
         self._written = 0
-        """Bytes since the file was last looked at."""
+        """Bytes since the size was last checked."""
 
     def writable(self) -> bool:
         return True
@@ -38,7 +39,7 @@ class LogFile(io.RawIOBase):
         return 1
 
     def write(self, data: object) -> int:
-        """Write; what does not fit on the disk is counted, and told when there is room again."""
+        """Write; bytes that do not fit on the disk are counted, and the count is logged when there is room again."""
         view = memoryview(data).cast("B")  # type: ignore[arg-type]
         with self._lock:
             try:
@@ -50,7 +51,7 @@ class LogFile(io.RawIOBase):
                     rest = rest[os.write(1, rest) :]
             except OSError as error:
                 if not self._lost:
-                    self._told(error.strerror or str(error))
+                    self._on_loss(error.strerror or str(error))
                 self._lost += len(view)
                 return len(view)
             self._written += len(view)
@@ -60,23 +61,23 @@ class LogFile(io.RawIOBase):
         return len(view)
 
     def _rotate(self) -> None:
-        """Begin a new file when this one has become too long."""
+        """Start a new file if this one is too long."""
         try:
             if os.fstat(1).st_size < LIMIT:
                 return
             os.replace(self._path, f"{self._path}.1")
             fresh = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-        except OSError as error:  # an open file cannot be put aside on Windows; it goes on growing
-            self._told(f"it cannot be put aside: {error.strerror}")
+        except OSError as error:  # Windows does not rename open files; the log goes on growing
+            self._on_loss(f"it cannot be rotated: {error.strerror}")
             return
         os.dup2(fresh, 1)
         os.dup2(fresh, 2)
         os.close(fresh)
 
 
-def write_to(path: str, told: Callable[[str], object]) -> None:
-    """Have this process's standard output and error, which are this file already, kept within bounds."""
-    raw = LogFile(path, told)
+def write_to(path: str, on_loss: Callable[[str], object]) -> None:
+    """Bound the size of the log that this process's standard output and error already go to."""
+    raw = LogFile(path, on_loss)
     for name in ("stdout", "stderr"):
         getattr(sys, name).flush()
         buffer = io.BufferedWriter(raw)

@@ -1,7 +1,7 @@
-"""How the processes of a graph are doing, for the nodes of the domain and for ROS 2's tools: to be read only.
+"""The states of a graph's processes as ROS 2 topics and services, read-only.
 
-The hidden node `/<graph>/_supervisor` publishes a diagnostic_msgs/msg/DiagnosticArray on `~/states` whenever something
-has changed, kept for late subscriptions, and answers the same on `~/get_states`, a diagnostic_msgs/srv/SelfTest.
+The hidden node `/<graph>/_supervisor` publishes a diagnostic_msgs/msg/DiagnosticArray on `~/states` after every change,
+transient local, and returns the same from `~/get_states`, a diagnostic_msgs/srv/SelfTest.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import asyncio
 import re
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Literal
 
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.context import Context
@@ -18,24 +18,30 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.supervisor.supervisor import Supervisor
 
+if TYPE_CHECKING:
+    from graphflow.msgs.diagnostic_msgs.msg import DiagnosticStatus
+    from graphflow.msgs.diagnostic_msgs.srv import SelfTest
+    from graphflow.supervisor.control.messages import NodeRow
+
 PATIENCE = 1.0
-"""Seconds that the nodes of the graph have for themselves before this one starts."""
+"""Seconds for the nodes of the graph to come up before this one starts."""
 SETTLE = 0.05
-"""Seconds in which changes are gathered into one message."""
+"""Seconds in which changes are collected into one message."""
 _LEVELS = {"ready": 0, "ended": 0, "failed": 2, "given_up": 2, "unresponsive": 3}
-"""DiagnosticStatus.level by state; the others are on their way somewhere, which is a warning."""
-_TOLD = ("lifecycle", "pid", "process", "class", "restarts", "detail", "last_end")
+"""DiagnosticStatus.level by state; other states are transitions, which count as warnings."""
+_Key = Literal["lifecycle", "pid", "process", "class", "restarts", "detail", "last_end"]
+_KEYS: tuple[_Key, ...] = ("lifecycle", "pid", "process", "class", "restarts", "detail", "last_end")
 
 
 class Mirror(Node):
-    """Tells the states of a graph's nodes.
+    """A node that publishes the states of a graph's nodes.
 
     Args:
         graph: The graph's name.
-        rows: Its nodes as `ps` has them.
+        rows: Returns the graph's nodes, as for `ps`.
     """
 
-    def __init__(self, graph: str, rows: Callable[[], list[dict[str, Any]]]) -> None:
+    def __init__(self, graph: str, rows: Callable[[], list[NodeRow]]) -> None:
         from graphflow.msgs.diagnostic_msgs.msg import DiagnosticArray
         from graphflow.msgs.diagnostic_msgs.srv import SelfTest
 
@@ -51,8 +57,7 @@ class Mirror(Node):
         self._states = self.create_publisher(DiagnosticArray, "~/states", latched)
         self.create_service(SelfTest, "~/get_states", self._answer)
 
-    def tell(self) -> None:
-        """Publish the states."""
+    def publish_states(self) -> None:
         from graphflow.msgs.diagnostic_msgs.msg import DiagnosticArray
 
         message = DiagnosticArray(status=[_status(row) for row in self._rows()])
@@ -60,7 +65,7 @@ class Mirror(Node):
         stamp.sec, stamp.nanosec = now.sec, now.nanosec
         self._states.publish(message)
 
-    def _answer(self, request: Any) -> Any:
+    def _answer(self, request: SelfTest.Request) -> SelfTest.Response:
         from graphflow.msgs.diagnostic_msgs.srv import SelfTest
 
         status = [_status(row) for row in self._rows()]
@@ -69,24 +74,24 @@ class Mirror(Node):
 
 
 def _legal(graph: str) -> str:
-    """A graph's name as a namespace, which takes fewer letters."""
-    word = re.sub(r"[^A-Za-z0-9]+", "_", graph)
-    return f"_{word}" if word[:1].isdigit() else word
+    """Convert a graph's name to a legal namespace."""
+    name = re.sub(r"[^A-Za-z0-9]+", "_", graph)
+    return f"_{name}" if name[:1].isdigit() else name
 
 
-def _status(row: dict[str, Any]) -> Any:
+def _status(row: NodeRow) -> DiagnosticStatus:
     from graphflow.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
     return DiagnosticStatus(
         level=_LEVELS.get(row["state"], 1),
         name=row["node"],
         message=row["state"],
-        values=[KeyValue(key=key, value=str(row[key])) for key in _TOLD if row[key] not in ("", None)],
+        values=[KeyValue(key=key, value=str(row[key])) for key in _KEYS if row[key] not in ("", None)],
     )
 
 
 async def mirror(supervisor: Supervisor, context: Context) -> None:
-    """Mirror a graph for as long as this runs."""
+    """Publish the states of a graph until cancelled."""
     with suppress(TimeoutError):
         async with asyncio.timeout(PATIENCE):
             await supervisor.up.wait()
@@ -95,7 +100,7 @@ async def mirror(supervisor: Supervisor, context: Context) -> None:
     stop = supervisor.clients.subscribe(lambda _: changed.set(), replay=False)
     try:
         while True:
-            node.tell()
+            node.publish_states()
             changed.clear()
             await changed.wait()
             await asyncio.sleep(SETTLE)

@@ -1,4 +1,4 @@
-"""The supervisor: carries out what `machines.process` decides, for every process of one graph, and runs its steps."""
+"""The supervisor: carries out the decisions of `machines.process` for all processes of a graph, and runs its steps."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import asyncio
 import logging
 import random
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow import __version__
 from graphflow.errors import GraphflowError, SupervisorError
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.machines.process import ALARMS, Do, Event, Exit, Need, Order, State, step
+from graphflow.machines.process import ALARMS, Do, Event, Exit, Need, State, step
 from graphflow.machines.restarts import Again, GiveUp
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
@@ -27,7 +27,19 @@ from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, work
 from graphflow.supervisor.processes.process import Process
 from graphflow.supervisor.processes.starter import Start, Starter
 from graphflow.supervisor.rundir import log_file
+from graphflow.supervisor.start_order import needs_of_up, start_order
 from graphflow.supervisor.steps import StepRunner
+
+if TYPE_CHECKING:
+    from graphflow.supervisor.control.messages import Hello, NodeRow
+    from graphflow.supervisor.processes.messages import (
+        Beat,
+        DebuggerAwaited,
+        LifecycleChanged,
+        LogLost,
+        ProcessEvent,
+        ProgramJob,
+    )
 
 logger = logging.getLogger("graphflow.supervisor")
 
@@ -36,81 +48,65 @@ class Supervisor:
     """One running graph.
 
     Args:
-        starter: Starts the processes; what becomes of them is passed to `heard`.
-        step_types: Service types by step, as far as they are known.
+        starter: Starts the processes; reports their events to `on_event`.
         logs: The folder of the nodes' logs.
+        step_types: Service types by step, as far as they are known.
     """
 
     def __init__(self, plan: Plan, context: Context, starter: Starter, logs: Path, step_types: dict[str, str]) -> None:
         self._plan = plan
         self.exit_code = 0
         self.up = asyncio.Event()
-        """Whether everything is ready and all steps are done."""
+        """Set once all that the graph needs at first is ready and done."""
         self.ended = asyncio.Event()
         self.clients = Clients(self._end_if_all_have)
         self._context = context
         self._starter = starter
         self._steps = StepRunner(context, step_types)
-        self._lives = Lives(context, self._steps, self.heard)
+        self._lives = Lives(context, self._steps, self.on_event)
         self._processes = {
             name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
         }
         self.components = Components(starter, list(self._processes.values()), self._member_changed)
         self._process_of = {n.name: p for p in self._processes.values() for n in p.nodes}
         self._met: set[Need] = set()
-        """What has become of processes and steps."""
+        """Needs that processes and steps have met."""
         self._step_tasks: dict[str, asyncio.Task[None]] = {}
-        self._order = self._make_order()
-        self._first = self._needed_at_first()
-        """What must be met for the graph to be up."""
+        self._order = start_order(plan, self._processes.values())
+        self._needed_for_up = needs_of_up(self._order, self._processes)
         self._planned = {n["name"]: n for n in plan.to_json()["nodes"]}
         self._stopping = False
         self._layers: list[list[str]] = []
+        """Processes that are still to be stopped, in that order."""
         self._began = time.monotonic()
 
-    def _make_order(self) -> Order:
-        def needs(after: Mapping[str, str]) -> set[Need]:
-            found = set()
-            for name, what in after.items():
-                process = self._process_of.get(name)
-                found.add(Need(f"step {name}", "done") if process is None else Need(process.name, what))
-            return found
+    # requests of clients
 
-        after: dict[str, frozenset[Need]] = {}
-        for process in self._processes.values():
-            mine = {need for node in process.nodes for need in needs(node.after)}
-            after[process.name] = frozenset(need for need in mine if need.name != process.name)
-        for planned in self.plan.steps:
-            after[f"step {planned.name}"] = frozenset(needs(planned.after))
-        return Order(after)
-
-    def _needed_at_first(self) -> set[Need]:
-        """All processes and steps but those that need the end of a process, which may never come."""
-        later = self._order.later(self._processes)
-        names = [name for name in self._order.after if name not in later]
-        return {Need(name) if name in self._processes else Need(name, "done") for name in names}
-
-    # what clients may ask
-
-    def describe(self) -> list[dict[str, Any]]:
-        """One row per node, for `ps`."""
+    def describe(self) -> list[NodeRow]:
+        """Return one row per node, for `ps`."""
         return [row for process in self._processes.values() for row in process.rows()]
 
     @property
     def plan(self) -> Plan:
-        """What is to run."""
+        """The plan that the graph runs."""
         return self._plan
 
-    def hello(self) -> dict[str, Any]:
-        """What a client is told when it begins to follow."""
-        about = {"graph": self.plan.name, "file": self.plan.file, "console": self.plan.console}
-        return {"event": "hello", "version": __version__, **about, "layout": self.clients.layout}
+    def hello(self) -> Hello:
+        """Return the first event of a client that follows the graph."""
+        return {
+            "event": "hello",
+            "version": __version__,
+            "graph": self.plan.name,
+            "file": self.plan.file,
+            "console": self.plan.console,
+            "layout": self.clients.layout,
+        }
 
     def restart(self, node: str, by: str, *, only_ended: bool = False, threads: Sequence[str] = ()) -> None:
         """Start a node's process again, whether it runs or has ended.
 
         Args:
-            only_ended: Not if it runs.
+            only_ended: Refuse if it runs.
             threads: Handlers of the node that run in threads from then on.
 
         Raises:
@@ -123,7 +119,8 @@ class Supervisor:
             waits = self._order.lacking(process.name, self._met)
             raise SupervisorError(f"{node} has not been started yet: it comes after {waits}")
         if only_ended and process.state not in (State.ENDED, State.WAITING):
-            raise SupervisorError(f"{node} runs already: it is {process.word}; to begin anew: graphflow restart {node}")
+            text = f"{node} runs already: it is {process.state_name}; to start it again: graphflow restart {node}"
+            raise SupervisorError(text)
         if threads:
             self._planned[node] = process.put_in_threads(node, threads).to_json()
         in_threads = f" with {', '.join(threads)} in threads" if threads else ""
@@ -139,10 +136,10 @@ class Supervisor:
         """
         process = self._named(node)
         if process.state is State.ENDED:
-            raise SupervisorError(f"{node} is not running: {process.word}")
+            raise SupervisorError(f"{node} is not running: {process.state_name}")
         self.clients.announce(f"stop {node}", by)
-        process.stop_asked = True
-        process.failed &= process.state is not State.WAITING  # it is not tried again because somebody wants so
+        process.stop_requested = True
+        process.failed &= process.state is not State.WAITING  # the request, not the failure, ends its restarts
         self._happen(process, Event.STOP)
 
     def _named(self, node: str) -> Process:
@@ -152,39 +149,38 @@ class Supervisor:
         return self._process_of[node]
 
     def begin_stop(self, *, now: bool, reason: str) -> None:
-        """Stop everything, last started first; `now` sends SIGKILL. Asking again is harmless."""
+        """Stop everything, last started first; `now` sends SIGKILL. A repeated call is harmless."""
         if self.ended.is_set():
             return
         if not self._stopping:
             self._stopping = True
-            self._tell(event="stopping", reason=reason)
+            self.clients.broadcast({"event": "stopping", "reason": reason})
             for task in self._step_tasks.values():
                 task.cancel()
             living = [p.name for p in self._processes.values() if p.state is not State.ENDED]
             self._layers = self._order.stop_layers(living)
             for process in self._processes.values():
                 if process.state in (State.PENDING, State.WAITING, State.RESTARTING, State.RESETTING):
-                    process.stop_asked = True  # at once, whatever its layer: it would be started meanwhile
+                    process.stop_requested = True  # at once, whatever its layer, or it would be started meanwhile
                     self._happen(process, Event.STOP)
         if now:
             for process in self._processes.values():
-                process.stop_asked = True
+                process.stop_requested = True
                 self._happen(process, Event.KILL)
         self._stop_next_layer()
 
     def note(self, text: str) -> None:
-        """Tell the clients that follow the graph something about its surroundings."""
-        self._tell(event="note", text=text)
+        """Send clients a remark about the graph's environment."""
+        self.clients.broadcast({"event": "note", "text": text})
 
-    # events from below
+    # events of processes
 
     async def run(self) -> int:
         """Bring the graph up and keep it until it has ended; returns its exit code."""
         if len(self._processes) > MESH_LIMIT:
-            self._tell(
-                event="note",
-                text=f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages "
-                "pass through the rendezvous; nodes that share a `process:` need fewer",
+            self.note(
+                f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages "
+                "pass through the rendezvous; nodes that share a `process:` need fewer"
             )
         self._start_ready_ones()
         health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
@@ -195,64 +191,76 @@ class Supervisor:
         await asyncio.gather(*self._step_tasks.values(), return_exceptions=True)
         await self._lives.close()
         await self._steps.close()
-        self._tell(event="end", exit_code=self.exit_code)
+        self.clients.broadcast({"event": "end", "exit_code": self.exit_code})
         return self.exit_code
 
-    def heard(self, event: dict[str, Any]) -> None:
-        """Take in an event of a worker."""
+    def on_event(self, event: ProcessEvent) -> None:
+        """Take in an event of a process."""
         process = self._processes.get(event.get("process", ""))
         if process is None:
             return
-        what = event["event"]
-        if what == "spawned":
-            process.pid = event["pid"]
-            if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # asked to before it had a pid
-                self._act(process, Do.TERMINATE)
-            elif process.is_program and process.nodes[0].lifecycle:
-                self._lives.begin(process.name, process.nodes[0])
-            elif process.is_program:  # nobody knows when a foreign program is ready
-                self._has_become_ready(process, process.name)
-        elif what == "ready":
-            self._has_become_ready(process, event["node"])
-        elif what == "beat":
-            process.heard = time.monotonic()
-        elif what == "lifecycle":
-            process.lifecycle[event["node"]] = event["state"]
-        elif what == "debugging":
-            self.note(debugging.invitation(process.name, event["port"]))
-        elif what in ("obeyed", "joined", "left"):
-            self.components.heard(event)
-        elif what == "failed":
-            process.error = event["error"]
-            if process.is_program:  # which does not know that it has
-                self._act(process, Do.TERMINATE)
-        elif what == "log_lost":
-            process.log_error = str(event["why"])
-            self._tell(event="note", text=f"{process.name}: its log is not written whole: {process.log_error}")
-        elif what == "exited":
-            process.exit = Exit() if event["status"] is None else Exit.of_status(event["status"])
-            if event["status"] is None and (trouble := self._starter.trouble()):
-                self.note(trouble)
-            self.components.lost(process)
-            self._lives.end(process.name)
-            self._happen(process, Event.EXIT)
+        match event["event"]:
+            case "spawned":
+                self._has_spawned(process, event["pid"])
+            case "ready":
+                self._has_become_ready(process, event["node"])
+            case "failed":
+                process.error = event["error"]
+                if process.is_program:  # a failed worker ends by itself; a program knows of no failure
+                    self._act(process, Do.TERMINATE)
+            case "exited":
+                self._has_exited(process, event["status"])
+            case "obeyed" | "joined" | "left":
+                self.components.on_event(event)
+            case _:
+                self._observe(process, event)
+
+    def _observe(self, process: Process, event: Beat | LifecycleChanged | DebuggerAwaited | LogLost) -> None:
+        """Take in an event that changes no process's state."""
+        match event["event"]:
+            case "beat":
+                process.last_beat = time.monotonic()
+            case "lifecycle":
+                process.lifecycle[event["node"]] = event["state"]
+            case "debugging":
+                self.note(debugging.invitation(process.name, event["port"]))
+            case "log_lost":
+                process.log_error = event["why"]
+                self.note(f"{process.name}: its log is not written whole: {process.log_error}")
+
+    def _has_spawned(self, process: Process, pid: int) -> None:
+        process.pid = pid
+        if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # it had no pid to signal until now
+            self._act(process, Do.TERMINATE)
+        elif process.is_program and process.nodes[0].lifecycle:
+            self._lives.begin(process.name, process.nodes[0])
+        elif process.is_program:  # nothing shows when a foreign program is ready
+            self._has_become_ready(process, process.name)
+
+    def _has_exited(self, process: Process, status: int | None) -> None:
+        process.exit = Exit() if status is None else Exit.of_status(status)
+        if status is None and (trouble := self._starter.trouble()):
+            self.note(trouble)
+        self.components.lost(process)
+        self._lives.end(process.name)
+        self._happen(process, Event.EXIT)
 
     def starter_lost(self, how: str) -> None:
-        """The starter has died, and all workers end with it."""
+        """Take in the end of the starter, with which all workers end."""
         if self.ended.is_set():
             return
         self.exit_code = 1
-        self._tell(event="error", message=f"{how}, and the nodes with it")
+        self.clients.broadcast({"event": "error", "message": f"{how}, and the nodes with it"})
         self._stopping, self._layers = True, []
         for process in self._processes.values():
-            process.stop_asked = True
+            process.stop_requested = True
             if process.pid is None:
                 self._happen(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
         self._end_if_all_have()
 
     def _has_become_ready(self, process: Process, node: str) -> None:
         process.waiting_for.discard(node)
-        self._tell(event="ready", node=node, pid=process.pid)
+        self.clients.broadcast({"event": "ready", "node": node, "pid": process.pid})
         if not process.waiting_for:
             process.ready_since = time.monotonic()
             self._happen(process, Event.READY)
@@ -269,15 +277,15 @@ class Supervisor:
             elif name not in self._step_tasks:
                 planned = next(s for s in self.plan.steps if f"step {s.name}" == name)
                 self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
-        if not self.up.is_set() and self._first <= self._met:
+        if not self.up.is_set() and self._needed_for_up <= self._met:
             self.up.set()
             left = [p for p in self._processes.values() if p.state is State.PENDING]
             pending = {n.name: self._order.lacking(p.name, self._met) for p in left for n in p.nodes}
-            self._tell(event="up", seconds=time.monotonic() - self._began, pending=pending)
+            self.clients.broadcast({"event": "up", "seconds": time.monotonic() - self._began, "pending": pending})
 
     def _meet(self, name: str, *what: str) -> None:
-        """Note what has become of a process or step, and start what waits for it."""
-        self._met.update(Need(name, word) for word in what)
+        """Record needs that a process or step has met, and start those that waited for them."""
+        self._met.update(Need(name, each) for each in what)
         self._start_ready_ones()
 
     async def _run_step(self, planned: PlannedStep) -> None:
@@ -285,16 +293,18 @@ class Supervisor:
             answer = await self._steps.run(planned)
         except GraphflowError as error:
             logger.error("step %s: %s", planned.name, error)
-            self._tell(event="step", step=planned.name, ok=False, text=f"{planned.target}: {error}")
+            text = f"{planned.target}: {error}"
+            self.clients.broadcast({"event": "step", "step": planned.name, "ok": False, "text": text})
             self._fail(f"step {planned.name} failed")
             return
         if planned.do == "shutdown":
             self.begin_stop(now=False, reason=planned.target)
             return
         if planned.do == "log":
-            self._tell(event="said", text=planned.target)
+            self.clients.broadcast({"event": "said", "text": planned.target})
         else:
-            self._tell(event="step", step=planned.name, ok=True, text=f"{planned.target} -> {answer}")
+            text = f"{planned.target} -> {answer}"
+            self.clients.broadcast({"event": "step", "step": planned.name, "ok": True, "text": text})
         self._meet(f"step {planned.name}", "done")
 
     def _fail(self, reason: str) -> None:
@@ -304,7 +314,7 @@ class Supervisor:
     def _happen(self, process: Process, event: Event) -> None:
         was = process.state
         if event is Event.LATE and was in (State.STOPPING, State.RESTARTING, State.RESETTING):
-            self._tell(event="note", text=f"{process.name} did not end within {process.alarm_after:g} s: killed")
+            self.note(f"{process.name} did not end within {process.alarm_after:g} s: killed")
         process.state, actions = step(was, event)
         if process.state is not was:
             process.since = time.time()
@@ -315,7 +325,7 @@ class Supervisor:
             if process.alarm_after is not None:
                 process.alarm = self._context.loop.call_later(process.alarm_after, self._happen, process, Event.LATE)
         if was in (State.RESTARTING, State.RESETTING) and event is Event.EXIT and process.state is not State.ENDED:
-            self._tell_exit(process, unexpected=False)
+            self._send_exit(process, unexpected=False)
         for action in actions:
             self._act(process, action)
         if process.state is State.ENDED and was is not State.ENDED:
@@ -335,37 +345,37 @@ class Supervisor:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
             hint = f"\n  {trouble}" if (trouble := self._starter.trouble()) else ""
-            self._tell(event="error", message=f"{process.error}\n  its log: {process.log}{hint}")
+            self.clients.broadcast({"event": "error", "message": f"{process.error}\n  its log: {process.log}{hint}"})
             process.failed = True
             if not self.up.is_set():
                 self._fail(f"{process.name} did not become ready")
 
     def _spawn(self, process: Process) -> None:
         process.begin()
-        self._tell(event="starting", process=process.name, again=process.starts > 1)
+        self.clients.broadcast({"event": "starting", "process": process.name, "again": process.starts > 1})
         self._starter.spawn(*self._start_of(process))
 
     def _start_of(self, process: Process) -> Start:
         nodes = process.nodes
         if process.is_program:
-            job = {"command": words_of(nodes[0]), "signal": signal_of(nodes[0])}
+            job: ProgramJob = {"command": words_of(nodes[0]), "signal": signal_of(nodes[0])}
             return Start(process.name, job, process.log, environment_of(nodes))
         described = [self._planned[node.name] for node in nodes]
         return worker_start(self.plan, self._context.domain, process.name, nodes, described, process.log)
 
     def _member_changed(self, process: Process, node: PlannedNode, joined: bool) -> None:
-        """A node was loaded into a process that runs, or unloaded: so it will be when that is started again."""
+        """Take in that a node was loaded or unloaded: a restart of the process keeps to that."""
         if joined:
             self._process_of[node.name] = process
             self._planned[node.name] = node.to_json()
-            self._tell(event="ready", node=node.name, pid=process.pid)
+            self.clients.broadcast({"event": "ready", "node": node.name, "pid": process.pid})
         else:
             del self._process_of[node.name], self._planned[node.name]
             process.lifecycle.pop(node.name, None)
-            self._tell(event="left", node=node.name, process=process.name)
+            self.clients.broadcast({"event": "left", "node": node.name, "process": process.name})
 
     def _process_ended(self, process: Process, was: State) -> None:
-        asked = process.stop_asked or was in (State.STOPPING, State.PENDING, State.WAITING)
+        asked = process.stop_requested or was in (State.STOPPING, State.PENDING, State.WAITING)
         early = was is State.STARTING and not asked
         if early and not process.error:
             process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
@@ -375,9 +385,9 @@ class Supervisor:
             process.given_up = follows.why
         process.failed |= failed
         if failed and process.pid is not None:
-            self._write_down(process)
+            process.log_end()
         if was not in (State.PENDING, State.WAITING):
-            self._tell_exit(process, unexpected=failed, again=follows)
+            self._send_exit(process, unexpected=failed, again=follows)
         if isinstance(follows, Again):
             self._start_again(process, follows)
             return
@@ -405,14 +415,14 @@ class Supervisor:
             self._happen(self._processes[name], Event.RESET)
 
     def _restarted_with(self, name: str) -> list[str]:
-        """The processes that begin anew when one has failed."""
+        """Return the other processes that are restarted when one has failed."""
         others = [other for other in self._processes if other != name]
         if self.plan.strategy == "one_for_all":
             return others
         return [o for o in others if self.plan.strategy == "rest_for_one" and name in self._order.all_before(o)]
 
     def _judge_end(self, process: Process, was: State) -> None:
-        """Stop the graph, if it does not go on without a process that has ended for good."""
+        """Stop the graph if it cannot go on without a process that has ended for good."""
         if was is State.STARTING and not self.up.is_set():
             self._fail(f"{process.name} did not start")
         elif process.failed and process.is_critical:
@@ -424,47 +434,40 @@ class Supervisor:
             if waits:
                 self._fail(f"{waits[0]} waits until {process.name} is done, and that has failed")
 
-    def _write_down(self, process: Process) -> None:
-        """Say in a process's log how it ended, which it could not do itself."""
-        why = f": {process.error}" if process.error else ""
-        line = f"[supervisor] process {process.pid} has ended: {process.exit}{why}\n"
-        try:
-            with open(process.log, "a", encoding="utf-8") as file:
-                file.write(line)
-        except OSError as error:  # a full disk
-            logger.error("%s: %s", process.log, error)
-
-    def _tell_exit(self, process: Process, *, unexpected: bool, again: Again | GiveUp | None = None) -> None:
-        if process.exit is not None:
-            self._tell(
-                event="exited",
-                process=process.name,
-                nodes=[n.name for n in process.nodes],
-                pid=process.pid,
-                how=str(process.exit),
-                unexpected=unexpected,
-                error=process.error,
-                log=process.log,
-                again=again.delay if isinstance(again, Again) else None,
-                given_up=process.given_up,
-            )
+    def _send_exit(self, process: Process, *, unexpected: bool, again: Again | GiveUp | None = None) -> None:
+        if process.exit is None:
+            return
+        self.clients.broadcast(
+            {
+                "event": "exited",
+                "process": process.name,
+                "nodes": [n.name for n in process.nodes],
+                "pid": process.pid,
+                "how": str(process.exit),
+                "unexpected": unexpected,
+                "error": process.error,
+                "log": process.log,
+                "again": again.delay if isinstance(again, Again) else None,
+                "given_up": process.given_up,
+            }
+        )
 
     def _end_if_all_have(self) -> None:
-        """End with the last process; while consoles look on, it may be started again."""
+        """End with the last process, unless a console is attached, which may restart one."""
         left = [p for p in self._processes.values() if p.state is not State.ENDED]
         if left and all(p.state is State.PENDING for p in left) and not self._stopping:
             if any(not task.done() for task in self._step_tasks.values()):
                 return
             needs = self._order.after[left[0].name] - self._met
-            words = ", ".join(f"{need.name} ({need.what})" for need in sorted(needs))
-            self._fail(f"{left[0].name} comes after {words}, which cannot come any more")
+            unmet = ", ".join(f"{need.name} ({need.what})" for need in sorted(needs))
+            self._fail(f"{left[0].name} comes after {unmet}, which cannot come any more")
             return
         if left:
             return
         if self._stopping or not self.clients.consoles:
             self.ended.set()
         else:
-            self._tell(event="note", text="all nodes have ended; restart one, or stop the graph")
+            self.note("all nodes have ended; restart one, or stop the graph")
 
     def _stop_next_layer(self) -> None:
         while self._layers and all(self._processes_ended(name) for name in self._layers[0]):
@@ -472,13 +475,10 @@ class Supervisor:
         if self._layers:
             for name in self._layers[0]:
                 process = self._processes[name]
-                if not process.stop_asked:
-                    process.stop_asked = True
+                if not process.stop_requested:
+                    process.stop_requested = True
                     self._happen(process, Event.STOP)
         self._end_if_all_have()
 
     def _processes_ended(self, name: str) -> bool:
         return self._processes[name].state is State.ENDED
-
-    def _tell(self, **event: Any) -> None:
-        self.clients.tell(**event)

@@ -41,10 +41,10 @@ def planned(name: str, state: str) -> PlannedNode:
 
 
 @asynccontextmanager
-async def bringing(graph: Graph, name: str, state: str) -> AsyncIterator[list[dict[str, Any]]]:
+async def bringing(graph: Graph, name: str, state: str) -> AsyncIterator[list[Any]]:
     """What is heard while a node is brought to a state; the supervisor is a process of its own."""
     await graph.start(supervisor := Node("_supervisor"))
-    heard: list[dict[str, Any]] = []
+    heard: list[Any] = []
     steps = StepRunner(supervisor.context, {})
     lives = Lives(supervisor.context, steps, heard.append)
     lives.begin("p", planned(name, state))
@@ -123,7 +123,7 @@ async def test_states_that_lead_nowhere(graph: Graph, number: int, error: str) -
 async def test_a_process_that_has_ended(graph: Graph) -> None:
     """Nothing more is told of it."""
     await graph.start(supervisor := Node("_supervisor"))
-    heard: list[dict[str, Any]] = []
+    heard: list[Any] = []
     steps = StepRunner(supervisor.context, {})
     lives = Lives(supervisor.context, steps, heard.append)
     lives.begin("p", planned("/camera", "active"))

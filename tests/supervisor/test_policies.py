@@ -15,6 +15,7 @@ from graphflow.errors import SupervisorError
 from graphflow.graph.resolve import resolve
 from graphflow.markup import source
 from graphflow.supervisor.launching.debugging import debugged
+from graphflow.supervisor.processes.messages import InterfacesJson, Job, ProcessEvent
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.testing.clock import ManualClock
 from graphflow.transport.memory import Network
@@ -28,7 +29,7 @@ class Workers:
     def __init__(self) -> None:
         self.spawned: list[str] = []
         self.asked: list[str] = []
-        self.heard: Callable[[dict[str, Any]], None] = lambda event: None
+        self.on_event: Callable[[ProcessEvent], None] = lambda event: None
         self.unready: set[str] = set()
         self.stubborn: set[str] = set()
         """Those that do not end when they are asked to."""
@@ -36,23 +37,23 @@ class Workers:
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None: ...
 
-    def probed(self) -> dict[str, Any]:
+    def probed(self) -> InterfacesJson:
         return {}
 
-    async def open(self, log: Path, heard: Callable[[dict[str, Any]], None], lost: Callable[[str], None]) -> None: ...
+    async def open(self, log: Path, on_event: Callable[[ProcessEvent], None], lost: Callable[[str], None]) -> None: ...
 
     def trouble(self) -> str:
         return ""
 
-    def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
+    def spawn(self, process: str, job: Job, log: str, env: dict[str, str]) -> None:
         self.spawned.append(process)
         self._pid += 1
         asyncio.get_running_loop().call_soon(self._come_up, process, self._pid, "command" in job)
 
     def _come_up(self, process: str, pid: int, is_program: bool) -> None:
-        self.heard({"event": "spawned", "process": process, "pid": pid})
+        self.on_event({"event": "spawned", "process": process, "pid": pid})
         if not is_program and process not in self.unready:
-            self.heard({"event": "ready", "process": process, "node": process})
+            self.on_event({"event": "ready", "process": process, "node": process})
 
     def terminate(self, process: str, pid: int) -> None:
         self.asked.append(process)
@@ -65,7 +66,7 @@ class Workers:
 
     def end(self, process: str, status: int) -> None:
         """A worker has ended."""
-        self.heard({"event": "exited", "process": process, "status": status})
+        self.on_event({"event": "exited", "process": process, "status": status})
 
     async def close(self) -> None: ...
 
@@ -75,7 +76,7 @@ class Stage:
 
     def __init__(self, supervisor: Supervisor, workers: Workers, running: asyncio.Task[int]) -> None:
         self.supervisor, self.workers, self._running = supervisor, workers, running
-        self.events: list[dict[str, Any]] = []
+        self.events: list[Any] = []
         supervisor.clients.subscribe(self.events.append, replay=True)
 
     def states(self) -> dict[str, str]:
@@ -102,7 +103,7 @@ async def graph(text: str, tmp_path: Path, *unready: str, debug: Sequence[str] =
     workers.unready.update(unready)
     context = Context(Network().session(asyncio.get_running_loop()), clock=ManualClock())
     supervisor = Supervisor(plan, context, workers, tmp_path, {})  # type: ignore[arg-type]  # it is never ended
-    workers.heard = supervisor.heard
+    workers.on_event = supervisor.on_event
     stage = Stage(supervisor, workers, asyncio.create_task(supervisor.run()))
     await asyncio.sleep(0)
     yield stage

@@ -15,7 +15,7 @@ from tests.conftest import Machine
 from tests.supervisor.control.test_components import node
 
 
-def row(name: str, state: str, **more: Any) -> dict[str, Any]:
+def row(name: str, state: str, **more: Any) -> Any:
     return {**Process(name, [node(name)], "log").rows()[0], "state": state, **more}
 
 
@@ -25,7 +25,7 @@ async def test_states_are_published_and_answered(graph: Graph) -> None:
     mirror = Mirror("my-graph", lambda: rows)
     await graph.start(mirror)
     heard = graph.tap(DiagnosticArray, "/my_graph/_supervisor/states")
-    mirror.tell()
+    mirror.publish_states()
     await graph.settle()
     found = {s.name: (s.level, s.message) for s in heard.latest.status}
     assert found == {"/a": (0, "ready"), "/b": (2, "given_up"), "/c": (1, "waiting")}

@@ -7,29 +7,30 @@ import json
 import logging
 import os
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import Any
+from typing import Generic, TypeVar
 
 logger = logging.getLogger("graphflow.supervisor")
 
 READ_SIZE = 1 << 16
-"""Bytes read at a time: all that a pipe can hold."""
+"""Bytes read at a time: the capacity of a pipe."""
+E = TypeVar("E")
 
 
-class Lines:
-    """Reads events from a descriptor as they come; writes requests if it is a socket.
+class Lines(Generic[E]):
+    """A descriptor that events are read from as they come and, if it is a socket, requests are written to.
 
     Args:
-        heard: Called with each event.
+        on_event: Called with each event, of a type that is the other end's promise: it is not checked.
         lost: Called once when the other end has gone.
     """
 
     def __init__(
-        self, channel: socket.socket | int, heard: Callable[[dict[str, Any]], None], lost: Callable[[], None]
+        self, channel: socket.socket | int, on_event: Callable[[E], object], lost: Callable[[], object]
     ) -> None:
         self._channel = channel
-        self._heard, self._lost = heard, lost
+        self._on_event, self._lost = on_event, lost
         self._buffer = self._unsent = b""
         self._is_closed = False
         self._fd = channel if isinstance(channel, int) else channel.fileno()
@@ -38,7 +39,7 @@ class Lines:
         self._loop.add_reader(self._fd, self.read)
 
     def read(self) -> None:
-        """Take in what has come, which the loop does by itself sooner or later."""
+        """Take in the events that have arrived; the loop calls this, too."""
         try:
             data = os.read(self._fd, READ_SIZE)
         except BlockingIOError:
@@ -55,10 +56,10 @@ class Lines:
             except ValueError:
                 logger.error("not an event: %r", line[:200])
                 continue
-            self._heard(event)
+            self._on_event(event)
 
-    def send(self, **request: Any) -> None:
-        """Send a request, at once or as soon as the other end, which may be stopped, reads on."""
+    def send(self, request: Mapping[str, object]) -> None:
+        """Send a request, at once or as soon as the other end reads on, which may be stopped."""
         self._unsent += json.dumps(request).encode() + b"\n"
         self._write()
 
@@ -69,7 +70,7 @@ class Lines:
                 self._unsent = self._unsent[self._channel.send(self._unsent) :]
             except ConnectionError:
                 self._unsent = b""
-                self._loop.call_soon(self._lose)
+                self._loop.call_soon(self._lose)  # not within `send`, whose caller does not expect callbacks
         if self._unsent:
             self._loop.add_writer(self._fd, self._write)
         else:
@@ -81,7 +82,7 @@ class Lines:
             self._lost()
 
     def close(self) -> None:
-        """Stop reading and writing."""
+        """Stop reading and writing. The descriptor stays open."""
         self._is_closed = True
         self._loop.remove_reader(self._fd)
         self._loop.remove_writer(self._fd)

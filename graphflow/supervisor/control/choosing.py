@@ -1,4 +1,4 @@
-"""Which running graph a command means, and what is said where there is none."""
+"""The choice of the running graph that a command applies to, and its errors."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from graphflow.supervisor.starts import being_started
 
 
 def running_here(*, everything: bool = False) -> list[GraphRun]:
-    """The graphs that run in the domain and at the endpoint that this process would use, at least one.
+    """Return the graphs that run in the domain and at the endpoint of this process, at least one.
 
     Args:
-        everything: Those elsewhere too.
+        everything: Include graphs elsewhere.
 
     Raises:
-        SupervisorError: None does (exit 3); the text names those that run elsewhere or are being started.
+        SupervisorError: There is none (exit 3); the text names graphs elsewhere and graphs that are being started.
     """
     runs = rundir.running()
     if not runs:
@@ -32,10 +32,10 @@ def running_here(*, everything: bool = False) -> list[GraphRun]:
 
 
 def choose(name: str | None) -> GraphRun:
-    """The running graph that is meant: of those in this domain, or by its name wherever it runs.
+    """Return the only running graph of this domain or, with a name, the graph of that name wherever it runs.
 
     Raises:
-        SupervisorError: None is running (exit 3), or several are and `name` does not say which (exit 2).
+        SupervisorError: None is running (exit 3), or `name` does not decide between several (exit 2).
     """
     runs = running_here(everything=name is not None)
     if name is not None:
@@ -57,6 +57,6 @@ def choose(name: str | None) -> GraphRun:
 
 
 def _none(what: str, otherwise: str) -> SupervisorError:
-    """The error where no graph is meant; those that are being started count for more than the usual advice."""
+    """Return the error for no graph; its advice is to wait if one is being started."""
     starts = being_started()
     return SupervisorError(f"{what} yet; {starts}" if starts else f"{what}{otherwise}", exit_code=3)

@@ -1,4 +1,4 @@
-"""A verb's side of the control socket: blocking, and free of asyncio, for the sake of short commands."""
+"""The blocking side of the control socket, for verbs: without asyncio, whose import would slow short commands."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from typing import Any, Self
 from graphflow.errors import SupervisorError
 
 CONNECT_LIMIT = 5.0
+"""Seconds for a connection, and by default for each event."""
 TCP = "tcp/"
-"""What the address of a supervisor on loopback begins with, the portable way."""
+"""Prefix of the address of a supervisor on loopback, the portable way."""
 
 
 def connect(address: str) -> tuple[socket.socket, dict[str, str]]:
-    """A connection to a supervisor, and the token to show there."""
+    """Connect to a supervisor; returns the connection and the fields that every request must carry."""
     if address.startswith(TCP):
         port, _, token = address.removeprefix(TCP).partition("/")
         return socket.create_connection(("127.0.0.1", int(port)), CONNECT_LIMIT), {"token": token}
@@ -30,7 +31,7 @@ def connect(address: str) -> tuple[socket.socket, dict[str, str]]:
 
 
 class ControlClient:
-    """A client's side; blocking.
+    """A connection of a client; blocking.
 
     Raises:
         SupervisorError: Nothing answers at the address.
@@ -52,7 +53,7 @@ class ControlClient:
     def fileno(self) -> int:
         return self._socket.fileno()
 
-    def send(self, **request: Any) -> None:
+    def send(self, **request: object) -> None:
         """Send a request.
 
         Raises:
@@ -64,7 +65,7 @@ class ControlClient:
             raise SupervisorError(f"the supervisor has gone: {error.strerror}") from None
 
     def receive(self, timeout: float | None = CONNECT_LIMIT) -> Iterator[dict[str, Any]]:
-        """Events as they come, until the supervisor closes the connection.
+        """Yield events as they come, until the supervisor closes the connection.
 
         Args:
             timeout: Seconds between two events; None for no limit.
@@ -88,7 +89,7 @@ class ControlClient:
             self._buffer += data
 
     def pending(self) -> list[dict[str, Any]] | None:
-        """Events that have arrived, without waiting; None when the supervisor has closed the connection."""
+        """Return the events that have arrived; None once the supervisor has closed the connection."""
         self._socket.setblocking(False)
         try:
             while True:
@@ -98,7 +99,7 @@ class ControlClient:
                 self._buffer += data
         except BlockingIOError:
             return self._lines()
-        except ConnectionError:  # what came before it counts
+        except ConnectionError:  # events that arrived before it still count
             return self._lines() or None
 
     def _lines(self) -> list[dict[str, Any]]:

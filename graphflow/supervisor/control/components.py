@@ -1,4 +1,4 @@
-"""Nodes that are loaded into processes that run, and unloaded: each process of a graph is a container."""
+"""Loading nodes into running processes, and unloading them: each process of a graph is a container."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import asyncio
 import itertools
 from collections.abc import Callable, Collection
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.errors import SupervisorError
 from graphflow.graph.plan import PlannedNode, node_from_json
@@ -15,25 +15,28 @@ from graphflow.names import did_you_mean
 from graphflow.supervisor.processes.process import Process
 from graphflow.supervisor.processes.starter import Starter
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import ComponentEvent, Obeyed, Order
+
 LIMIT = 20.0
 """Seconds that a worker has to load or unload a node."""
 
 
-class _Order(NamedTuple):
-    """What a process was told to do."""
+class _Pending(NamedTuple):
+    """An order without an answer yet."""
 
     process: Process
     node: PlannedNode | None
-    """The node to load; None for one to unload."""
-    answer: asyncio.Future[dict[str, Any]]
+    """The node to load; None for an order to unload."""
+    answer: asyncio.Future[Obeyed]
 
 
 class Components:
-    """The orders that a supervisor gives to its workers.
+    """The orders of a supervisor to its workers.
 
     Args:
         processes: All processes of the graph.
-        changed: Called when a node has joined a process or left it: the process, the node, whether it joined.
+        changed: Called with a process, a node, and whether the node has joined or left the process.
     """
 
     def __init__(
@@ -46,20 +49,19 @@ class Components:
         self._processes = {process.name: process for process in processes}
         self._numbers = itertools.count(1)
         self._turns = {process.name: asyncio.Lock() for process in processes}
-        """One order at a time is given to a process."""
-        self._given: dict[int, _Order] = {}
-        """Orders that have not been answered."""
+        """Locks, for a process gets one order at a time: its pipe has room for one."""
+        self._pending: dict[int, _Pending] = {}
 
-    def heard(self, event: dict[str, Any]) -> None:
-        """Take in an answer of a worker, or what has changed there without an order."""
+    def on_event(self, event: ComponentEvent) -> None:
+        """Take in an answer of a worker, or a change there that was not ordered."""
         process = self._processes[event["process"]]
         if event["event"] == "joined":
             self._join(process, replace(node_from_json(event["node"]), process=process.name), event["number"])
         elif event["event"] == "left":
             self._leave(process, event["node"])
-        elif (order := self._given.get(event["order"])) is not None and order.process is process:
-            del self._given[event["order"]]
-            if not event["error"]:  # it counts also when nobody waits any more
+        elif (order := self._pending.get(event["order"])) is not None and order.process is process:
+            del self._pending[event["order"]]
+            if not event["error"]:  # the node is there even if the request has timed out
                 if order.node is not None:
                     self._join(process, replace(order.node, name=event["node"]), event["number"])
                 else:
@@ -68,26 +70,27 @@ class Components:
                 order.answer.set_result(event)
 
     def lost(self, process: Process) -> None:
-        """A process has ended: nobody there will answer."""
-        for number, order in list(self._given.items()):
+        """Fail the order of a process that has ended."""
+        for number, order in list(self._pending.items()):
             if order.process is process:
-                del self._given[number]
+                del self._pending[number]
                 if not order.answer.done():
-                    order.answer.set_result({"node": "", "error": "its process has ended"})
+                    order.answer.set_exception(SupervisorError("its process has ended"))
 
     async def load(self, container: str, node: PlannedNode) -> tuple[int, str]:
-        """Load a node into a process; returns its number there, and its full name.
+        """Load a node into a process; returns its number there and its full name.
 
         Args:
-            container: The word after `process:`, or a node that runs in the process.
+            container: The name after `process:`, or that of a node in the process.
 
         Raises:
             SupervisorError: There is no such process, it does not run, or the node cannot be made or started.
         """
         process = self._container(container)
         shared = replace(node, process=process.name)
-        told = await self._order(process, {"do": "load", "node": shared.to_json()}, shared)
-        return told["number"], told["node"]
+        number = next(self._numbers)
+        answer = await self._order(process, {"do": "load", "order": number, "node": shared.to_json()}, shared)
+        return answer["number"], answer["node"]
 
     def _join(self, process: Process, node: PlannedNode, number: int) -> None:
         process.nodes.append(node)
@@ -113,7 +116,7 @@ class Components:
             raise SupervisorError(f"{container} has no component {number}; there is {there}")
         if len(process.nodes) == 1:
             raise SupervisorError(f"{name} is all that {container} has; to end it: graphflow stop {name}")
-        await self._order(process, {"do": "unload", "node": name}, None)
+        await self._order(process, {"do": "unload", "order": next(self._numbers), "node": name}, None)
         return name
 
     def _container(self, container: str) -> Process:
@@ -128,24 +131,24 @@ class Components:
         return process
 
     def _refuse(self, process: Process, node: PlannedNode | None) -> None:
-        """Refuse an order that cannot be carried out by now."""
+        """Raise if an order cannot be carried out now."""
         if process.state is not State.READY:
-            raise SupervisorError(f"{process.name} is not running: {process.word}")
-        coming = [order.node for order in self._given.values() if order.node is not None]
+            raise SupervisorError(f"{process.name} is not running: {process.state_name}")
+        coming = [order.node for order in self._pending.values() if order.node is not None]
         there = [known for other in self._processes.values() for known in other.nodes]
         if node is not None and any(known.name == node.name for known in (*there, *coming)):
             raise SupervisorError(f"the graph has a node {node.name} already; give this one another name with -n NAME")
 
-    async def _order(self, process: Process, order: dict[str, Any], node: PlannedNode | None) -> dict[str, Any]:
-        number = next(self._numbers)
+    async def _order(self, process: Process, order: Order, node: PlannedNode | None) -> Obeyed:
         try:
             async with asyncio.timeout(LIMIT), self._turns[process.name]:
                 self._refuse(process, node)
-                given = self._given[number] = _Order(process, node, asyncio.get_running_loop().create_future())
-                self._starter.tell(process.name, {**order, "order": number})
-                told = await given.answer
+                answer: asyncio.Future[Obeyed] = asyncio.get_running_loop().create_future()
+                self._pending[order["order"]] = _Pending(process, node, answer)
+                self._starter.send_order(process.name, order)
+                obeyed = await answer
         except TimeoutError:
             raise SupervisorError(f"{process.name} did not answer within {LIMIT:.0f} s", exit_code=4) from None
-        if told["error"]:
-            raise SupervisorError(str(told["error"]))
-        return told
+        if obeyed["error"]:
+            raise SupervisorError(obeyed["error"])
+        return obeyed

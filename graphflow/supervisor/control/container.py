@@ -1,6 +1,6 @@
-"""ROS 2's component services of a process: for graphs that allow to be controlled over the network.
+"""ROS 2's component services of a process, in graphs that allow control over the network.
 
-They are offered beside the process's first node, as `~/_container/load_node` and so on, so that ROS 2's tools take that
+They are services of the process's first node, as `~/_container/load_node` and so on, so that ROS 2's tools take that
 node for the container.
 
 Source: composition_interfaces; rclcpp_components component_manager.cpp.
@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import GraphFileError, GraphflowError, printable
 from graphflow.graph.plan import PlannedNode
@@ -27,25 +27,31 @@ from graphflow.supervisor.launching.classes import import_class
 from graphflow.supervisor.launching.joining import check_component, planned_component
 from graphflow.workspace.executables import find
 
+if TYPE_CHECKING:
+    from graphflow.msgs.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
+    from graphflow.supervisor.processes.messages import ProcessEvent
+
 NAME_BOUND = 255
-"""Characters of a name in a request."""
+"""Longest name in a request, in characters."""
 DESCRIPTION_BOUND = 3500
-"""Bytes that the description of a node may have which the supervisor is told of."""
+"""Largest description of a node in bytes: its event has to fit into PIPE_BUF."""
 _LEVELS = {10: "debug", 20: "info", 30: "warn", 40: "error", 50: "fatal"}
 
 
 class Container:
-    """The services of one process.
+    """The component services of one process.
 
     Args:
         node: Its first node, not yet started.
         root: The folder that classes are imported from.
-        tell: Tells the supervisor an event.
+        report: Sends an event to the supervisor.
     """
 
-    def __init__(self, node: Node, orders: Orders, process: str, root: str, tell: Callable[..., None]) -> None:
+    def __init__(
+        self, node: Node, orders: Orders, process: str, root: str, report: Callable[[ProcessEvent], object]
+    ) -> None:
         self._node, self._orders, self._process, self._root = node, orders, process, root
-        self._tell = tell
+        self._report = report
         core = core_of(node)
         for name, type_name, answer in (
             ("load_node", "LoadNode", self._load),
@@ -54,7 +60,7 @@ class Container:
         ):
             core.serve(f"_container/{name}", f"composition_interfaces/srv/{type_name}", answer, SERVICES)
 
-    async def _load(self, request: Any) -> Any:
+    async def _load(self, request: LoadNode.Request) -> LoadNode.Response:
         from graphflow.msgs.composition_interfaces.srv import LoadNode
 
         try:
@@ -65,16 +71,17 @@ class Container:
             if planned.name in self._node.context.cache.nodes():
                 raise GraphflowError(f"there is a node {planned.name} already")
             number, node = await self._orders.load(described)
-        except Exception as error:  # whatever goes wrong, the one who asked is told
+        except Exception as error:  # loading runs user code, which may raise anything: the response carries it
             explain(error)
             text = str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
             text = printable(text)
             self._node.log.warning("%s could not be loaded: %s", printable(request.plugin_name[:NAME_BOUND]), text)
             return LoadNode.Response(success=False, error_message=text)
-        self._tell(event="joined", process=self._process, number=number, node={**described, "name": node.full_name})
+        joined = {**described, "name": node.full_name}
+        self._report({"event": "joined", "process": self._process, "number": number, "node": joined})
         return LoadNode.Response(success=True, full_node_name=node.full_name, unique_id=number)
 
-    def _planned(self, request: Any) -> PlannedNode:
+    def _planned(self, request: LoadNode.Request) -> PlannedNode:
         plugin = str(request.plugin_name)
         for text in (plugin, request.package_name, request.node_name, request.node_namespace, *request.remap_rules):
             if len(text) > NAME_BOUND:
@@ -99,7 +106,7 @@ class Container:
             raise GraphFileError(problems)
         return planned
 
-    async def _unload(self, request: Any) -> Any:
+    async def _unload(self, request: UnloadNode.Request) -> UnloadNode.Response:
         from graphflow.msgs.composition_interfaces.srv import UnloadNode
 
         names = {number: name for name, number in self._orders.numbers.items()}
@@ -112,10 +119,10 @@ class Container:
             await self._orders.unload(name)
         except GraphflowError as error:
             return UnloadNode.Response(success=False, error_message=str(error))
-        self._tell(event="left", process=self._process, node=name)
+        self._report({"event": "left", "process": self._process, "node": name})
         return UnloadNode.Response(success=True)
 
-    def _list(self, request: Any) -> Any:
+    def _list(self, request: ListNodes.Request) -> ListNodes.Response:
         from graphflow.msgs.composition_interfaces.srv import ListNodes
 
         numbers = self._orders.numbers

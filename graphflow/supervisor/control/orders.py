@@ -1,9 +1,9 @@
-"""What a running worker is told to do: load a node into its process, or unload one.
+"""Orders: requests to a running worker to load a node into its process, or to unload one.
 
     {"order": 7, "do": "load", "node": {...}}     -> {"event": "obeyed", "order": 7, "node": name, "number": n}
-    {"order": 8, "do": "unload", "node": name}       the same, or with "error": why not
+    {"order": 8, "do": "unload", "node": name}       the same, or with "error": the reason
 
-One order is carried out at a time, in the order of their coming.
+Orders are carried out one at a time, in the order of their arrival.
 """
 
 from __future__ import annotations
@@ -12,55 +12,72 @@ import asyncio
 import json
 import logging
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import GraphflowError
 from graphflow.runtime.node import Node
 from graphflow.runtime.process_nodes import Company
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import NodeJson, Obeyed, Order
+
 logger = logging.getLogger("graphflow.supervisor")
 
 
 class Orders:
-    """Carries out the orders of one worker.
+    """The orders to one worker.
 
     Args:
-        make: Makes a node of what an order describes.
-        tell: Tells the supervisor an event.
+        process: The worker's process.
+        make: Creates a node from its description.
+        report: Sends the answer to the supervisor.
     """
 
-    def __init__(self, company: Company, make: Callable[[dict[str, Any]], Node], tell: Callable[..., None]) -> None:
-        self._company, self._make, self._tell = company, make, tell
+    def __init__(
+        self, company: Company, process: str, make: Callable[[NodeJson], Node], report: Callable[[Obeyed], object]
+    ) -> None:
+        self._company, self._process, self._make, self._report = company, process, make, report
         self.numbers: dict[str, int] = {}
         """The numbers by which the nodes of the process are unloaded, by full name."""
-        self._waiting: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+        self._waiting: asyncio.Queue[Order] = asyncio.Queue()
 
     def count(self, nodes: Sequence[Node]) -> None:
-        """Give the first nodes of the process their numbers."""
+        """Number the first nodes of the process."""
         self.numbers = {node.full_name: number for number, node in enumerate(nodes, 1)}
 
     def take(self, line: bytes) -> None:
-        """Take in an order."""
+        """Queue an order."""
         self._waiting.put_nowait(json.loads(line))
 
     async def run(self) -> None:
         """Carry out orders as they come."""
         while True:
             order = await self._waiting.get()
-            told = {"event": "obeyed", "order": order["order"]}
-            try:
-                if order["do"] == "load":
-                    number, node = await self.load(order["node"])
-                else:
-                    number, node = 0, await self.unload(order["node"])
-            except Exception as error:  # the one who asked is told; the other nodes go on
-                logger.warning("%s: %s", order["do"], error, exc_info=not isinstance(error, GraphflowError))
-                self._tell(**told, node="", number=0, error=f"{error}" or type(error).__name__)
-            else:
-                self._tell(**told, node=node.full_name, number=number, error="")
+            self._report(await self._obey(order))
 
-    async def load(self, described: dict[str, Any]) -> tuple[int, Node]:
-        """Start a node in this process; returns its number, too. Raises what making or starting it raises."""
+    async def _obey(self, order: Order) -> Obeyed:
+        answer: Obeyed = {
+            "event": "obeyed",
+            "process": self._process,
+            "order": order["order"],
+            "node": "",
+            "number": 0,
+            "error": "",
+        }
+        try:
+            if order["do"] == "load":
+                answer["number"], node = await self.load(order["node"])
+            else:
+                node = await self.unload(order["node"])
+        except Exception as error:  # user code may raise anything: the answer carries it, and the other nodes go on
+            logger.warning("%s: %s", order["do"], error, exc_info=not isinstance(error, GraphflowError))
+            answer["error"] = f"{error}" or type(error).__name__
+        else:
+            answer["node"] = node.full_name
+        return answer
+
+    async def load(self, described: NodeJson) -> tuple[int, Node]:
+        """Create and start a node in this process; returns its number and the node. Passes on any error of these."""
         node = self._make(described)
         await self._company.join(node)
         number = self.numbers[node.full_name] = 1 + max(self.numbers.values(), default=0)
@@ -70,7 +87,7 @@ class Orders:
         """Stop a node of this process.
 
         Raises:
-            GraphflowError: It has no such node.
+            GraphflowError: The process has no such node.
         """
         for node in self._company.nodes:
             if node.full_name == name:

@@ -1,4 +1,4 @@
-"""The run file and the control socket, by which verbs find a running graph: made again when they are removed."""
+"""Keeping a running graph reachable: its run file and control socket are restored when they are removed."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from graphflow.supervisor.rundir import GraphRun, RunDirectory
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.system import is_portable
 
-LOOK_EVERY = 2.0
-"""Seconds between two looks whether they and the guardian are still there."""
+CHECK_EVERY = 2.0
+"""Seconds between two checks of the files and the guardian."""
 
 
 async def keep_reachable(
     supervisor: Supervisor, control: ControlServer, directory: RunDirectory, run: GraphRun
 ) -> None:
-    """Make what is taken away, as at a logout, again; else stop, for no verb could do it.
+    """Restore removed files, as after a logout; stop the graph if that fails, for no verb could stop it then.
 
-    Also sees to it that there is a guardian, whose end only the supervisor can see.
+    It also replaces a guardian that has ended, which only the supervisor can notice.
     """
     guard = Guard(run)
     while True:
-        if words := guard.look():
-            supervisor.note(words)
+        if text := guard.check():
+            supervisor.note(text)
         if guard.run is not run:
             run = guard.run
-            with suppress(OSError):  # what is missing is made again below
+            with suppress(OSError):  # a missing directory is restored below
                 directory.write(run)
-        await asyncio.sleep(LOOK_EVERY)
+        await asyncio.sleep(CHECK_EVERY)
         is_there, has_socket = directory.is_there(run), is_portable() or Path(run.socket).is_socket()
         if is_there and has_socket:
             continue

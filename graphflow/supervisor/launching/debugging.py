@@ -1,7 +1,7 @@
 """Nodes under a debugger: their processes wait until one has attached, and nothing hurries them.
 
-While such a node stands at a breakpoint its process answers nobody. So in a graph with one no call has a deadline of
-its own accord, and the process is neither told to be unresponsive nor given up on for taking too long to start.
+While such a node stands at a breakpoint its process does not answer. So in a graph with one, calls have no default
+timeout, and the process is neither reported as unresponsive nor given up on for a slow start.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from graphflow.names import did_you_mean
 
 
 def debugged(plan: Plan, names: Sequence[str]) -> Plan:
-    """The plan with nodes that are to be debugged.
+    """Mark nodes of a plan as debugged.
 
     Raises:
         GraphFileError: There is no such node, or it is a foreign program.
@@ -35,27 +35,27 @@ def debugged(plan: Plan, names: Sequence[str]) -> Plan:
     return replace(plan, nodes=nodes, call_timeout=None)
 
 
-def wait_for_debugger(tell: Callable[..., None]) -> None:
+def wait_for_debugger(report: Callable[[int], object]) -> None:
     """Open a port on loopback and wait until a debugger has attached.
 
     Args:
-        tell: Called with the port.
+        report: Called with the port.
 
     Raises:
         GraphflowError: debugpy is not installed.
     """
-    os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")  # a warning about modules that are Python's own
+    os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")  # silences a warning about frozen modules of Python
     try:
         import debugpy
     except ImportError:
         raise GraphflowError("--debug needs debugpy: pip install debugpy") from None
     _, port = debugpy.listen(("127.0.0.1", 0))
-    tell(port=port)
+    report(port)
     debugpy.wait_for_client()
 
 
 def invitation(process: str, port: int) -> str:
-    """What to do now."""
+    """Describe how to attach to a process."""
     return (
         f"{process} waits for a debugger on 127.0.0.1:{port} (in VS Code: Run and Debug, Python Debugger, Remote "
         f"Attach); it goes on when one has attached"

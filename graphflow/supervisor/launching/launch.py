@@ -322,7 +322,7 @@ class _Launch:
         if self._was_cut:
             cut()
         _tell_notes(supervisor.note)
-        await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
+        await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.on_event, supervisor.starter_lost)
         run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
@@ -385,7 +385,7 @@ async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> N
     except Exception as error:  # remarks must not keep a graph from running
         logging.getLogger("graphflow.supervisor").error("the graph was not examined: %s", error, exc_info=error)
     finally:  # `up -d` waits for it
-        supervisor.clients.tell(event="checked")
+        supervisor.clients.broadcast({"event": "checked"})
 
 
 async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:

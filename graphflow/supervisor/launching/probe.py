@@ -1,4 +1,4 @@
-"""Interfaces of classes by importing them in a child of its own: for `check`, without a supervisor."""
+"""Probe classes for their interfaces by importing them in a child process: for `check`, without a supervisor."""
 
 from __future__ import annotations
 
@@ -8,28 +8,39 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.supervisor.processes.preload import PROBE_LIMIT, answer_probe, probe_result, sweep
 from graphflow.system import detached, end_with_parent
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import InterfacesJson, ProbeRequest
 
-def probe(classes: Iterable[str], root: str) -> dict[str, Any]:
-    """What each class declares, as `classes.interfaces` returns it, with the slips in its source."""
+
+def probe(classes: Iterable[str], root: str) -> InterfacesJson:
+    """Return the interface of each class, with the slips in its source."""
     return finish(begin(classes, root, with_slips=True), classes)
 
 
 def begin(classes: Iterable[str], root: str, *, with_slips: bool = False) -> subprocess.Popen[bytes]:
     """Start importing classes."""
-    asked = {"classes": sorted(set(classes)), "root": root, "slips": with_slips, "parent": os.getpid()}
-    request = json.dumps(asked)
-    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launching.probe", request]
-    quiet: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, **detached()}
-    return subprocess.Popen(command, stdout=subprocess.PIPE, **quiet)
+    request: ProbeRequest = {
+        "classes": sorted(set(classes)),
+        "root": root,
+        "slips": with_slips,
+        "parent": os.getpid(),
+    }
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", "graphflow.supervisor.launching.probe", json.dumps(request)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        **detached(),
+    )
 
 
-def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str, Any]:
-    """The result of the import; what it has started ends here."""
+def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> InterfacesJson:
+    """Return the result of the import, and end the processes that it has started."""
     with probing:
         try:
             out, _ = probing.communicate(timeout=PROBE_LIMIT)
@@ -43,7 +54,7 @@ def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str
 
 
 if __name__ == "__main__":
-    asked: dict[str, Any] = json.loads(sys.argv[1])
-    end_with_parent(asked["parent"], int(signal.SIGKILL))  # an import that never ends ends with who waits for it
-    answer_probe(asked, os.dup(1))
+    request: ProbeRequest = json.loads(sys.argv[1])
+    end_with_parent(request["parent"], int(signal.SIGKILL))  # so that an import that never ends does
+    answer_probe(request, os.dup(1))
     os._exit(0)  # a thread that the import has started may never end

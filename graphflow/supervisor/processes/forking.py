@@ -1,4 +1,4 @@
-"""Workers forked from the preload process: used on Linux, where it starts twenty nodes in a tenth of a second."""
+"""Workers forked from the preload process: on Linux this starts twenty nodes in a tenth of a second."""
 
 from __future__ import annotations
 
@@ -10,19 +10,33 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import SupervisorError
 from graphflow.machines.process import Exit
 from graphflow.supervisor.control.channel import Lines
 from graphflow.supervisor.processes import preload, process_tree
 from graphflow.supervisor.processes.guardian import GRACE
-from graphflow.supervisor.processes.starter import Heard, Start
+from graphflow.supervisor.processes.starter import Start
+
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import (
+        InterfacesJson,
+        Job,
+        LogRequest,
+        Order,
+        OrderRequest,
+        PreloadEvent,
+        PreloadRequest,
+        ProbeRequest,
+        ProcessEvent,
+        SpawnRequest,
+    )
 
 REAP_LIMIT = 1.0
-"""Seconds that the preload process has to say how a worker ended."""
+"""Seconds that the preload process has to report how a worker ended."""
 END_LIMIT = 2.0
-"""Seconds that it has to end itself."""
+"""Seconds that the preload process has to end."""
 
 
 class ForkingStarter:
@@ -30,23 +44,29 @@ class ForkingStarter:
 
     def __init__(self, keep: tuple[int, ...]) -> None:
         self._channel, self._status, self._pid = preload.start(keep)
-        self._lines: list[Lines] = []
+        self._preload: Lines[PreloadEvent]
+        self._reports: Lines[ProcessEvent]
         self._workers: dict[int, tuple[str, int]] = {}
-        """Living workers by process id: the name of each, and the descriptor that tells its end."""
+        """Living workers by process id: the name of each, and the pidfd that becomes readable at its end, or -1."""
         self._programs: dict[str, signal.Signals] = {}
         """Processes that are foreign programs."""
-        self._begun: dict[str, list[dict[str, Any]]] = {}
-        """What has become of workers that were started and not yet asked for."""
-        self._hear: Heard
+        self._begun: dict[str, list[ProcessEvent]] = {}
+        """Events of workers that were started ahead and not spawned yet."""
+        self._on_event: Callable[[ProcessEvent], None]
         self._lost: Callable[[str], None]
-        self._has_ended = False
+        self._is_open = self._has_ended = False
         self._ending: asyncio.Task[None] | None = None
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
+        request: ProbeRequest = {"do": "probe", "classes": list(classes), "root": root}
         with suppress(ConnectionError):  # it has ended, as `probed` finds out
-            self._channel.sendall(json.dumps({"do": "probe", "classes": list(classes), "root": root}).encode() + b"\n")
+            self._send_blocking(request)
 
-    def probed(self) -> dict[str, Any]:
+    def _send_blocking(self, request: PreloadRequest) -> None:
+        """Send a request before the loop runs."""
+        self._channel.sendall(json.dumps(request).encode() + b"\n")
+
+    def probed(self) -> InterfacesJson:
         data = b""
         while not data.endswith(b"\n"):
             try:
@@ -56,14 +76,14 @@ class ForkingStarter:
             if not chunk:
                 raise SupervisorError(f"{self._end_in_words()} before the graph was up")
             data += chunk
-        answer: dict[str, Any] = json.loads(data)
+        answer: PreloadEvent = json.loads(data)
         if answer["event"] == "broken":
             raise SupervisorError(f"process {self._pid}, which starts the nodes, failed:\n{answer['trace']}")
-        result: dict[str, Any] = answer["interfaces"]
-        return result
+        assert answer["event"] == "probed"
+        return answer["interfaces"]
 
     def _end_in_words(self) -> str:
-        """Wait for the preload process, which has ended, and say how."""
+        """Wait for the preload process, which has ended, and describe how."""
         _, status = os.waitpid(self._pid, 0)
         self._has_ended = True
         how = Exit.of_status(os.waitstatus_to_exitcode(status))
@@ -72,40 +92,44 @@ class ForkingStarter:
     def begin(self, starts: Iterable[Start]) -> None:
         for start in starts:
             self._begun[start.process] = []
-            with suppress(ConnectionError):  # it has ended, as is told once this is open
-                self._channel.sendall(json.dumps({"do": "spawn", **start._asdict()}).encode() + b"\n")
+            with suppress(ConnectionError):  # it has ended, as is reported once this is open
+                self._send_blocking(_spawn_request(*start))
 
-    async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
-        self._hear, self._lost = heard, lost
-        self._lines = [Lines(self._channel, self._told, self._lose), Lines(self._status, self._heard, _nothing)]
-        self._lines[0].send(do="log", path=str(log))
+    async def open(self, log: Path, on_event: Callable[[ProcessEvent], None], lost: Callable[[str], None]) -> None:
+        self._on_event, self._lost = on_event, lost
+        self._preload = Lines(self._channel, self._take_answer, self._lose)
+        self._reports = Lines(self._status, self._report, _ignore_end_of_reports)
+        self._is_open = True
+        request: LogRequest = {"do": "log", "path": str(log)}
+        self._preload.send(request)
 
-    def _heard(self, event: dict[str, Any]) -> None:
-        """Report what has become of a worker; of one that was not asked for yet, later."""
+    def _report(self, event: ProcessEvent) -> None:
+        """Report an event of a worker; keep it for later if the worker has not been spawned yet."""
         early = self._begun.get(event.get("process", ""))
         if early is None:
-            self._hear(event)
+            self._on_event(event)
         else:
             early.append(event)
 
-    def _told(self, event: dict[str, Any]) -> None:
-        """What the preload process says."""
-        if event["event"] == "broken":
-            return  # it has written why to the log, and its end is told in a moment
+    def _take_answer(self, event: PreloadEvent) -> None:
+        """Take in an answer of the preload process."""
+        if event["event"] == "broken" or event["event"] == "probed":
+            return  # a broken one has written why to the log, and its end is reported in a moment
         if event["event"] == "spawned":
             self._watch(event["process"], event["pid"])
         elif event["event"] == "exited":
-            if event["pid"] in self._workers:
-                self._ended(event["pid"], event["status"])
-            if event["pid"] is not None:
-                return  # an end that was given up on before
-        self._heard(event)
+            pid = event.get("pid")
+            if pid in self._workers:
+                self._ended(pid, event["status"])
+            if pid is not None:
+                return  # `_ended` has reported it, or `_give_up` had before
+        self._report(event)
 
     def _watch(self, process: str, pid: int) -> None:
-        """Learn of a worker's end from the system: the preload process may be stopped."""
+        """Learn of a worker's end from the kernel: the preload process may be stopped."""
         try:
             end = os.pidfd_open(pid)
-        except OSError:  # it has ended, and was waited for: what is said of it is on its way
+        except OSError:  # it has ended and was reaped: the preload process's report is on its way
             self._workers[pid] = (process, -1)
             return
         self._workers[pid] = worker = (process, end)
@@ -117,7 +141,7 @@ class ForkingStarter:
         loop.call_later(REAP_LIMIT, self._give_up, pid, worker)
 
     def _give_up(self, pid: int, worker: tuple[str, int]) -> None:
-        """Report an end without its cause, unless that is known by now; another worker may have the number then."""
+        """Report an end without its cause, unless that is known by now; another worker may have the pid then."""
         if self._workers.get(pid) is worker and not self._has_ended:
             self._ended(pid, None)
 
@@ -126,8 +150,8 @@ class ForkingStarter:
         if end >= 0:
             asyncio.get_running_loop().remove_reader(end)
             os.close(end)
-        self._lines[1].read()  # what the worker said before it ended is in the pipe, and comes first
-        self._heard({"event": "exited", "process": process, "status": status})
+        self._reports.read()  # events that the worker wrote before its end are in the pipe, and come first
+        self._report({"event": "exited", "process": process, "status": status})
 
     def trouble(self) -> str:
         if process_tree.state_of(self._pid) != "T":
@@ -135,9 +159,9 @@ class ForkingStarter:
         return f"process {self._pid}, which starts the nodes, is stopped; to let it go on: kill -CONT {self._pid}"
 
     def _lose(self) -> None:
-        """The preload process has ended. The system has asked its workers to do the same; this is their parent now.
+        """Report that the preload process has ended, and end its workers, whose parent is this process now.
 
-        Foreign programs know nothing of that, and are asked here.
+        The kernel has sent SIGTERM to the workers (`system.end_with_parent`); foreign programs get it here.
         """
         self._lost(self._end_in_words())
         for pid, (name, _) in self._workers.items():
@@ -159,20 +183,22 @@ class ForkingStarter:
             if pid in self._workers:
                 self._ended(pid, status)
 
-    def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
+    def spawn(self, process: str, job: Job, log: str, env: dict[str, str]) -> None:
         if process in self._begun:
-            asyncio.get_running_loop().call_soon(self._tell_begun, process)
+            # Not at once: the supervisor is still in the middle of the transition that called this.
+            asyncio.get_running_loop().call_soon(self._report_begun, process)
             return
         if "command" in job:
             self._programs[process] = signal.Signals[job["signal"]]
-        self._lines[0].send(do="spawn", process=process, job=job, log=log, env=env)
+        self._preload.send(_spawn_request(process, job, log, env))
 
-    def _tell_begun(self, process: str) -> None:
+    def _report_begun(self, process: str) -> None:
         for event in self._begun.pop(process):
-            self._hear(event)
+            self._on_event(event)
 
-    def tell(self, process: str, order: dict[str, Any]) -> None:
-        self._lines[0].send(do="tell", process=process, order=order)
+    def send_order(self, process: str, order: Order) -> None:
+        request: OrderRequest = {"do": "tell", "process": process, "order": order}
+        self._preload.send(request)
 
     def terminate(self, process: str, pid: int) -> None:
         process_tree.kill_group(pid, self._programs.get(process, signal.SIGTERM))
@@ -183,8 +209,9 @@ class ForkingStarter:
     async def close(self) -> None:
         if self._ending is not None:
             await self._ending
-        for lines in self._lines:
-            lines.close()
+        if self._is_open:
+            self._preload.close()
+            self._reports.close()
 
     def end(self) -> None:
         self._channel.close()
@@ -197,5 +224,9 @@ class ForkingStarter:
         process_tree.end_descendants(os.getpid(), process_tree.reap_children)
 
 
-def _nothing() -> None:
-    """The workers' pipe ends with the preload process, whose end is told elsewhere."""
+def _spawn_request(process: str, job: Job, log: str, env: dict[str, str]) -> SpawnRequest:
+    return {"do": "spawn", "process": process, "job": job, "log": log, "env": env}
+
+
+def _ignore_end_of_reports() -> None:
+    """Do nothing: the workers' pipe ends with the preload process, whose end `_lose` reports."""

@@ -1,8 +1,8 @@
-"""Whether the nodes answer: each worker's event loop says so once a second, and one that does not is told.
+"""The health check: the event loop of each worker reports a beat once a second, and its silence is reported.
 
-A process is *unresponsive* when its loop has said nothing for `SILENCE` seconds: it is blocked, held in C code, or has
-been stopped. That is reported, with the line in which it is blocked; nobody is killed for it. A supervisor that was
-held up itself has heard nothing either, and waits for another round.
+A process is *unresponsive* when `SILENCE` seconds have passed since its last beat: its loop is blocked, perhaps in C
+code, or the process is stopped. That is reported, with the place where its stack is logged; the process is not killed.
+A supervisor that was held up itself could not read beats meanwhile, and waits for another round.
 
 Source: docs/architecture.md, "The rules of processes"; systemd's WatchdogSec.
 """
@@ -18,55 +18,55 @@ from graphflow.machines.process import State
 from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.process import Process
 
-LOOK_EVERY = 0.5
-"""Seconds between two looks."""
+CHECK_EVERY = 0.5
+"""Seconds between two checks."""
 SILENCE = 3.0
-"""Seconds without a word after which a process is unresponsive."""
+"""Seconds without a beat after which a process is unresponsive."""
 
 
 class Health:
-    """The looks at a graph's processes.
+    """The health check of a graph's processes.
 
     Args:
-        tell: Called with what is found.
+        note: Called with each finding, in words.
     """
 
-    def __init__(self, processes: Iterable[Process], tell: Callable[[str], None]) -> None:
-        self._processes, self._tell = list(processes), tell
-        self._looked = time.monotonic()
+    def __init__(self, processes: Iterable[Process], note: Callable[[str], None]) -> None:
+        self._processes, self._note = list(processes), note
+        self._checked = time.monotonic()
 
     async def watch(self) -> None:
-        """Look for as long as the graph runs."""
+        """Check until cancelled."""
         while True:
-            await asyncio.sleep(LOOK_EVERY)
-            self.look(time.monotonic())
+            await asyncio.sleep(CHECK_EVERY)
+            self.check(time.monotonic())
 
-    def look(self, now: float) -> None:
-        """Find who does not answer, and who does again.
+    def check(self, now: float) -> None:
+        """Report processes that have become unresponsive, and those that answer again.
 
         Args:
             now: Seconds on the monotonic clock.
         """
-        was_held_up = now - self._looked > 2 * LOOK_EVERY
-        self._looked = now
+        was_held_up = now - self._checked > 2 * CHECK_EVERY
+        self._checked = now
         for process in self._processes:
-            if process.state is not State.READY or process.heard is None or process.is_debugged:
+            if process.state is not State.READY or process.last_beat is None or process.is_debugged:
                 process.silent_since = None
-            elif now - process.heard <= SILENCE:
+            elif now - process.last_beat <= SILENCE:
                 if process.silent_since is not None:
-                    self._tell(f"{process.name} answers again, after {now - process.silent_since:.0f} s")
+                    self._note(f"{process.name} answers again, after {now - process.silent_since:.0f} s")
                 process.silent_since = None
             elif process.silent_since is None and not was_held_up:
-                process.silent_since = process.heard
-                self._tell(f"{process.name} has not answered for {now - process.heard:.0f} s: {_why(process)}")
+                process.silent_since = process.last_beat
+                self._note(f"{process.name} has not answered for {now - process.last_beat:.0f} s: {_why(process)}")
 
 
 def _why(process: Process) -> str:
-    """What is the matter with a process, as far as can be seen from outside."""
+    """Explain why a process does not answer, as far as can be seen from outside."""
     pid = process.pid or 0
     if process_tree.state_of(pid) == "T":
         return f"process {pid} is stopped; to let it go on: kill -CONT {pid}"
     if hasattr(signal, "SIGUSR2"):
-        process_tree.kill(pid, signal.SIGUSR2)  # its faulthandler writes into the log what each of its threads does
+        process_tree.kill(pid, signal.SIGUSR2)  # its faulthandler dumps the stacks of all threads into the log
         return f"its event loop is blocked; where, its log shows: {process.log}"
     return f"its event loop is blocked; its log: {process.log}"

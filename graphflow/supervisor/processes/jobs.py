@@ -1,29 +1,32 @@
-"""The jobs of workers: everything that one is told when it is started."""
+"""The jobs of workers: everything that a worker needs to start."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.supervisor.processes.starter import Start
 from graphflow.supervisor.rundir import log_file
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import NodeJson, WorkerJob
+
 MESH_LIMIT = 24
-"""Up to this many processes each is a peer of every other; beyond, they are clients of the rendezvous."""
+"""Number of processes up to which each is a peer of every other; more are clients of the rendezvous."""
 
 
 def worker_start(
-    plan: Plan, domain: int, process: str, nodes: Sequence[PlannedNode], described: list[dict[str, Any]], log: str
+    plan: Plan, domain: int, process: str, nodes: Sequence[PlannedNode], described: list[NodeJson], log: str
 ) -> Start:
-    """What starts a worker.
+    """Return the start of a worker.
 
     Args:
-        described: Its nodes as of `Plan.to_json`.
+        described: Its nodes as `Plan.to_json` writes them.
         log: The file that its output goes to.
     """
-    job = {
+    job: WorkerJob = {
         "process": process,
         "nodes": described,
         "log": log,
@@ -40,12 +43,12 @@ def worker_start(
 
 
 def environment_of(nodes: Sequence[PlannedNode]) -> dict[str, str]:
-    """Variables that a process gets besides the supervisor's own."""
+    """Return the variables that a process gets besides the supervisor's own."""
     return {name: value for node in nodes for name, value in node.env.items()}
 
 
 def first_starts(plan: Plan, domain: int, logs: Path) -> Iterator[Start]:
-    """What starts the workers that come after nothing.
+    """Yield the starts of the workers that wait for nothing.
 
     Args:
         logs: The folder of the nodes' logs.

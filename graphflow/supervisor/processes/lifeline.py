@@ -1,4 +1,4 @@
-"""The lifeline between `graphflow up` and its supervisor: a pipe whose other end shows how the command ends."""
+"""The lifeline between `graphflow up` and its supervisor: a pipe that shows the end of the command."""
 
 from __future__ import annotations
 
@@ -8,43 +8,43 @@ from collections.abc import Callable
 from contextlib import suppress
 
 LET_GO = b"-"
-"""What the command sends over the lifeline to let the graph go on without it."""
+"""The byte by which the command lets the graph outlive it."""
 
 
 class Lifeline:
     """The supervisor's end of the lifeline.
 
     Args:
-        pipe: Where the command's end shows.
-        told: As for `on_cut`, until that is called.
+        pipe: The reading end.
+        cut: As for `on_cut`, until that is called.
     """
 
-    def __init__(self, pipe: int, told: Callable[[], object]) -> None:
+    def __init__(self, pipe: int, cut: Callable[[], object]) -> None:
         self._pipe = pipe
-        self._told = told
-        self._left: Callable[[], object] = _nothing
+        self._cut = cut
+        self._left: Callable[[], object] = _ignore
 
     def watch(self) -> None:
-        """Begin to watch it, on a thread of its own; which must not be before the preload process is forked."""
+        """Start watching, on a thread; the preload process must have been forked before, from a single thread."""
         threading.Thread(target=self._wait, name="graphflow-lifeline", daemon=True).start()
 
     def _wait(self) -> None:
         with suppress(OSError):
             if os.read(self._pipe, 1) == LET_GO:
-                os.read(self._pipe, 1)
+                os.read(self._pipe, 1)  # until the command ends
                 self._left()
                 return
-        self._told()
+        self._cut()
 
-    def on_cut(self, told: Callable[[], object], left: Callable[[], object] | None = None) -> None:
-        """Have functions called, on any thread, when the command ends from now on.
+    def on_cut(self, cut: Callable[[], object], left: Callable[[], object] | None = None) -> None:
+        """Set the functions to call, on any thread, when the command ends.
 
         Args:
-            told: For one that has not let go.
-            left: For one that has.
+            cut: Called if the command has not let go.
+            left: Called if it has.
         """
-        self._told, self._left = told, left or _nothing
+        self._cut, self._left = cut, left or _ignore
 
 
-def _nothing() -> None:
-    """Nobody needs to know that the command has ended."""
+def _ignore() -> None:
+    """Do nothing about a command that has let go."""

@@ -1,12 +1,12 @@
-"""Ending a worker: it ends what it has started, for perhaps nobody is left above it who could.
+"""Orphaned workers: a worker ends the processes it has started itself when no process above it is left to do so.
 
-A worker that ends by itself does so before; what one leaves that was killed, the preload process ends. If that or the
-supervisor has ended, the worker is asked to end by the other or by the kernel (`system.end_with_parent`). What is there
-after `GRACE` is killed by those of the three above the workers that live; if all were killed together, each worker
-kills its own.
+A worker that ends by itself ends its processes first; the preload process ends those of a worker that was killed. If
+the preload process or the supervisor has ended, the other one or the kernel (`system.end_with_parent`) asks the worker
+to end. After `GRACE`, the guardian, supervisor or preload process, if any lives, kills the processes that are left; if
+all three were killed together, each worker kills its own.
 
-Source: pipe(7) and poll(2) for a pipe whose other end is closed: of the orders' pipe the preload process alone has it,
-of the status pipe the supervisor.
+Source: pipe(7) and poll(2) for a pipe whose other end is closed: only the preload process has that of the orders' pipe,
+only the supervisor that of the status pipe.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.guardian import GRACE
 
 LOG_VARIABLE = "GRAPHFLOW_LOG"
-"""The variable that programs of a worker inherit: the file of its output, which no other process has."""
+"""Variable with the path of a worker's log, which marks every process that the worker has started."""
 
 
 class Orphan:
-    """Ends a worker and what it has started when its preload process has ended.
+    """The end of a worker, and of its processes, after that of its preload process.
 
     Args:
         parent: The preload process.
@@ -40,7 +40,7 @@ class Orphan:
         self._parent, self._status, self._orders, self._log = parent, status, orders, log
 
     def end_on_sigterm(self) -> None:
-        """Do it on SIGTERM, while nothing else handles that: when the worker makes its nodes."""
+        """Act on SIGTERM as long as nothing else handles it: while the worker creates its nodes."""
         signal.signal(signal.SIGTERM, self._end_by)
 
     def _end_by(self, number: int, frame: FrameType | None) -> None:
@@ -49,7 +49,7 @@ class Orphan:
         os.kill(os.getpid(), number)
 
     def watch(self) -> None:
-        """Do it on a thread, for event loops that are blocked and handlers of signals that were replaced."""
+        """Act on a thread, in case the event loop is blocked or the user's code has replaced signal handlers."""
         threading.Thread(target=self._wait, name="graphflow-orphaned", daemon=True).start()
 
     def _wait(self) -> None:
@@ -63,8 +63,8 @@ class Orphan:
             self.end_own()
 
     def end_own(self) -> None:
-        """End what this process has started; a look at all processes, unless it has started none."""
-        if process_tree.has_started_any():
+        """End all processes that this one has started."""
+        if process_tree.has_started_any():  # the scan of all processes costs milliseconds
             process_tree.end_all(partial(left_by, self._log), process_tree.reap_children)
 
 
@@ -76,7 +76,7 @@ def _poll(pipe: int, timeout: int | None) -> bool:
 
 
 def left_by(log: str) -> list[int]:
-    """The living processes that the worker with a log has started, daemons included, without itself."""
+    """Return the living processes, daemons included, that the worker with a log has started; not the worker."""
     mark = f"{LOG_VARIABLE}={log}".encode()
     found = set(process_tree.descendants(os.getpid()))
     for pid in process_tree.processes():

@@ -3,16 +3,16 @@
 It is forked from the supervisor before that opens a Zenoh session, never opens one itself and keeps to one thread,
 so that forking it is safe. It is the workers' parent: it reaps them and reports to the supervisor how each ended.
 
-The supervisor sends requests as lines of JSON over a socket pair and gets lines back:
+The supervisor sends requests as lines of JSON over a socket pair and gets lines back (their types: `messages`):
 
     {"do": "probe", "classes": [...], "root": ...}           -> {"event": "probed", "interfaces": {...}}
-    {"do": "log", "path": ...}                               (where its own errors go from now on)
+    {"do": "log", "path": ...}                               (the file for its own errors from now on)
     {"do": "spawn", "process": ..., "job": {...}, "log": ..., "env": {...}}
                                                              -> {"event": "spawned", "process": ..., "pid": ...}
     {"do": "tell", "process": ..., "order": {...}}           (passed on to the worker, over a pipe of its own)
-                                              and, at its end, {"event": "exited", "process": ..., "status": ...}
 
-and, if it fails itself, {"event": "broken", "trace": ...} before it ends.
+The end of a process is reported as {"event": "exited", "process": ..., "pid": ..., "status": ...}, and a failure of the
+preload process itself as {"event": "broken", "trace": ...} before it ends.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
-from typing import Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, cast
 
 from graphflow.machines.process import Exit
 from graphflow.supervisor.processes import process_tree
@@ -35,14 +35,30 @@ from graphflow.supervisor.processes.guardian import GRACE
 from graphflow.supervisor.processes.orphaned import LOG_VARIABLE, Orphan
 from graphflow.system import end_with_parent
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import (
+        Exited,
+        Failed,
+        InterfacesJson,
+        Obeyed,
+        Order,
+        OrderRequest,
+        PreloadEvent,
+        PreloadRequest,
+        ProbeRequest,
+        ProgramJob,
+        SpawnRequest,
+        WorkerJob,
+    )
+
 ORDER_BOUND = 1 << 16
-"""Bytes of an order to a worker: so many fit into an empty pipe (pipe(7))."""
+"""Largest order to a worker in bytes: the capacity of an empty pipe (pipe(7))."""
 PROBE_LIMIT = 20.0
 """Seconds that importing all classes of a project may take."""
 _FRESH = ("PYTHON", "LD_", "MALLOC_")
-"""Variables with these prefixes act only on a fresh interpreter."""
-_WORKER = (sys.executable, "-P", "-m", "graphflow.supervisor.processes.worker")
-_WARM = (
+"""Prefixes of variables that act only on a fresh interpreter."""
+_WORKER_COMMAND = (sys.executable, "-P", "-m", "graphflow.supervisor.processes.worker")
+_PRELOADED_SERVICES = (
     *(f"rcl_interfaces/srv/{name}" for name in ("GetParameters", "SetParameters", "ListParameters")),
     *(f"rcl_interfaces/srv/{name}" for name in ("DescribeParameters", "GetParameterTypes", "SetParametersAtomically")),
     *(f"rcl_interfaces/srv/{name}" for name in ("GetLoggerLevels", "SetLoggerLevels")),
@@ -71,7 +87,7 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
                 os.close(fd)
             _Preload(its, status_write).run()
         except BaseException:  # a forked child must not unwind into its parent's code
-            _tell_failure(its)
+            _report_failure(its)
         finally:
             os._exit(1)
     its.close()
@@ -79,8 +95,8 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
     return mine, status_read, pid
 
 
-def _tell_failure(channel: socket.socket) -> None:
-    """Say why this process fails: in the log, which it may not have been told yet, and to the supervisor."""
+def _report_failure(channel: socket.socket) -> None:
+    """Report why this process fails: in its log, if it has one yet, and to the supervisor."""
     import traceback
 
     traceback.print_exc()
@@ -91,9 +107,9 @@ def _tell_failure(channel: socket.socket) -> None:
 class _Worker(NamedTuple):
     process: str
     log: str
-    """The file to which its output goes, and that of what it starts."""
+    """The file for its output, and for that of the processes it starts."""
     orders: int
-    """The descriptor by which it is told what to do; -1 for a foreign program."""
+    """The writing end of the pipe for orders; -1 for a foreign program."""
 
 
 class _Preload:
@@ -108,12 +124,13 @@ class _Preload:
 
         process_tree.name_process("gf-preload", "preload process")
         process_tree.adopt_orphans()
-        # The command's terminal, or the pipe it writes to, must not be kept open by a graph that goes on.
-        self._speak_to(os.devnull)
+        # The command's terminal, or the pipe it writes to, must not be kept open by a graph that outlives the command.
+        self._redirect_output(os.devnull)
         self._warm_up()
         wake_read, wake_write = os.pipe()
         for fd in (wake_read, wake_write):
             os.set_blocking(fd, False)
+        # SIGCHLD has to wake `select`, which PEP 475 would restart: the handler alone would not.
         signal.set_wakeup_fd(wake_write, warn_on_full_buffer=False)
         signal.signal(signal.SIGCHLD, lambda *_: None)
         # Blocked, not ignored: a signal to a worker just forked waits until the worker can act on it.
@@ -124,22 +141,22 @@ class _Preload:
         while True:
             for key, _ in selector.select():
                 if key.fileobj is self._channel:
-                    self._buffer += self._hear()
+                    self._buffer += self._receive()
                 else:
                     os.read(wake_read, 4096)
             self._serve()
             self._reap()
 
-    def _hear(self, how: int = 0) -> bytes:
-        """The next line of the supervisor; does not return when it has ended."""
+    def _receive(self, flags: int = 0) -> bytes:
+        """Return the next bytes from the supervisor; does not return when that has ended."""
         try:
-            data = self._channel.recv(65536, how)
-        except ConnectionError:  # it was killed, and had not read all answers
+            data = self._channel.recv(65536, flags)
+        except ConnectionError:  # it was killed before it had read all answers
             data = b""
         return data or self._end()
 
     def _warm_up(self) -> None:
-        """Import, compile and warm_up what every node needs, then tune memory for many forks."""
+        """Import, compile and run once all that every node needs, then tune memory for many forks."""
         os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a second thread would make forking unsafe
         import asyncio  # noqa: F401
         import concurrent.futures.thread  # noqa: F401
@@ -153,7 +170,7 @@ class _Preload:
         from graphflow.transport.malloc import keep_freed_memory
 
         load_ext()  # Zenoh starts no thread before a session is opened
-        for name in _WARM:
+        for name in _PRELOADED_SERVICES:
             registry.service_schema(name)
             registry.hash_of(name)
             registry.interface_class(name)
@@ -168,30 +185,30 @@ class _Preload:
     def _serve(self) -> None:
         while b"\n" in self._buffer:
             line, _, self._buffer = self._buffer.partition(b"\n")
-            request = json.loads(line)
+            request: PreloadRequest = json.loads(line)
             if request["do"] == "probe":
                 self._answer({"event": "probed", "interfaces": self._probe_classes(request)})
             elif request["do"] == "log":
-                self._speak_to(request["path"])
+                self._redirect_output(request["path"])
             elif request["do"] == "tell":
-                self._tell(request)
-            else:
+                self._pass_on(request)
+            elif request["do"] == "spawn":
                 self._spawn(request)
 
-    def _speak_to(self, path: str) -> None:
+    def _redirect_output(self, path: str) -> None:
         out = os.open(path, os.O_RDWR | os.O_APPEND)
         for fd in (0, 1, 2) if path == os.devnull else (2,):
             os.dup2(out, fd)
         os.close(out)
 
-    def _answer(self, event: dict[str, Any]) -> None:
+    def _answer(self, event: PreloadEvent) -> None:
         try:
             self._channel.sendall(json.dumps(event).encode() + b"\n")
         except ConnectionError:
             self._end()
 
-    def _probe_classes(self, request: dict[str, Any]) -> dict[str, Any]:
-        """Import classes in a child of its own, so that what they do stays there."""
+    def _probe_classes(self, request: ProbeRequest) -> InterfacesJson:
+        """Import classes in a child of their own, which confines the side effects."""
         read, write = os.pipe()
         parent, pid = os.getpid(), os.fork()
         if pid == 0:
@@ -208,11 +225,13 @@ class _Preload:
         deadline = time.monotonic() + PROBE_LIMIT
         with selectors.DefaultSelector() as selector:
             selector.register(read, selectors.EVENT_READ)
-            selector.register(self._channel, selectors.EVENT_READ)  # nothing comes there now but the supervisor's end
+            selector.register(
+                self._channel, selectors.EVENT_READ
+            )  # the supervisor sends nothing now; only its end can show
             while not done and (left := deadline - time.monotonic()) > 0:
                 for key, _ in selector.select(left):
                     if key.fileobj is self._channel:
-                        self._hear(socket.MSG_PEEK)
+                        self._receive(socket.MSG_PEEK)
                         selector.unregister(self._channel)
                         continue
                     chunk = os.read(read, 65536)
@@ -222,73 +241,81 @@ class _Preload:
         if not done:
             os.kill(pid, signal.SIGKILL)
         code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
-        sweep(pid)  # what the import has started
+        sweep(pid)  # processes that the import has started
         self._end_orphans()
         result = probe_result(data, done, request["classes"], code)
         if any(found.get("needs_numpy") for found in result.values()):
-            import numpy  # noqa: F401 - once, for all workers
+            import numpy  # noqa: F401 - once, for all workers to inherit
         return result
 
-    def _tell(self, request: dict[str, Any]) -> None:
-        """Pass an order on; a worker that reads none, stopped perhaps, gets none."""
-        line = json.dumps(request["order"]).encode() + b"\n"
+    def _pass_on(self, request: OrderRequest) -> None:
+        """Pass an order on to its worker; answer for a worker that does not read, stopped perhaps."""
         for worker in self._workers.values():
             if worker.process == request["process"] and worker.orders >= 0:
-                if len(line) > ORDER_BOUND:
-                    error = f"it is {len(line)} bytes long, and a process takes {ORDER_BOUND}"
-                elif _write_whole(worker.orders, line):
+                error = _write_order(worker.orders, request["order"])
+                if not error:
                     return
-                else:
-                    error = "the process does not read what it is told"
-                order = {"order": request["order"]["order"], "node": "", "error": error}
-                self._answer({"event": "obeyed", "process": worker.process, **order})
+                number = request["order"]["order"]
+                answer: Obeyed = {"event": "obeyed", "process": worker.process, "order": number, "node": "",
+                                  "number": 0, "error": error}  # fmt: skip
+                self._answer(answer)
 
-    def _spawn(self, request: dict[str, Any]) -> None:
-        fresh = any(name.startswith(_FRESH) for name in request["env"])
+    def _spawn(self, request: SpawnRequest) -> None:
         parent = os.getpid()
         orders = write = -1
         try:
             if "command" in request["job"]:
-                pid = _spawn_program(request)
+                pid = _spawn_program(request, request["job"])
             else:
                 orders, write = os.pipe()
-                os.set_blocking(write, False)
+                os.set_blocking(write, False)  # a worker that is stopped must not stop this process
+                fresh = any(name.startswith(_FRESH) for name in request["env"])
                 pid = self._spawn_fresh(request, orders) if fresh else os.fork()
         except (OSError, ValueError) as error:  # no memory, no free process, an impossible environment
-            self._answer({"event": "failed", "process": request["process"], "error": f"cannot be started: {error}"})
-            self._answer({"event": "exited", "process": request["process"], "pid": None, "status": 1})
+            self._report_unstarted(request["process"], error)
             return
         if pid == 0:
-            try:
-                self._channel.close()
-                for fd in (write, *(worker.orders for worker in self._workers.values() if worker.orders >= 0)):
-                    os.close(fd)
-                self._be_worker(request, parent, orders)
-            except BaseException:  # a forked child must not unwind into its parent's code
-                import traceback
-
-                traceback.print_exc()
-            finally:
-                os._exit(70)
+            self._run_worker(request, parent, orders, write)
         if orders >= 0:
             os.close(orders)
         self._workers[pid] = _Worker(request["process"], request["log"], write)
         self._answer({"event": "spawned", "process": request["process"], "pid": pid})
 
-    def _be_worker(self, request: dict[str, Any], parent: int, orders: int) -> None:
+    def _report_unstarted(self, process: str, error: Exception) -> None:
+        failed: Failed = {"event": "failed", "process": process, "error": f"cannot be started: {error}"}
+        exited: Exited = {"event": "exited", "process": process, "pid": None, "status": 1}
+        self._answer(failed)
+        self._answer(exited)
+
+    def _run_worker(self, request: SpawnRequest, parent: int, orders: int, write: int) -> NoReturn:
+        """Be the worker, in the child."""
+        try:
+            self._channel.close()
+            # A worker sees its preload process end when the last writing end of its orders' pipe is closed.
+            for fd in (write, *(worker.orders for worker in self._workers.values() if worker.orders >= 0)):
+                os.close(fd)
+            self._be_worker(request, parent, orders)
+        except BaseException:  # a forked child must not unwind into its parent's code
+            import traceback
+
+            traceback.print_exc()
+        finally:
+            os._exit(70)
+
+    def _be_worker(self, request: SpawnRequest, parent: int, orders: int) -> None:
         from graphflow.supervisor.processes import worker
 
         worker.become(request["log"], {**request["env"], LOG_VARIABLE: request["log"]}, parent)
         _reseed()
         orphan = Orphan(parent, self._status, orders, request["log"])
-        worker.main(request["job"], worker.PipeReporter(self._status, orders, orphan))
+        worker.main(cast("WorkerJob", request["job"]), worker.PipeReporter(self._status, orders, orphan))
 
-    def _spawn_fresh(self, request: dict[str, Any], orders: int) -> int:
-        """A worker in a new interpreter, for environments that a running one cannot adopt."""
+    def _spawn_fresh(self, request: SpawnRequest, orders: int) -> int:
+        """Start a worker in a new interpreter, for an environment that a running one cannot adopt."""
         log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         with open(log, "ab") as out:
             child = subprocess.Popen(
-                [*_WORKER, str(self._status), str(orders), str(os.getpid())],
+                [*_WORKER_COMMAND, str(self._status), str(orders), str(os.getpid())],
                 stdin=subprocess.PIPE,
                 stdout=out,
                 stderr=out,
@@ -300,7 +327,7 @@ class _Preload:
         # Over stdin, since an argument is limited to 128 KiB.
         child.stdin.write(json.dumps(request["job"]).encode())
         child.stdin.close()
-        child.returncode = 0  # it is reaped below with the others
+        child.returncode = 0  # `_reap` waits for it: its destructor must not
         return child.pid
 
     def _reap(self) -> None:
@@ -315,17 +342,17 @@ class _Preload:
             self._answer({"event": "exited", "process": worker.process, "pid": pid, "status": code})
 
     def _end_orphans(self) -> None:
-        """End what workers have left behind in sessions of their own; what a living one has put there stays."""
+        """End processes that ended workers have left in sessions of their own; those of living workers stay."""
         logs = {worker.log for worker in self._workers.values()}
         living = {f"{LOG_VARIABLE}={log}".encode() for log in logs}
         for pid in process_tree.children(os.getpid()):
             is_ours = living & process_tree.environment(pid) or logs & process_tree.files(pid)
             if pid not in self._workers and not is_ours:
                 process_tree.kill(pid, signal.SIGKILL)
-                process_tree.end_descendants(pid, _nothing)
+                process_tree.end_descendants(pid, _reap_nothing)
 
     def _end(self) -> NoReturn:
-        """The supervisor has gone: end what is left as it would have done, and exit."""
+        """End all workers, as the supervisor would have done that is gone now, and exit."""
         for pid in self._workers:
             process_tree.kill_group(pid, signal.SIGTERM)
         deadline = time.monotonic() + GRACE
@@ -337,11 +364,11 @@ class _Preload:
         os._exit(0)
 
 
-def _spawn_program(request: dict[str, Any]) -> int:
-    """A foreign program, with signals as it expects them: this process blocks some and ignores others."""
+def _spawn_program(request: SpawnRequest, job: ProgramJob) -> int:
+    """Start a foreign program with default signal handling: this process blocks some signals and ignores others."""
     parent = os.getpid()
 
-    def prepare() -> None:  # which forking makes safe: this process has one thread
+    def prepare() -> None:  # safe as a preexec_fn: this process has one thread
         end_with_parent(parent, signal.SIGTERM)
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD):
             signal.signal(number, signal.SIG_DFL)
@@ -350,7 +377,7 @@ def _spawn_program(request: dict[str, Any]) -> int:
     log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     with open(log, "ab") as out:
         child = subprocess.Popen(
-            request["job"]["command"],
+            job["command"],
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=out,
@@ -358,25 +385,25 @@ def _spawn_program(request: dict[str, Any]) -> int:
             start_new_session=True,
             preexec_fn=prepare,
         )
-    child.returncode = 0  # it is reaped with the others
+    child.returncode = 0  # `_reap` waits for it: its destructor must not
     return child.pid
 
 
-def answer_probe(request: dict[str, Any], write: int) -> None:
-    """In the probing child: import the classes and write their Interfaces."""
+def answer_probe(request: ProbeRequest, write: int) -> None:
+    """Import the classes and write their interfaces, in the probing child."""
     from graphflow.supervisor.launching.classes import add_root, interfaces
 
     add_root(request["root"])
     null = os.open(os.devnull, os.O_RDWR)
-    for fd in (0, 1, 2):  # what a module prints while it is imported is dropped
+    for fd in (0, 1, 2):  # output of a module during its import is dropped
         os.dup2(null, fd)
     data = json.dumps(interfaces(request["classes"], with_slips=request.get("slips", False))).encode()
     while data:
         data = data[os.write(write, data) :]
 
 
-def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> dict[str, Any]:
-    """What a probing child wrote, or why it did not write all.
+def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> InterfacesJson:
+    """Read the answer of a probing child, or give the reason for its failure as the problem of each class.
 
     Args:
         code: Its exit code, negative for a signal.
@@ -387,13 +414,21 @@ def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> dict
     if code or not data:
         how = f"the process that imported it was ended by {Exit.of_status(code)}"
         return {path: {"problem": how} for path in classes}
-    result: dict[str, Any] = json.loads(data)
+    result: InterfacesJson = json.loads(data)
     return result
 
 
+def _write_order(fd: int, order: Order) -> str:
+    """Write an order into a worker's pipe; returns why it could not be; empty if it was."""
+    line = json.dumps(order).encode() + b"\n"
+    if len(line) > ORDER_BOUND:
+        return f"it is {len(line)} bytes long, and a process takes {ORDER_BOUND}"
+    return "" if _write_whole(fd, line) else "the process does not read its orders"
+
+
 def _write_whole(fd: int, line: bytes) -> bool:
-    """Write a line to a pipe that is empty, so that all of it has room; returns whether it was."""
-    import fcntl  # which other systems do not have
+    """Write a line into a pipe that is empty, where all of it has room; returns whether it was empty."""
+    import fcntl  # not on Windows
     import termios
 
     unread = fcntl.ioctl(fd, termios.FIONREAD, bytes(4))
@@ -403,12 +438,12 @@ def _write_whole(fd: int, line: bytes) -> bool:
         return False
 
 
-def _nothing() -> None:
-    """There are no children to wait for."""
+def _reap_nothing() -> None:
+    """Do nothing: they are not this process's children."""
 
 
 def sweep(group: int) -> None:
-    """End what a worker has left behind in its process group."""
+    """End the processes that a worker has left in its process group."""
     try:
         os.killpg(group, signal.SIGKILL)
     except (ProcessLookupError, PermissionError):  # nobody is in it, or nobody of this user's

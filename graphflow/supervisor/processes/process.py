@@ -1,19 +1,25 @@
-"""One process of a graph, as its supervisor sees it."""
+"""One process of a graph: its state and history in the supervisor."""
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import SupervisorError
 from graphflow.graph.plan import PlannedNode
 from graphflow.machines.process import ALARMS, BLOCKED_STOP_LIMIT, Exit, State
 from graphflow.machines.restarts import BACKOFF, Restarts
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.control.messages import NodeRow
+
+logger = logging.getLogger("graphflow.supervisor")
+
 BLOCKED_AFTER = 1.5
-"""Seconds of silence after which a loop, which beats once a second, counts as blocked when its process is ended."""
+"""Seconds without a beat after which the event loop of a process that is being ended counts as blocked."""
 
 
 class Process:
@@ -31,15 +37,15 @@ class Process:
         self.state = State.PENDING
         self.pid: int | None = None
         self.exit: Exit | None = None
-        """How it ended, of a process that has."""
+        """Its end; None if it has not ended."""
         self.since = time.time()
-        """When the process entered its state, in seconds since 1970."""
+        """Time at which it entered its state, in seconds since 1970."""
         self.ready_since: float | None = None
-        """When it was ready, on the monotonic clock."""
-        self.heard: float | None = None
-        """When its event loop last said that it goes round, on the monotonic clock; None for never."""
+        """Time at which it became ready, on the monotonic clock."""
+        self.last_beat: float | None = None
+        """Time of the last beat of its event loop, on the monotonic clock; None before the first."""
         self.silent_since: float | None = None
-        """Since when it has said nothing, if that is too long."""
+        """Time of the last beat, if that is too long ago; else None."""
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
         self.numbers = {node.name: number for number, node in enumerate(nodes, 1)}
@@ -48,22 +54,22 @@ class Process:
         """The states of its lifecycle nodes."""
         self.error = ""
         self.log_error = ""
-        """Why lines of its log were lost."""
+        """Reason why lines of its log were lost."""
         self.starts = 0
-        self.stop_asked = False
+        self.stop_requested = False
         self.failed = False
         """Whether the process ended by itself with a failure."""
         self.given_up = ""
-        """Why it is not started again, though it should be."""
+        """Reason why it is not started again, though its policy is to."""
         self.delay = 0.0
-        """Seconds until it is started again, from the moment on in which it ended."""
+        """Seconds between its end and the next start."""
         self.last_end = ""
-        """How the one before this one ended, by itself."""
+        """The last end that caused a restart, in words."""
         self.alarm: asyncio.TimerHandle | None = None
         self.alarm_after: float | None = None
         """Seconds that the process may stay in its state; None for any time."""
         self.blocks_loop = False
-        """Whether handlers block its event loop, and are to run in threads from the next start on."""
+        """Whether handlers block its event loop that run in threads from the next start on."""
         policies = [node.restart for node in nodes if node.restart != BACKOFF]
         self.restarts = Restarts(policies[0] if policies else BACKOFF)
         self.ends_graph = any(node.on_exit == "shutdown" for node in nodes)
@@ -72,14 +78,14 @@ class Process:
 
     @property
     def is_program(self) -> bool:
-        """Whether it is a foreign program, and no worker."""
+        """Whether it is a foreign program, not a worker."""
         return bool(self.nodes[0].command)
 
     def put_in_threads(self, node: str, handlers: Sequence[str]) -> PlannedNode:
-        """Have handlers of a node run in threads, whenever it is started; returns how it is planned now.
+        """Plan handlers of a node to run in threads from the next start on; returns the new plan of the node.
 
         Raises:
-            SupervisorError: Its code alone says what runs in threads.
+            SupervisorError: The node is a foreign program.
         """
         if self.is_program:
             raise SupervisorError(f"{node} is a program: its own code says what runs in threads")
@@ -89,7 +95,7 @@ class Process:
         return self.nodes[at]
 
     def may_stay(self, now: float) -> float | None:
-        """Seconds that it may stay in its state; None for any time.
+        """Return the seconds that it may stay in its state; None for no limit.
 
         Args:
             now: Seconds on the monotonic clock.
@@ -97,13 +103,13 @@ class Process:
         if self.state is State.WAITING:
             return self.delay
         if self.is_debugged and self.state is State.STARTING:
-            return None  # whoever debugs it has all the time in the world
-        is_blocked = self.blocks_loop and self.heard is not None and now - self.heard > BLOCKED_AFTER
+            return None  # a human attaches the debugger
+        is_blocked = self.blocks_loop and self.last_beat is not None and now - self.last_beat > BLOCKED_AFTER
         return BLOCKED_STOP_LIMIT if is_blocked and self.state is State.RESTARTING else ALARMS.get(self.state)
 
     @property
-    def word(self) -> str:
-        """Its state, as `ps` has it."""
+    def state_name(self) -> str:
+        """The state that `ps` shows."""
         if self.state is State.ENDED and self.given_up:
             return "given_up"
         if self.state is State.READY and self.silent_since is not None:
@@ -112,7 +118,7 @@ class Process:
 
     @property
     def detail(self) -> str:
-        """What is wrong with it."""
+        """The problem of the process, in words; empty if it has none."""
         if self.state is State.WAITING:
             left = max(0.0, self.since + self.delay - time.time())
             return f"{self.error or self.exit}; it is started again in {left:.1f} s"
@@ -120,20 +126,20 @@ class Process:
             return f"{self.error or self.exit}; given up: {self.given_up}"
         if self.error:
             return self.error
-        if self.word == "unresponsive" and self.silent_since is not None:
-            return f"its event loop has said nothing for {time.monotonic() - self.silent_since:.0f} s"
+        if self.state_name == "unresponsive" and self.silent_since is not None:
+            return f"its event loop has not answered for {time.monotonic() - self.silent_since:.0f} s"
         if self.exit is not None and self.exit.failed:
             return str(self.exit)
         return f"its log is not written whole: {self.log_error}" if self.log_error else ""
 
-    def rows(self) -> list[dict[str, Any]]:
-        """One row per node, for `ps`."""
+    def rows(self) -> list[NodeRow]:
+        """Return one row per node, for `ps`."""
         return [
             {
                 "node": node.name,
                 "is_named": bool(node.class_path or node.executable) and not node.keeps_names,
-                "state": self.word,
-                "lifecycle": self.lifecycle.get(node.name, "") if self.word == "ready" else "",
+                "state": self.state_name,
+                "lifecycle": self.lifecycle.get(node.name, "") if self.state_name == "ready" else "",
                 "pid": self.pid,
                 "since": self.since,
                 "process": node.process,
@@ -148,17 +154,26 @@ class Process:
         ]
 
     def begin(self) -> None:
-        """Forget what became of the process before this one."""
+        """Reset the record for a new process."""
         self.starts += 1
         self.pid, self.exit, self.ready_since = None, None, None
-        self.heard = self.silent_since = None
+        self.last_beat = self.silent_since = None
         self.lifecycle = {}
         self.numbers = {node.name: number for number, node in enumerate(self.nodes, 1)}
         self.error = self.log_error = self.given_up = ""
-        self.stop_asked = self.failed = self.blocks_loop = False
+        self.stop_requested = self.failed = self.blocks_loop = False
         self.waiting_for = {n.name for n in self.nodes}
 
     @property
     def ready_for(self) -> float:
-        """Seconds since it was ready."""
+        """Seconds since it became ready; 0 if it has not."""
         return 0.0 if self.ready_since is None else time.monotonic() - self.ready_since
+
+    def log_end(self) -> None:
+        """Append the end of the process to its log, which it could not do itself."""
+        reason = f": {self.error}" if self.error else ""
+        try:
+            with open(self.log, "a", encoding="utf-8") as file:
+                file.write(f"[supervisor] process {self.pid} has ended: {self.exit}{reason}\n")
+        except OSError as error:  # a full disk
+            logger.error("%s: %s", self.log, error)

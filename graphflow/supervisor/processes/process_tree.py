@@ -1,8 +1,8 @@
-"""A process and all that it has started, however deep: found by their parents, and ended (Linux).
+"""Process trees (Linux): find and end all descendants of a process.
 
-A process whose parent ends goes to the nearest ancestor that has asked for it by `adopt_orphans`. The guardian, the
-supervisor and the preload process all have: so whatever a node leaves behind, in its session or in one of its own,
-stays below each of them that lives. If all three are killed at one moment, each worker ends its own (`orphaned`).
+A process whose parent ends is adopted by the nearest ancestor that has called `adopt_orphans`. The guardian, the
+supervisor and the preload process have: so every process that a node leaves behind, in its session or in one of its
+own, stays a descendant of each of them that lives. If all three are killed together, see `orphaned`.
 
 Source: prctl(2), PR_SET_CHILD_SUBREAPER and PR_SET_NAME; proc_pid_stat(5), state, ppid, arg_start and arg_end.
 """
@@ -19,38 +19,38 @@ from functools import partial
 
 _PR_SET_NAME = 15
 _PR_SET_CHILD_SUBREAPER = 36
-_LOOK_EVERY = 0.005
-"""Seconds between two looks whether anything is left."""
+_SCAN_EVERY = 0.005
+"""Seconds between two scans for processes that are left."""
 END_LIMIT = 5.0
-"""Seconds that killed processes may take to disappear: one in the kernel's hands (a dead disk) may take for ever."""
+"""Seconds that killed processes may take to disappear: one in uninterruptible sleep (a dead disk) may never end."""
 
 
 def adopt_orphans() -> None:
-    """Become the parent of every process below this one whose own parent ends."""
+    """Become the parent of every descendant whose own parent ends."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
 def name_process(name: str, title: str) -> None:
-    """Name this process, and what it forks, for those who list processes.
+    """Name this process, and its future forks, in lists of processes.
 
     Args:
         name: For `top`, `pstree` and `ps -o comm`, which show 15 characters.
-        title: For `ps aux` and `htop`, in place of the command line: as much as that has room for.
+        title: For `ps aux` and `htop`, in place of the command line; cut to its length.
     """
     _prctl(_PR_SET_NAME, name.encode()[:15])
     if sys.platform == "linux":
         import ctypes
 
         start, end = _arguments()
-        if 0 < start < end:  # systems that imitate Linux may not tell
+        if 0 < start < end:  # emulations of Linux may give zeros
             text = f"graphflow: {title}".encode()[: end - start - 1]
             ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
 
 
 def _arguments() -> tuple[int, int]:
-    """Where the command line of this process stands in its memory."""
+    """Return the start and end address of this process's command line."""
     with open("/proc/self/stat", "rb") as file:
-        fields = file.read().rpartition(b")")[2].split()  # from the third on
+        fields = file.read().rpartition(b")")[2].split()  # from field 3 on
     return int(fields[45]), int(fields[46])
 
 
@@ -62,13 +62,13 @@ def _prctl(option: int, value: int | bytes) -> None:
 
 
 def state_of(pid: int) -> str:
-    """The state of a process as /proc has it: `T` is stopped, `Z` has ended; empty if there is none."""
+    """Return the state of a process as in /proc: `T` is stopped, `Z` has ended; empty if there is no such process."""
     found = _stat(pid)
     return "" if found is None else found[0]
 
 
 def descendants(root: int) -> list[int]:
-    """The living processes below one, without itself."""
+    """Return the living descendants of a process."""
     return _below(root, is_deep=True)
 
 
@@ -96,21 +96,21 @@ def _numbers() -> list[int]:
 
 
 def processes() -> list[int]:
-    """All living processes."""
+    """Return all living processes."""
     return [pid for pid in _numbers() if state_of(pid) not in ("", "Z", "X")]
 
 
 def children(root: int) -> list[int]:
-    """The living processes that have one as their parent."""
+    """Return the living children of a process."""
     return _below(root, is_deep=False)
 
 
 def has_started_any() -> bool:
-    """Whether this process has children, or has ever waited for one. It costs next to nothing.
+    """Return whether this process has, or had, children: two system calls, no scan.
 
     Source: wait(2), ECHILD; getrusage(2), RUSAGE_CHILDREN: every process has page faults.
     """
-    import resource  # which other systems do not have
+    import resource  # not on Windows
 
     try:
         os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
@@ -120,7 +120,7 @@ def has_started_any() -> bool:
 
 
 def environment(pid: int) -> frozenset[bytes]:
-    """The variables with which a program was started, each as `name=value`; of a fork, its parent's."""
+    """Return the variables a program was started with, each as `name=value`; for a fork, its parent's."""
     try:
         with open(f"/proc/{pid}/environ", "rb") as file:
             return frozenset(file.read().split(b"\0"))
@@ -129,7 +129,7 @@ def environment(pid: int) -> frozenset[bytes]:
 
 
 def files(pid: int) -> set[str]:
-    """The files that a process has open."""
+    """Return the files that a process has open."""
     found: set[str] = set()
     with suppress(OSError):
         for name in os.listdir(f"/proc/{pid}/fd"):
@@ -139,7 +139,7 @@ def files(pid: int) -> set[str]:
 
 
 def output(pid: int) -> set[str]:
-    """The files that a process has as its standard output and error."""
+    """Return the files of a process's standard output and error."""
     found: set[str] = set()
     for fd in (1, 2):
         with suppress(OSError):
@@ -148,30 +148,30 @@ def output(pid: int) -> set[str]:
 
 
 def _stat(pid: int) -> tuple[str, int] | None:
-    """State and parent of a process."""
+    """Read the state and parent of a process."""
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:
-            state, parent, *_ = file.read().rpartition(b")")[2].split()  # the name before it may contain anything
+            state, parent, *_ = file.read().rpartition(b")")[2].split()  # the name in parentheses may contain anything
     except (OSError, ValueError):
         return None
     return state.decode(), int(parent)
 
 
 def end_descendants(root: int, reap: Callable[[], None]) -> bool:
-    """Kill all processes below one; see `end_all`."""
+    """Kill all descendants of a process; see `end_all`."""
     return end_all(partial(descendants, root), reap)
 
 
 def end_all(find: Callable[[], list[int]], reap: Callable[[], None]) -> bool:
-    """Kill all processes of a kind until there are none; False if some are still there after `END_LIMIT`.
+    """Kill processes until none is found; returns False if some are left after `END_LIMIT`.
 
     Args:
-        find: Finds those that live.
-        reap: Called in between, to wait for this process's own children that have ended.
+        find: Finds the living ones.
+        reap: Called after each round, to reap this process's own children.
     """
     deadline = time.monotonic() + END_LIMIT
     empty = 0
-    while empty < 2:  # a process that changes its parent during a look may be missed by it
+    while empty < 2:  # a process that is adopted during a scan may be missed by it
         left = find()
         for pid in left:
             kill(pid, signal.SIGKILL)
@@ -180,28 +180,28 @@ def end_all(find: Callable[[], list[int]], reap: Callable[[], None]) -> bool:
         if time.monotonic() > deadline:
             return False
         if left:
-            time.sleep(_LOOK_EVERY)
+            time.sleep(_SCAN_EVERY)
     return True
 
 
 def kill(pid: int, number: signal.Signals) -> None:
-    """Send a signal to a process, if it is still there and, unlike what `sudo` starts, this user's."""
+    """Send a signal to a process, if it still lives and belongs to this user, unlike one that `sudo` started."""
     with suppress(ProcessLookupError, PermissionError):
         os.kill(pid, number)
 
 
 def kill_group(pid: int, number: signal.Signals) -> None:
-    """Send a signal to the process group that a process leads, or to it alone before it has made one."""
+    """Send a signal to the process group that a process leads; to it alone if it leads none yet."""
     try:
         os.killpg(pid, number)
     except ProcessLookupError:
         kill(pid, number)
-    except PermissionError:  # nobody in it is this user's any more
+    except PermissionError:  # all its processes belong to other users now
         return
 
 
 def reaped() -> Iterator[tuple[int, int]]:
-    """Children that have ended and had not been waited for: process id, and exit code as `subprocess` gives it."""
+    """Reap children that have ended; yields process id and exit code, negative for a signal."""
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)
@@ -213,6 +213,6 @@ def reaped() -> Iterator[tuple[int, int]]:
 
 
 def reap_children() -> None:
-    """Wait for children that have ended."""
+    """Reap all children that have ended."""
     for _ in reaped():
         continue

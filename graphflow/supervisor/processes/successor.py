@@ -1,8 +1,8 @@
-"""The guardian's successor: another process that ends what is left of a graph, where the guardian was killed.
+"""The guardian's successor: it replaces a guardian that was killed.
 
-Nobody can become the parent of a process that runs. So the successor is a child of the supervisor's, to whose end it
-listens on a pipe, and finds what is left by its logs, which no other graph has. A supervisor that ends by itself ends
-it, too. One that is killed in its turn is followed by another, but not without limit.
+No process can become the parent of one that runs. So the successor is a child of the supervisor, whose end it sees on a
+pipe, and it finds the processes of the graph by their log files, which are the graph's own. A supervisor that ends by
+itself ends it, too. A successor that is killed is replaced in its turn, up to a limit.
 
 Source: pipe(7) for a pipe whose other end is closed.
 """
@@ -23,32 +23,32 @@ from pathlib import Path
 from graphflow.machines.process import Exit
 from graphflow.machines.restarts import Backoff, GiveUp, Restarts
 from graphflow.supervisor.processes import process_tree
-from graphflow.supervisor.processes.guardian import clean_up
+from graphflow.supervisor.processes.guardian import Charge, clean_up
 from graphflow.supervisor.processes.orphaned import LOG_VARIABLE
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, start_time
 
 INTENSITY = Backoff("always", max_restarts=3, within=60.0)
-"""How often a guardian is started again."""
+"""The limit of restarts."""
 _COMMAND = (sys.executable, "-P", "-m", "graphflow.supervisor.processes.successor")
 
 
 class Guard:
-    """Sees to it that a graph has a guardian, for its supervisor.
+    """The watch over a graph's guardian, by its supervisor.
 
     Args:
-        run: The graph; its guardian is 0 where there is none to be replaced.
+        run: The graph; its guardian is 0 if it has none to be replaced.
     """
 
     def __init__(self, run: GraphRun) -> None:
         self.run = run
-        """With the guardian that there is now."""
+        """The graph with its present guardian."""
         self._restarts = Restarts(INTENSITY)
         self._goes_on = bool(run.guardian)
         self._successor: subprocess.Popen[bytes] | None = None
 
-    def look(self) -> str:
-        """Start another guardian if there is none any more; returns what has happened, in words, or nothing."""
-        if not self._goes_on or self._is_there():
+    def check(self) -> str:
+        """Start another guardian if there is none any more; returns a remark on that, or an empty string."""
+        if not self._goes_on or self._is_guarded():
             return ""
         ended = self.run.unguarded or f"the guardian, process {self.run.guardian}, was ended"
         follows = self._restarts.decide(Exit(), 0.0, time.monotonic(), 0.0)
@@ -58,13 +58,13 @@ class Guard:
             return f"{ended}; the graph goes on without it: {why}"
         return f"{ended}; process {self.run.guardian} has taken its place"
 
-    def _is_there(self) -> bool:
+    def _is_guarded(self) -> bool:
         if self._successor is not None:
             return self._successor.poll() is None
         return os.getppid() == self.run.guardian
 
     def _start(self) -> str:
-        """Start another; returns why it cannot be, if so."""
+        """Start a successor; returns the reason if that fails, or an empty string."""
         run, null = self.run, subprocess.DEVNULL
         note = json.dumps({"domain": run.domain, "graph": run.graph, "pid": run.pid, "logs": run.logs})
         try:
@@ -84,7 +84,7 @@ class Guard:
 
 
 def left_of(logs: str) -> list[int]:
-    """The living processes of the graph with a folder of logs, and what they have started, without this one."""
+    """Return the living processes of the graph that logs to a folder, and their descendants, without this process."""
     mark, folder = f"{LOG_VARIABLE}={logs}/".encode(), f"{logs}/"
     found: set[int] = set()
     for pid in process_tree.processes():
@@ -95,16 +95,16 @@ def left_of(logs: str) -> list[int]:
 
 
 def main() -> None:
-    """Wait for the supervisor's end, and end what is left; on the standard input is which graph it is."""
+    """Wait for the supervisor's end, then end the rest of the graph, which is described on the standard input."""
     process_tree.name_process("gf-guardian", "guardian")
     for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     with os.fdopen(0, "rb", closefd=False) as supervisor:
         note = json.loads(supervisor.readline())
-        supervisor.read()
-    known = {"domain": note["domain"], "graph": note["graph"], "log": str(Path(note["logs"]) / SUPERVISOR_LOG)}
+        supervisor.read()  # until the supervisor's end closes the pipe
+    log = str(Path(note["logs"]) / SUPERVISOR_LOG)
     how = "an unknown cause, which only the guardian that was killed before would know"
-    clean_up(known, note["pid"], how, partial(left_of, note["logs"]))
+    clean_up(Charge(note["domain"], note["graph"], log), note["pid"], how, partial(left_of, note["logs"]))
 
 
 if __name__ == "__main__":

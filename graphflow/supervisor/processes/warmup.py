@@ -1,6 +1,6 @@
-"""A node that lives for a moment in memory, in the preload process: the workers then share what a first run leaves.
+"""The warm-up: a node runs once in the preload process, in memory, so that forked workers inherit warm caches.
 
-That is what was compiled, looked up and cached on the way, and what the interpreter noted in the code it ran.
+Those are compiled code, lookups, and the inline caches of CPython's specializing interpreter.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from graphflow.transport.event_loop.loop import new_event_loop
 from graphflow.transport.memory import Network
 
 LIMIT = 1.0
-"""Seconds that a warm-up may take; it takes a hundredth of that."""
+"""Seconds that a warm-up may take; it usually takes a hundredth of that."""
 
 
 def warm_up() -> bool:
-    """Make a node, let it talk to itself and stop it; returns whether it heard itself."""
+    """Create a node, let it receive its own message and stop it; returns whether the message arrived."""
     with asyncio.Runner(loop_factory=new_event_loop) as runner:
         return runner.run(_warm_up())
 
@@ -32,23 +32,23 @@ async def _warm_up() -> bool:
     done = asyncio.Event()
 
     class WarmUp(Node):
-        rate = Param(1000.0, unit="Hz", gt=0.0, doc="How often.")
-        said = Publisher(String, "said")
+        rate = Param(1000.0, unit="Hz", gt=0.0, doc="Rate of the timer.")
+        publisher = Publisher(String, "warm_up")
 
         @timer(hz=rate)
-        async def say(self) -> None:
-            self.log.debug("It says: '%s'", "something")
-            self.said.publish(String(data="something"))
+        async def publish(self) -> None:
+            self.log.debug("publishing: '%s'", "something")
+            self.publisher.publish(String(data="something"))
 
-        @subscription(String, "said")
-        async def hear(self, message: String) -> None:
+        @subscription(String, "warm_up")
+        async def receive(self, message: String) -> None:
             done.set()
 
     context = Context(Network().session(asyncio.get_running_loop()))
     node = WarmUp()
     node.log.setLevel(logging.DEBUG)
     await core_of(node).start(context)
-    with suppress(TimeoutError):  # then the workers do everything for the first time, and the graph runs anyway
+    with suppress(TimeoutError):  # without warm caches the workers only start more slowly
         async with asyncio.timeout(LIMIT):
             await done.wait()
     await core_of(node).stop()

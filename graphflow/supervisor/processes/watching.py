@@ -1,4 +1,4 @@
-"""`up --watch`: nodes are started again when their source has changed."""
+"""`up --watch`: restart nodes when their source has changed."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from pathlib import Path
 from graphflow.errors import SupervisorError
 from graphflow.reading import found_bytes
 
-LOOK_EVERY = 0.5
-"""Seconds between two looks at the files."""
+CHECK_EVERY = 0.5
+"""Seconds between two checks of the files."""
 _SKIPPED = {"__pycache__", ".venv", "venv", ".git", "node_modules"}
 MAX_FILES = 2000
-"""Source files of a project that are looked at."""
+"""Largest number of source files that are watched besides those of node classes."""
 
 
 class Watch:
-    """Looks at the Python files of a project.
+    """The watch over the Python files of a project.
 
-    A change in a file with a node class concerns the nodes of that file; one in any other file of the project, which
-    they may import, concerns all.
+    A change in a file with a node class restarts the nodes of that file; one in any other file, which all may import,
+    restarts all.
 
     Args:
         root: The project's folder.
-        nodes: Nodes by the file that has their class.
-        restart: Starts a node again.
-        note: Called with what is done, and why something is not.
+        nodes: Nodes by the file that defines their class.
+        restart: Restarts a node.
+        note: Called with each change, and with the reason if it restarts nothing.
     """
 
     def __init__(
@@ -45,13 +45,13 @@ class Watch:
         for path in {*files[:MAX_FILES], *self._nodes}:
             try:
                 stat = path.stat()
-            except OSError:  # it is being written anew
+            except OSError:  # it is being replaced by an editor
                 continue
             found[path] = (stat.st_mtime_ns, stat.st_size)
         return found
 
-    def look(self) -> None:
-        """Start again what has changed since the last look."""
+    def check(self) -> None:
+        """Restart the nodes whose files have changed since the last check."""
         stamps = self._stamps()
         changed = [path for path, stamp in stamps.items() if self._seen.get(path, stamp) != stamp]
         self._seen |= stamps
@@ -59,20 +59,23 @@ class Watch:
         for path in sorted(changed):
             try:
                 compile(found_bytes(path), str(path), "exec")
-            except (SyntaxError, ValueError, OSError) as error:
-                line = getattr(error, "lineno", None)
-                self._note(f"{path}{f':{line}' if line else ''}: {getattr(error, 'msg', error)}; nothing was restarted")
+            except SyntaxError as error:
+                line = f":{error.lineno}" if error.lineno else ""
+                self._note(f"{path}{line}: {error.msg}; nothing was restarted")
+                return
+            except (ValueError, OSError) as error:
+                self._note(f"{path}: {error}; nothing was restarted")
                 return
             self._note(f"{path} has changed")
             names += self._nodes.get(path) or [name for group in self._nodes.values() for name in group]
         for name in dict.fromkeys(names):
             try:
                 self._restart(name)
-            except SupervisorError as error:  # the graph is being stopped, or the node has not begun yet
+            except SupervisorError as error:  # the graph is being stopped, or the node has not been started yet
                 self._note(str(error))
 
     async def run(self) -> None:
-        """Look for as long as the graph runs."""
+        """Check until cancelled."""
         while True:
-            await asyncio.sleep(LOOK_EVERY)
-            self.look()
+            await asyncio.sleep(CHECK_EVERY)
+            self.check()

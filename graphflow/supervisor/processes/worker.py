@@ -15,7 +15,7 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from graphflow.analysis.user_code import place_in, users_part
 from graphflow.errors import GraphflowError, TransitionFailed
@@ -44,6 +44,11 @@ from graphflow.supervisor.processes.orphaned import LOG_VARIABLE, Orphan
 from graphflow.system import end_with_parent
 from graphflow.transport.event_loop import loop
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graphflow.supervisor.processes.messages import NodeJson, ProcessEvent, WorkerJob
+
 STOP_SIGNALS = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
 """Signals that the preload process blocks; a worker unblocks them once it can act on them."""
 PIPE_BUF = 4096
@@ -51,15 +56,15 @@ PIPE_BUF = 4096
 CONNECT_LIMIT = 5.0
 """Seconds that reaching the supervisor may take, over loopback."""
 BEAT_EVERY = 1.0
-"""Seconds between two words of the event loop."""
+"""Seconds between two beats of the event loop."""
 EXIT_ERROR = 70
 """Exit code: a node failed while it ran."""
 EXIT_CONFIGURATION = 78
-"""Exit code: a node could not be made; starting it again would not help."""
+"""Exit code: a node could not be created; another start would not help."""
 
 
 def make_node(planned: PlannedNode, file: str) -> Node:
-    """Make the node that a plan describes.
+    """Create a node as planned.
 
     Args:
         file: The graph file.
@@ -72,7 +77,7 @@ def make_node(planned: PlannedNode, file: str) -> Node:
     overrides = {
         name: (setting.value, str(setting.place)) for name, setting in _known(planned, cls.interface()).items()
     }
-    given = NodeOptions(
+    options = NodeOptions(
         names.name,
         names.namespace,
         [r.remap() for r in planned.remaps],
@@ -81,17 +86,17 @@ def make_node(planned: PlannedNode, file: str) -> Node:
     )
     if planned.log_level:
         node_logger(planned.name).setLevel(log_level(planned.log_level))
-    node = make_within(cls, given, names.name)
+    node = make_within(cls, options, names.name)
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")
-    core = core_of(node)  # which needs its __init__ to have called ours
+    core = core_of(node)  # raises if the class did not call `Node.__init__`
     if isinstance(core, ManagedCore) and planned.lifecycle:
         core.target = LifecycleState[planned.lifecycle.upper()]
     return node
 
 
 def _known(planned: PlannedNode, interface: Interface) -> dict[str, Setting]:
-    """The parameters that a node has of those that it is given; what a launch file has for it alone is told."""
+    """Return the planned parameters that the node declares; warn about others that only a launch file sets."""
     known: dict[str, Setting] = {}
     for name, setting in planned.params.items():
         is_there = interface.param(name) is not None or (setting.is_unchecked and interface.dynamic_names is True)
@@ -105,37 +110,34 @@ def _known(planned: PlannedNode, interface: Interface) -> dict[str, Setting]:
 
 
 class Reporter(Protocol):
-    """A worker's line to its supervisor."""
+    """A worker's connection to its supervisor."""
 
-    def tell(self, **event: Any) -> None: ...
+    def report(self, event: ProcessEvent) -> None: ...
 
     def is_open(self) -> bool:
-        """Whether something can be told without waiting for a supervisor that does not read."""
+        """Whether an event can be written without waiting for a supervisor that does not read."""
 
     def listen(self, stop: Callable[[], object], order: Callable[[bytes], object]) -> None:
-        """Call `stop` when the supervisor asks for the end over this line, and `order` with each line that is an order.
+        """Call `stop` on a request to stop, and `order` with each line that is an order.
 
         They are called on the loop, which must run.
         """
 
     def close(self) -> None:
-        """Say nothing more: this process is about to end."""
+        """Report nothing more: this process is about to end."""
 
 
 class PipeReporter:
-    """Events go into a pipe that all workers share, orders come out of another; to be stopped takes a signal."""
+    """Events into a pipe that all workers share, orders out of one of its own; a signal stops the worker."""
 
     def __init__(self, pipe: int, orders: int, orphan: Orphan) -> None:
         self._pipe, self._orders, self._orphan = pipe, orders, orphan
         self._unread = b""
         orphan.end_on_sigterm()
 
-    def tell(self, **event: Any) -> None:
-        # In one write: a pipe keeps lines of up to 4096 bytes together.
-        while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
-            event["error"] = event["error"][: len(event["error"]) // 2]
+    def report(self, event: ProcessEvent) -> None:
         with suppress(BrokenPipeError):  # the supervisor has gone, and this process will
-            os.write(self._pipe, line + b"\n")
+            os.write(self._pipe, _line_within(PIPE_BUF, event))
 
     def is_open(self) -> bool:
         return bool(select.select([], [self._pipe], [], 0)[1])
@@ -144,17 +146,27 @@ class PipeReporter:
         self._orphan.end_own()
 
     def listen(self, stop: Callable[[], object], order: Callable[[bytes], object]) -> None:
-        """Only for orders: signals stop this worker."""
+        """Listen for orders only: signals stop this worker."""
         self._orphan.watch()
         asyncio.get_running_loop().add_reader(self._orders, self._read, order)
 
     def _read(self, order: Callable[[bytes], object]) -> None:
         data = os.read(self._orders, 1 << 16)
-        if not data:  # nobody is left who could say something
+        if not data:  # the preload process has ended: no order can come
             asyncio.get_running_loop().remove_reader(self._orders)
         *lines, self._unread = (self._unread + data).split(b"\n")
         for line in lines:
             order(line)
+
+
+def _line_within(bound: int, event: ProcessEvent) -> bytes:
+    """Encode an event as a line; a long error is cut, for a pipe keeps only writes of up to PIPE_BUF bytes whole."""
+    plain: dict[str, object] = {**event}
+    line = json.dumps(plain).encode()
+    while len(line) >= bound and isinstance(error := plain.get("error"), str) and error:
+        plain["error"] = error[: len(error) // 2]
+        line = json.dumps(plain).encode()
+    return line + b"\n"
 
 
 class SocketReporter:
@@ -163,13 +175,16 @@ class SocketReporter:
     def __init__(self, port: int, token: str, process: str) -> None:
         self._socket = socket.create_connection(("127.0.0.1", port), timeout=CONNECT_LIMIT)
         self._socket.settimeout(None)
-        self._heard: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._received: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._wake: Callable[[], object] = lambda: None
-        self.tell(token=token, process=process)
+        self._send({"token": token, "process": process})
         threading.Thread(target=self._listen, name="graphflow-supervisor", daemon=True).start()
 
-    def tell(self, **event: Any) -> None:
-        self._socket.sendall(json.dumps(event).encode() + b"\n")
+    def report(self, event: ProcessEvent) -> None:
+        self._send(event)
+
+    def _send(self, message: Mapping[str, object]) -> None:
+        self._socket.sendall(json.dumps(message).encode() + b"\n")
 
     def is_open(self) -> bool:
         return bool(select.select([], [self._socket], [], 0)[1])
@@ -178,28 +193,28 @@ class SocketReporter:
         loop = asyncio.get_running_loop()
 
         def take() -> None:
-            while not self._heard.empty():
-                line = self._heard.get()
+            while not self._received.empty():
+                line = self._received.get()
                 stop() if json.loads(line)["do"] == "stop" else order(line)
 
         self._wake = lambda: loop.call_soon_threadsafe(take)
-        take()
+        take()  # lines that came before
 
     def close(self) -> None:
-        """The supervisor ends what is left."""
+        """Do nothing: the supervisor ends what this process leaves."""
 
     def _listen(self) -> None:
         # Not on the loop: even a node whose loop is blocked must not outlive its supervisor.
         with self._socket.makefile("rb") as lines, suppress(OSError):  # an error counts as the end
             for line in lines:
-                self._heard.put(line)
+                self._received.put(line)
                 self._wake()
         _end_children()
         os._exit(EXIT_ERROR)
 
 
 def _end_children() -> None:
-    """End what this process has started."""
+    """End the processes that this one has started."""
     import psutil
 
     for child in psutil.Process().children(recursive=True):
@@ -207,70 +222,74 @@ def _end_children() -> None:
             child.kill()
 
 
-def main(job: dict[str, Any], report: Reporter) -> None:
-    """Run a worker to its end; does not return.
-
-    Args:
-        job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`,
-            `allow_control`, `debug` and `log`, the file that its output goes to.
-    """
+def main(job: WorkerJob, reporter: Reporter) -> None:
+    """Run a worker to its end; does not return."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable(2)
-    process_tree.name_process(job["process"].rpartition("/")[2], " ".join(node["name"] for node in job["nodes"]))
+    process = job["process"]
+    process_tree.name_process(process.rpartition("/")[2], " ".join(str(node["name"]) for node in job["nodes"]))
     if "log" in job:
-        logfile.write_to(job["log"], lambda why: report.tell(event="log_lost", process=job["process"], why=why))
+        logfile.write_to(job["log"], lambda why: reporter.report({"event": "log_lost", "process": process, "why": why}))
     if hasattr(signal, "SIGUSR2"):
         faulthandler.register(signal.SIGUSR2, 2)  # `kill -USR2` logs where a process hangs, even in C
     setup_console()
     code = 0
     try:
         if job["debug"]:
-            debugging.wait_for_debugger(partial(report.tell, event="debugging", process=job["process"]))
+            debugging.wait_for_debugger(
+                lambda port: reporter.report({"event": "debugging", "process": process, "port": port})
+            )
         add_root(job["root"])
-        nodes = [_make(job, report, data) for data in job["nodes"]]
-    except Exception as error:
+        nodes = [_make(job, reporter, data) for data in job["nodes"]]
+    except Exception as error:  # importing and creating nodes runs the user's code, which may raise anything
         _log_failure(error)
-        report.tell(event="failed", process=job["process"], error=_one_line(error))
+        reporter.report({"event": "failed", "process": process, "error": _one_line(error)})
         code = EXIT_CONFIGURATION
     else:
-        code = loop.run(_run(nodes, job, report))
+        code = loop.run(_run(nodes, job, reporter))
     sys.stdout.flush()
     sys.stderr.flush()
-    report.close()
+    reporter.close()
     # Zenoh's threads can keep an interpreter from ending.
     os._exit(code)
 
 
-async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
+async def _run(nodes: list[Node], job: WorkerJob, reporter: Reporter) -> int:
+    process = job["process"]
     stop = StopRequest()
     catch_signals(stop)
     ready: list[Node] = []
 
     def is_ready(node: Node) -> None:
         ready.append(node)
-        report.tell(event="ready", process=job["process"], node=node.full_name)
+        reporter.report({"event": "ready", "process": process, "node": node.full_name})
 
     context = obeying = None
-    beating = asyncio.create_task(_beat(report, job["process"]))
+    beating = asyncio.create_task(_beat(reporter, process))
     try:
-        rules = {"deadlock": job["deadlock"], "call_timeout": job["call_timeout"]}
-        context = await Context.open(job["domain"], mode=job["mode"], checked=True, **rules)
+        context = await Context.open(
+            job["domain"],
+            mode=job["mode"],
+            checked=True,
+            deadlock=job["deadlock"],
+            call_timeout=job["call_timeout"],
+        )
         if job["debug"]:
             context.search.watchdog.close()  # a loop that stands at a breakpoint is not blocked
         company = Company(context, stop, is_ready)
-        orders = Orders(company, partial(_make, job, report), partial(report.tell, process=job["process"]))
+        orders = Orders(company, process, partial(_make, job, reporter), reporter.report)
         orders.count(nodes)
         if job["allow_control"]:
-            Container(nodes[0], orders, job["process"], job["root"], report.tell)
-        report.listen(stop.set, orders.take)
+            Container(nodes[0], orders, process, job["root"], reporter.report)
+        reporter.listen(stop.set, orders.take)
         obeying = asyncio.create_task(orders.run())
         await company.run(nodes)
-    except Exception as error:
+    except Exception as error:  # nodes run the user's code, which may raise anything
         at_start = len(ready) < len(nodes)
-        if at_start and not any(core_of(node).failure is error for node in nodes):  # which has logged it
+        if at_start and not any(core_of(node).failure is error for node in nodes):  # that node has logged it
             _log_failure(error)
-        report.tell(event="failed", process=job["process"], error=_one_line(error))
+        reporter.report({"event": "failed", "process": process, "error": _one_line(error)})
         is_for_good = isinstance(error, GraphflowError) and not isinstance(error, TransitionFailed)
         return EXIT_CONFIGURATION if at_start and is_for_good else EXIT_ERROR
     finally:
@@ -283,26 +302,26 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
     return 0
 
 
-def _make(job: dict[str, Any], report: Reporter, described: dict[str, Any]) -> Node:
-    """A node of this worker."""
+def _make(job: WorkerJob, reporter: Reporter, described: NodeJson) -> Node:
+    """Create a node of this worker."""
     node = make_node(node_from_json(described), job["file"])
     core = core_of(node)
     if isinstance(core, ManagedCore):
-        core.on_state = partial(_tell_state, report, job["process"], node.full_name)
+        core.on_state = partial(_report_state, reporter, job["process"], node.full_name)
     return node
 
 
-def _tell_state(report: Reporter, process: str, node: str, state: LifecycleState) -> None:
-    if report.is_open():
-        report.tell(event="lifecycle", process=process, node=node, state=state.label)
+def _report_state(reporter: Reporter, process: str, node: str, state: LifecycleState) -> None:
+    if reporter.is_open():
+        reporter.report({"event": "lifecycle", "process": process, "node": node, "state": state.label})
 
 
-async def _beat(report: Reporter, process: str) -> None:
-    """Say that the loop goes round, as long as it does."""
+async def _beat(reporter: Reporter, process: str) -> None:
+    """Report that the loop goes round, as long as it does."""
     while True:
         try:
-            if report.is_open():
-                report.tell(event="beat", process=process)
+            if reporter.is_open():
+                reporter.report({"event": "beat", "process": process})
         except OSError:  # the supervisor has gone, and this process will
             return
         await asyncio.sleep(BEAT_EVERY)
@@ -347,15 +366,16 @@ def _line_buffered() -> None:
 
 
 def _start() -> None:
-    """Begin in an interpreter of its own: `PIPE PIPE PARENT` under a preload process, else `PORT`; the job on stdin."""
+    """Run as a program: with `PIPE PIPE PARENT` under a preload process, else with `PORT`; the job is on stdin."""
     _line_buffered()
     if len(sys.argv) == 4:
         status, orders, parent = map(int, sys.argv[1:])
         end_with_parent(parent, signal.SIGTERM)
-        job = json.load(sys.stdin)
-        main(job, PipeReporter(status, orders, Orphan(parent, status, orders, os.environ[LOG_VARIABLE])))
-    given = json.load(sys.stdin)
-    main(given["job"], SocketReporter(int(sys.argv[1]), given["token"], given["job"]["process"]))
+        main(
+            json.load(sys.stdin), PipeReporter(status, orders, Orphan(parent, status, orders, os.environ[LOG_VARIABLE]))
+        )
+    start = json.load(sys.stdin)
+    main(start["job"], SocketReporter(int(sys.argv[1]), start["token"], start["job"]["process"]))
 
 
 if __name__ == "__main__":

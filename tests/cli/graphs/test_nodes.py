@@ -93,7 +93,7 @@ def test_waiting(standing: Machine) -> None:
 def test_what_cannot_be_done(standing: Machine) -> None:
     """A command that cannot be carried out is an error."""
     text = standing.look("start", "/talker", code=1)
-    assert "/talker runs already: it is ready; to begin anew: graphflow restart /talker" in text
+    assert "/talker runs already: it is ready; to start it again: graphflow restart /talker" in text
     assert "lab.yaml is a graph file; start it with: graphflow up lab.yaml" in standing.look(
         "start", "lab.yaml", code=2
     )

@@ -31,11 +31,12 @@ def planned(class_path: str) -> dict[str, Any]:
 
 async def start(starter: Starter) -> None:
     """Start one worker after another, each of which ends by itself or is ended."""
-    heard = asyncio.Queue[dict[str, Any]]()
+    heard = asyncio.Queue[Any]()
     await starter.open(ROOT / "supervisor.log", heard.put_nowait, lambda how: print("lost", how))
 
     async def follow(name: str, class_path: str, env: dict[str, str], end: Callable[[str, int], None] | None) -> None:
-        job = {"process": name, "file": "lab.yaml", "root": str(ROOT), "nodes": [planned(class_path)], "debug": False}
+        nodes = [planned(class_path)]
+        job: Any = {"process": name, "file": "lab.yaml", "root": str(ROOT), "nodes": nodes, "debug": False}
         (log := ROOT / f"{name}.log").touch()
         starter.spawn(name, job, str(log), env)
         pid = 0

@@ -32,7 +32,7 @@ class Listener:
     async def hear(self, count: int) -> list[dict[str, Any]]:
         return [await self.events.get() for _ in range(count)]
 
-    def listen(self, channel: socket.socket | int) -> Lines:
+    def listen(self, channel: socket.socket | int) -> Lines[dict[str, Any]]:
         return Lines(channel, self.events.put_nowait, self.lost.set)
 
 
@@ -89,8 +89,8 @@ async def test_requests(pair: tuple[socket.socket, socket.socket]) -> None:
     """A line each; while one waits for the other end to read, nothing is lost, and events are heard afterwards."""
     mine, other = pair
     lines = (listener := Listener()).listen(mine)
-    lines.send(do="spawn", process="/a")
-    lines.send(do="log")
+    lines.send({"do": "spawn", "process": "/a"})
+    lines.send({"do": "log"})
     assert other.recv(4096) == b'{"do": "spawn", "process": "/a"}\n{"do": "log"}\n'
     other.sendall(b'{"n": 1}\n')
     assert await listener.hear(1) == [{"n": 1}]
@@ -103,7 +103,7 @@ async def test_a_request_to_one_that_does_not_read(pair: tuple[socket.socket, so
     mine, other = pair
     lines = Listener().listen(mine)
     for number in range(200):
-        lines.send(number=number, job="x" * 10_000)
+        lines.send({"number": number, "job": "x" * 10_000})
     other.setblocking(False)
     data = b""
     while data.count(b"\n") < 200:
@@ -119,7 +119,7 @@ async def test_a_request_to_nobody(pair: tuple[socket.socket, socket.socket]) ->
     mine, other = pair
     lines = (listener := Listener()).listen(mine)
     other.shutdown(socket.SHUT_RD)
-    lines.send(do="spawn")
+    lines.send({"do": "spawn"})
     assert not listener.lost.is_set()
     await listener.lost.wait()
     lines.close()

@@ -6,29 +6,29 @@ from typing import Any
 
 import pytest
 
-from graphflow.supervisor.control.clients import HISTORY, LAYOUT_BOUND, WORDS_BOUND, Clients
+from graphflow.supervisor.control.clients import HISTORY, LAYOUT_BOUND, TEXT_BOUND, Clients
 
 
 def test_those_who_come_later_are_told_what_happened() -> None:
     """Not who else has come meanwhile; and not more than so many events."""
     clients = Clients(lambda: None)
     for i in range(HISTORY + 5):
-        clients.tell(event="note", text=str(i))
+        clients.broadcast({"event": "note", "text": str(i)})
     clients.announce("restart /a", "pts/1")
-    heard: list[dict[str, Any]] = []
+    heard: list[Any] = []
     stop = clients.subscribe(heard.append, replay=True)
     assert len(heard) == HISTORY
     assert heard[-1]["text"] == str(HISTORY + 4)
-    clients.tell(event="up")
+    clients.broadcast({"event": "checked"})
     stop()
-    clients.tell(event="end")
-    assert heard[-1] == {"event": "up"}
+    clients.broadcast({"event": "end", "exit_code": 0})
+    assert heard[-1] == {"event": "checked"}
 
 
 def test_consoles_come_and_go() -> None:
     """All are told who is there; the last one that leaves is noticed."""
     left: list[str] = []
-    heard: list[dict[str, Any]] = []
+    heard: list[Any] = []
     clients = Clients(lambda: left.append("empty"))
     clients.subscribe(heard.append, replay=False)
     first, second = clients.join("pts/1"), clients.join("pts/2")
@@ -44,7 +44,7 @@ def test_names_and_announcements_are_bounded_and_printable() -> None:
     """Whatever a client may call itself."""
     clients = Clients(lambda: None)
     clients.join("\x1b[31m" + "x" * 1000)
-    assert len(clients.consoles[0]["name"]) <= WORDS_BOUND + 10
+    assert len(clients.consoles[0]["name"]) <= TEXT_BOUND + 10
     assert "\x1b" not in clients.consoles[0]["name"]
 
 

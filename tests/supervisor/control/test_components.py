@@ -33,14 +33,20 @@ class Worker:
         self.is_silent = False
         self.number = 10
 
-    def tell(self, process: str, order: dict[str, Any]) -> None:
+    def send_order(self, process: str, order: dict[str, Any]) -> None:
         self.orders.append(order)
         if self.is_silent:
             return
         name = order["node"]["name"] if order["do"] == "load" else order["node"]
         self.number += 1
-        told = {"event": "obeyed", "process": process, "order": order["order"], "node": name, "number": self.number}
-        asyncio.get_running_loop().call_soon(self.components.heard, told | {"error": self.error})
+        told: Any = {
+            "event": "obeyed",
+            "process": process,
+            "order": order["order"],
+            "node": name,
+            "number": self.number,
+        }
+        asyncio.get_running_loop().call_soon(self.components.on_event, told | {"error": self.error})
 
 
 class Stage:
@@ -130,9 +136,9 @@ async def test_a_worker_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) ->
     with pytest.raises(SupervisorError, match="/c did not answer within"):
         await stage.components.load("/c", node("/x"))
     number = stage.worker.orders[0]["order"]
-    late = {"event": "obeyed", "process": "/c", "order": number, "node": "/x", "number": 2, "error": ""}
-    stage.components.heard(late)
-    stage.components.heard(late)  # a second time it is nothing
+    late: Any = {"event": "obeyed", "process": "/c", "order": number, "node": "/x", "number": 2, "error": ""}
+    stage.components.on_event(late)
+    stage.components.on_event(late)  # a second time it is nothing
     assert stage.changes == [("/c", "/x", True)]
     assert stage.processes[1].numbers == {"/c": 1, "/x": 2}
 
@@ -154,8 +160,8 @@ async def test_an_answer_of_another_process_is_none() -> None:
     stage.worker.is_silent = True
     loading = asyncio.create_task(stage.components.load("/c", node("/x")))
     await asyncio.sleep(0)
-    forged = {"event": "obeyed", "process": "tutorial", "order": stage.worker.orders[0]["order"]}
-    stage.components.heard(forged | {"node": "/x", "number": 1, "error": ""})
+    forged: Any = {"event": "obeyed", "process": "tutorial", "order": stage.worker.orders[0]["order"]}
+    stage.components.on_event(forged | {"node": "/x", "number": 1, "error": ""})
     await asyncio.sleep(0)
     assert not loading.done()
     stage.components.lost(stage.processes[1])
@@ -192,9 +198,9 @@ async def test_two_nodes_of_one_name_at_once() -> None:
 async def test_what_joins_without_an_order() -> None:
     """Loaded by ROS 2's service, for graphs that allow it."""
     stage = Stage()
-    joined = {"event": "joined", "process": "/c", "node": node("/x").to_json(), "number": 5}
-    stage.components.heard(joined)
+    joined: Any = {"event": "joined", "process": "/c", "node": node("/x").to_json(), "number": 5}
+    stage.components.on_event(joined)
     assert stage.processes[1].numbers == {"/c": 1, "/x": 5}
-    stage.components.heard({"event": "left", "process": "/c", "node": "/x"})
+    stage.components.on_event({"event": "left", "process": "/c", "node": "/x"})
     assert stage.processes[1].numbers == {"/c": 1}
     assert stage.changes == [("/c", "/x", True), ("/c", "/x", False)]

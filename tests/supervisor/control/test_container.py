@@ -15,6 +15,7 @@ from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.process_nodes import Company
 from graphflow.supervisor.control.container import Container
 from graphflow.supervisor.control.orders import Orders
+from graphflow.supervisor.processes.messages import NodeJson
 from graphflow.supervisor.processes.worker import make_node
 from graphflow.testing import Graph
 from tests.conftest import PROJECT
@@ -35,15 +36,15 @@ class Stage:
         self.stop = StopRequest()
         context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
         company = Company(context, self.stop)
-        self.told: list[dict[str, Any]] = []
+        self.told: list[Any] = []
 
-        def tell(**event: Any) -> None:
-            self.told.append(event)
+        def make(described: NodeJson) -> Node:
+            return make_node(node_from_json(described), "g.yaml")
 
-        orders = Orders(company, lambda described: make_node(node_from_json(described), "g.yaml"), tell)
+        orders = Orders(company, "/first", make, self.told.append)
         first = Node("first")
         orders.count([first])
-        Container(first, orders, "/first", str(PROJECT), tell)
+        Container(first, orders, "/first", str(PROJECT), self.told.append)
         self.running = asyncio.create_task(company.run([first]))
 
     async def load(self, plugin: str, **fields: Any) -> LoadNode.Response:

@@ -10,6 +10,7 @@ from graphflow import Context, GraphflowError, Node
 from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.process_nodes import Company
 from graphflow.supervisor.control.orders import Orders
+from graphflow.supervisor.processes.messages import Obeyed
 from graphflow.testing import Graph
 from tests.runtime.cast import Speaker
 
@@ -27,15 +28,15 @@ class Stage:
         self.context = Context(session, clock=graph.clock)
         self.stop = StopRequest()
         self.company = Company(self.context, self.stop)
-        self.told: list[dict[str, Any]] = []
-        self.orders = Orders(self.company, self.make, lambda **event: self.told.append(event))
+        self.told: list[Obeyed] = []
+        self.orders = Orders(self.company, "/p", self.make, self.told.append)
 
     def make(self, described: dict[str, Any]) -> Node:
         if described["class"] == "unknown":
             raise GraphflowError("there is no such class")
         return Broken(described["name"]) if described["class"] == "broken" else Speaker(described["name"])
 
-    async def obey(self, *orders: dict[str, Any]) -> list[dict[str, Any]]:
+    async def obey(self, *orders: dict[str, Any]) -> list[Obeyed]:
         """Run for as long as the orders take."""
         first = Speaker("first")
         self.orders.count([first])

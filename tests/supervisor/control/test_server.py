@@ -38,10 +38,10 @@ class Graph:
     def _empty(self) -> None:
         self.emptied += 1
 
-    def hello(self) -> dict[str, Any]:
+    def hello(self) -> Any:
         return {"event": "hello", "graph": "g", "layout": self.clients.layout}
 
-    def describe(self) -> list[dict[str, Any]]:
+    def describe(self) -> Any:
         return [{"node": "/a"}]
 
     def begin_stop(self, *, now: bool, reason: str) -> None:
@@ -119,13 +119,13 @@ async def test_a_stop_that_comes_late(portable: bool, tmp_path: Path) -> None:
     graph = Graph()
     server = ControlServer(graph)
     address = await server.open(tmp_path / "server.sock")
-    graph.clients.tell(event="exited", nodes=["/a"])
-    graph.clients.tell(event="end", exit_code=1)
+    graph.clients.broadcast({"event": "note", "text": "/a"})
+    graph.clients.broadcast({"event": "end", "exit_code": 1})
 
     def take_down() -> list[str]:
         with ControlClient(address) as client:
             client.send(do="down", now=False)
             return [event["event"] for event in client.receive()]
 
-    assert await asyncio.wait_for(asyncio.to_thread(take_down), 5.0) == ["exited", "end"]
+    assert await asyncio.wait_for(asyncio.to_thread(take_down), 5.0) == ["note", "end"]
     await server.close()

@@ -57,7 +57,7 @@ def test_without_debugpy(monkeypatch: pytest.MonkeyPatch) -> None:
     """What to install is told."""
     monkeypatch.setitem(sys.modules, "debugpy", None)
     with pytest.raises(GraphflowError, match="pip install debugpy"):
-        wait_for_debugger(lambda **_: None)
+        wait_for_debugger(lambda port: None)
 
 
 def test_the_port_is_told_before_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -106,10 +106,10 @@ async def test_what_a_worker_said_before_it_ended_is_heard_first(
     made = ForkingStarter(())
     await made.open(tmp_path / "log", lambda event: heard.append(event["event"]), lambda _: None)
     preloads.sendall(b'{"event": "spawned", "process": "/a", "pid": 4194305}\n')
-    made._lines[0].read()
+    made._preload.read()
     os.write(status_write, b'{"event": "ready"}\n')
     preloads.sendall(b'{"event": "exited", "process": "/a", "pid": 4194305, "status": 0}\n')
-    made._lines[0].read()
+    made._preload.read()
     assert heard == ["spawned", "ready", "exited"]
     await made.close()
     for end in (mine, preloads):
@@ -127,26 +127,27 @@ async def test_a_worker_that_is_started_before_it_is_asked_for(monkeypatch: pyte
     monkeypatch.setattr(preload, "start", lambda keep: (mine, status_read, 0))
     heard: list[str] = []
     made = ForkingStarter(())
-    start = Start("/a", {"nodes": []}, "a.log", {})
+    job: Any = {"nodes": []}
+    start = Start("/a", job, "a.log", {})
     made.begin([start])
     spawn = b'{"do": "spawn", "process": "/a", "job": {"nodes": []}, "log": "a.log", "env": {}}\n'
     assert preloads.recv(4096) == spawn
 
     await made.open(tmp_path / "log", lambda event: heard.append(event["event"]), lambda _: None)
     preloads.sendall(b'{"event": "spawned", "process": "/a", "pid": 4194305}\n')
-    made._lines[0].read()
+    made._preload.read()
     os.write(status_write, b'{"event": "ready", "process": "/a"}\n')
-    made._lines[1].read()
+    made._reports.read()
     assert heard == []
     made.spawn(*start)
     os.write(status_write, b'{"event": "beat", "process": "/a"}\n')
-    made._lines[1].read()
+    made._reports.read()
     await asyncio.sleep(0)
     assert heard == ["spawned", "ready", "beat"]
     made.spawn(*start)
     assert preloads.recv(4096).splitlines(keepends=True)[1:] == [spawn]
     preloads.sendall(b'{"event": "exited", "process": "/a", "pid": 4194305, "status": 0}\n')
-    made._lines[0].read()
+    made._preload.read()
     assert heard[3:] == ["exited"]
     await made.close()
     for end in (mine, preloads):

@@ -12,7 +12,7 @@ from graphflow.errors import Place
 from graphflow.graph.plan import PlannedNode
 from graphflow.machines.process import State
 from graphflow.supervisor.processes import health
-from graphflow.supervisor.processes.health import LOOK_EVERY, SILENCE, Health
+from graphflow.supervisor.processes.health import CHECK_EVERY, SILENCE, Health
 from graphflow.supervisor.processes.process import Process
 from tests.cases import slow
 from tests.conftest import Machine
@@ -32,14 +32,14 @@ class Ward:
         self.now = 100.0
         monkeypatch.setattr(health, "_why", lambda process: "it is blocked")
         self.health = Health([self.process], self.told.append)
-        self.health.look(self.now)
+        self.health.check(self.now)
 
     def looks(self, seconds: float, *, speaks: bool) -> None:
-        for _ in range(round(seconds / LOOK_EVERY)):
-            self.now += LOOK_EVERY
+        for _ in range(round(seconds / CHECK_EVERY)):
+            self.now += CHECK_EVERY
             if speaks:
-                self.process.heard = self.now
-            self.health.look(self.now)
+                self.process.last_beat = self.now
+            self.health.check(self.now)
 
 
 def test_silence_and_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,14 +47,14 @@ def test_silence_and_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     ward = Ward(monkeypatch)
     ward.looks(3.0, speaks=True)
     ward.looks(SILENCE, speaks=False)
-    assert (ward.told, ward.process.word) == ([], "ready")
+    assert (ward.told, ward.process.state_name) == ([], "ready")
     ward.looks(5.0, speaks=False)
     assert ward.told == ["/a has not answered for 4 s: it is blocked"]
-    assert ward.process.word == "unresponsive"
-    assert ward.process.detail.startswith("its event loop has said nothing for ")
+    assert ward.process.state_name == "unresponsive"
+    assert ward.process.detail.startswith("its event loop has not answered for ")
     ward.looks(1.0, speaks=True)
     assert ward.told[1:] == ["/a answers again, after 8 s"]
-    assert (ward.process.word, ward.process.detail) == ("ready", "")
+    assert (ward.process.state_name, ward.process.detail) == ("ready", "")
 
 
 def test_who_need_not_speak(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,7 +72,7 @@ def test_a_supervisor_that_was_held_up(monkeypatch: pytest.MonkeyPatch) -> None:
     ward = Ward(monkeypatch)
     ward.looks(1.0, speaks=True)
     ward.now += 60.0
-    ward.health.look(ward.now)
+    ward.health.check(ward.now)
     assert ward.told == []
     ward.looks(1.0, speaks=True)
     assert ward.told == []
@@ -102,4 +102,4 @@ def test_who_is_debugged_may_be_silent(monkeypatch: pytest.MonkeyPatch) -> None:
     ward.process.is_debugged = True
     ward.looks(1.0, speaks=True)
     ward.looks(10 * SILENCE, speaks=False)
-    assert (ward.told, ward.process.word) == ([], "ready")
+    assert (ward.told, ward.process.state_name) == ([], "ready")

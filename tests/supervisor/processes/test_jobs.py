@@ -8,6 +8,8 @@ from pathlib import Path
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import load
 from graphflow.supervisor.processes.jobs import MESH_LIMIT, first_starts
+from graphflow.supervisor.processes.messages import WorkerJob
+from graphflow.supervisor.processes.starter import Start
 
 LAB = """
 deadlock: report
@@ -28,6 +30,11 @@ def plan_of(folder: Path, text: str = LAB) -> Plan:
     return load(file, [])
 
 
+def job_of(start: Start) -> WorkerJob:
+    assert "nodes" in start.job
+    return start.job
+
+
 def test_the_first_are_workers_that_come_after_nothing(tmp_path: Path) -> None:
     """Programs, and processes of which a node comes after something, are started when their turn has come."""
     plan = plan_of(tmp_path)
@@ -35,9 +42,10 @@ def test_the_first_are_workers_that_come_after_nothing(tmp_path: Path) -> None:
     assert [*first] == ["/a", "shared"]
     a, shared = first.values()
     assert (a.env, shared.env) == ({"COLOUR": "blue"}, {"SHAPE": "round"})
-    assert [node["name"] for node in shared.job["nodes"]] == ["/b", "/c"]
-    assert (a.job["domain"], a.job["deadlock"], a.job["mode"], a.job["debug"]) == (7, "report", "peer", False)
-    assert a.job["log"] == a.log
+    assert [node["name"] for node in job_of(shared)["nodes"]] == ["/b", "/c"]
+    job = job_of(a)
+    assert (job["domain"], job["deadlock"], job["mode"], job["debug"]) == (7, "report", "peer", False)
+    assert job["log"] == a.log
     assert Path(a.log).parent == tmp_path
 
 
@@ -51,4 +59,4 @@ def test_one_that_is_debugged_is_not_among_them(tmp_path: Path) -> None:
 def test_more_than_a_mesh_carries_are_clients(tmp_path: Path) -> None:
     """Of the rendezvous."""
     many = "nodes:\n" + "".join(f'  /n{i}: {{class: "n:A"}}\n' for i in range(MESH_LIMIT + 1))
-    assert {start.job["mode"] for start in first_starts(plan_of(tmp_path, many), 7, tmp_path)} == {"client"}
+    assert {job_of(start)["mode"] for start in first_starts(plan_of(tmp_path, many), 7, tmp_path)} == {"client"}

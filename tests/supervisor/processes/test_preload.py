@@ -85,9 +85,9 @@ def test_what_a_probing_child_wrote() -> None:
     ended = {"problem": "the process that imported it was ended by exit code 0"}
     assert probe_result(b"", True, ["a:A", "b:B"], 0) == {"a:A": ended, "b:B": ended}
     killed = probe_result(b'{"a', True, ["a:A"], -signal.SIGKILL)["a:A"]["problem"]
-    assert killed.startswith("the process that imported it was ended by signal SIGKILL")
+    assert str(killed).startswith("the process that imported it was ended by signal SIGKILL")
     late = probe_result(b'{"a', False, ["a:A"], -signal.SIGKILL)["a:A"]["problem"]
-    assert late.startswith(f"importing it takes longer than {PROBE_LIMIT:.0f} s; ")
+    assert str(late).startswith(f"importing it takes longer than {PROBE_LIMIT:.0f} s; ")
 
 
 @pytest.mark.real
@@ -134,7 +134,7 @@ def test_a_supervisor_that_is_killed_before_it_has_read_all(monkeypatch: pytest.
         raise SystemExit
 
     monkeypatch.setattr(_Preload, "_end", end)
-    for find_out in (_Preload._hear, lambda made: made._answer({"event": "spawned"})):
+    for find_out in (_Preload._receive, lambda made: made._answer({"event": "spawned"})):
         mine, its = socket.socketpair()
         its.sendall(b"an answer that nobody reads\n")
         mine.close()

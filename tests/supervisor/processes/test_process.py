@@ -48,11 +48,14 @@ def test_what_is_wrong_with_it() -> None:
     process.state, process.log_error = State.READY, "the disk is full"
     assert process.detail == "its log is not written whole: the disk is full"
     process.state, process.exit, process.failed = State.ENDED, Exit(code=3), True
-    assert (process.word, process.detail) == ("failed", "exit code 3")
+    assert (process.state_name, process.detail) == ("failed", "exit code 3")
     process.given_up = "started again 5 times within 30 s"
-    assert (process.word, process.detail) == ("given_up", "exit code 3; given up: started again 5 times within 30 s")
+    assert (process.state_name, process.detail) == (
+        "given_up",
+        "exit code 3; given up: started again 5 times within 30 s",
+    )
     process.state, process.delay, process.since = State.WAITING, 5.0, time.time()
-    assert process.word == "waiting"
+    assert process.state_name == "waiting"
     assert process.detail.startswith("exit code 3; it is started again in ")
 
 
@@ -63,13 +66,13 @@ def test_a_new_start_forgets() -> None:
     process.waiting_for.clear()
     process.exit, process.error, process.failed, process.ready_since = Exit(code=1), "x", True, time.monotonic()
     assert process.ready_for >= 0.0
-    process.heard = process.silent_since = time.monotonic()
+    process.last_beat = process.silent_since = time.monotonic()
     process.numbers = {"/b": 1}
     process.begin()
     assert process.numbers == {"/a": 1, "/b": 2}
     assert process.detail == ""
     assert (process.failed, process.ready_for) == (False, 0.0)
-    assert {process.heard, process.silent_since} == {None}
+    assert {process.last_beat, process.silent_since} == {None}
     assert process.waiting_for == {"/a", "/b"}
     assert process.rows()[0]["restarts"] == 1
 
@@ -105,7 +108,7 @@ def test_the_time_that_a_process_may_stay_in_its_state() -> None:
     assert process.may_stay(2.0) == STOP_LIMIT
     process.put_in_threads("/b", ["tick"])
     assert process.may_stay(2.0) == STOP_LIMIT  # it has said nothing yet: it is new
-    process.heard = 0.0
+    process.last_beat = 0.0
     assert process.may_stay(1.4) == STOP_LIMIT
     assert process.may_stay(1.6) == BLOCKED_STOP_LIMIT < STOP_LIMIT
     process.state = State.STOPPING
@@ -113,7 +116,7 @@ def test_the_time_that_a_process_may_stay_in_its_state() -> None:
     process.state, process.delay = State.WAITING, 7.0
     assert process.may_stay(1.6) == 7.0
     process.begin()
-    process.state, process.heard = State.RESTARTING, 0.0
+    process.state, process.last_beat = State.RESTARTING, 0.0
     assert process.may_stay(1.6) == STOP_LIMIT
 
 

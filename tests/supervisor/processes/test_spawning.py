@@ -15,9 +15,9 @@ from graphflow.supervisor.processes.spawning import SpawningStarter
 pytestmark = [pytest.mark.real, pytest.mark.usefixtures("graphflow_runner")]
 
 
-async def opened(tmp_path: Path) -> tuple[SpawningStarter, list[dict[str, Any]], int]:
+async def opened(tmp_path: Path) -> tuple[SpawningStarter, list[Any], int]:
     """A starter, what it hears, and its port."""
-    starter, heard = SpawningStarter(), list[dict[str, Any]]()
+    starter, heard = SpawningStarter(), list[Any]()
     await starter.open(tmp_path / "supervisor.log", heard.append, lambda _: None)
     assert starter._server is not None
     return starter, heard, starter._server.sockets[0].getsockname()[1]
@@ -48,12 +48,12 @@ async def test_without_the_token_nobody_is_heard(tmp_path: Path, hello: bytes) -
 async def test_a_worker_that_shows_it_is_heard(tmp_path: Path) -> None:
     """What it tells comes as it is, until it tells nonsense."""
     starter, heard, port = await opened(tmp_path)
-    starter._silent["/a"] = asyncio.Event()
+    starter._disconnected["/a"] = asyncio.Event()
     hello = json.dumps({"token": starter._token, "process": "/a"}).encode() + b"\n"
     await say(port, hello, b'{"event": "ready"}\n', b"nonsense\n", b'{"event": "late"}\n')
     assert heard == [{"event": "ready"}]
-    assert starter._silent["/a"].is_set()
-    assert starter._voices == {}
+    assert starter._disconnected["/a"].is_set()
+    assert starter._connections == {}
     await starter.close()
 
 
@@ -72,7 +72,7 @@ async def test_ending_what_has_ended(tmp_path: Path) -> None:
 async def test_closing_ends_its_workers(tmp_path: Path) -> None:
     """Also one that has not yet connected."""
     starter, heard, _ = await opened(tmp_path)
-    job = {"process": "/a", "file": "lab.yaml", "root": str(tmp_path), "nodes": []}
+    job: Any = {"process": "/a", "file": "lab.yaml", "root": str(tmp_path), "nodes": []}
     starter.spawn("/a", job, str(tmp_path / "a.log"), {})
     while not heard:
         await asyncio.sleep(0)

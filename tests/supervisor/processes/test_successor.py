@@ -43,21 +43,21 @@ def run_of(guardian: int, logs: Path) -> GraphRun:
 def test_a_guardian_is_followed_by_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """But not for ever, and each time it is said; a process that merely has its number is none."""
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    assert Guard(run_of(0, tmp_path)).look() == ""
-    assert Guard(run_of(os.getppid(), tmp_path)).look() == ""
+    assert Guard(run_of(0, tmp_path)).check() == ""
+    assert Guard(run_of(os.getppid(), tmp_path)).check() == ""
 
     guard = Guard(run_of(1, tmp_path))
     for _ in range(INTENSITY.max_restarts):
         former = guard.run.guardian
-        told = guard.look()
+        told = guard.check()
         assert told == f"the guardian, process {former}, was ended; process {guard.run.guardian} has taken its place"
         assert guard.run.unguarded == ""
-        assert guard.look() == ""
+        assert guard.check() == ""
         psutil.Process(guard.run.guardian).kill()
         assert guard._successor is not None
         guard._successor.wait()
-    assert guard.look().endswith("the graph goes on without it: started again 3 times within 60 s")
-    assert guard.look() == ""
+    assert guard.check().endswith("the graph goes on without it: started again 3 times within 60 s")
+    assert guard.check() == ""
     assert guard._successor is not None
     assert guard._successor.stdin is not None
     guard._successor.stdin.close()

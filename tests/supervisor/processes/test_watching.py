@@ -38,18 +38,18 @@ class Desk:
 def test_who_is_started_again(tmp_path: Path) -> None:
     """The nodes of the file, or all of them if it is one that they may import; nothing if nothing has changed."""
     desk = Desk(tmp_path)
-    desk.watch.look()
+    desk.watch.check()
     assert (desk.restarted, desk.told) == ([], [])
     desk.write("a.py", "x = 2\n")
-    desk.watch.look()
+    desk.watch.check()
     assert (desk.restarted, desk.told) == (["/a1", "/a2"], [f"{tmp_path / 'a.py'} has changed"])
-    desk.watch.look()
+    desk.watch.check()
     desk.write(".venv/x.py", "x = 2\n")
     desk.write("new.py", "x = 1\n")
-    desk.watch.look()
+    desk.watch.check()
     assert len(desk.restarted) == 2
     desk.write("helper.py", "x = 2\n")
-    desk.watch.look()
+    desk.watch.check()
     assert desk.restarted[2:] == ["/a1", "/a2", "/b"]
 
 
@@ -57,13 +57,13 @@ def test_half_a_thought(tmp_path: Path) -> None:
     """A file that is no Python yet restarts nothing; when it is, it does, also if it was gone for a moment."""
     desk = Desk(tmp_path)
     desk.write("a.py", "def f(:\n")
-    desk.watch.look()
+    desk.watch.check()
     assert desk.restarted == []
     assert desk.told == [f"{tmp_path / 'a.py'}:1: invalid syntax; nothing was restarted"]
     (tmp_path / "a.py").unlink()
-    desk.watch.look()
+    desk.watch.check()
     desk.write("a.py", "def f(): ...\n")
-    desk.watch.look()
+    desk.watch.check()
     assert desk.restarted == ["/a1", "/a2"]
 
 
@@ -79,7 +79,7 @@ def test_what_cannot_be_restarted(tmp_path: Path) -> None:
 
     watch = Watch(tmp_path, {tmp_path / "a.py": ["/a1", "/a2"]}, restart, desk.told.append)
     desk.write("a.py", "x = 2\n")
-    watch.look()
+    watch.check()
     assert done == ["/a2"]
     assert "/a1 has not been started yet" in desk.told
 

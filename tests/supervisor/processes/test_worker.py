@@ -120,9 +120,9 @@ def test_a_node_that_cannot_be_made(node: PlannedNode, told: str) -> None:
 def test_a_report_keeps_in_one_piece() -> None:
     """A pipe that many write to mixes lines that are longer: an error is cut, the rest is not."""
     read, write = os.pipe()
-    report = PipeReporter(write, -1, Orphan(0, -1, -1, ""))
-    report.tell(event="ready", process="/a", node="/a")
-    report.tell(event="failed", process="/a", error="x" * 10_000)
+    reporter = PipeReporter(write, -1, Orphan(0, -1, -1, ""))
+    reporter.report({"event": "ready", "process": "/a", "node": "/a"})
+    reporter.report({"event": "failed", "process": "/a", "error": "x" * 10_000})
     os.close(write)
     with open(read, "rb") as pipe:
         ready, failed = pipe.read().splitlines(keepends=True)
@@ -148,15 +148,15 @@ def until_it_has_listened() -> None:
 async def test_a_worker_that_is_asked_to_stop(graphflow_runner: asyncio.Runner, ends: list[int]) -> None:
     """It shows its token first; a line asks it to stop, others are orders; when the line ends, so does it, at once."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        report = SocketReporter(server.getsockname()[1], "secret", "/a")
+        reporter = SocketReporter(server.getsockname()[1], "secret", "/a")
         stopped, orders = asyncio.Event(), list[bytes]()
-        report.listen(stopped.set, orders.append)
+        reporter.listen(stopped.set, orders.append)
         connection, _ = server.accept()
         with connection:
-            report.tell(event="ready")
+            reporter.report({"event": "beat", "process": "/a"})
             with connection.makefile("rb") as lines:
                 assert json.loads(lines.readline()) == {"token": "secret", "process": "/a"}
-                assert json.loads(lines.readline()) == {"event": "ready"}
+                assert json.loads(lines.readline()) == {"event": "beat", "process": "/a"}
             assert not stopped.is_set()
             connection.sendall(b'{"do": "load"}\n{"do": "stop"}\n')
             async with asyncio.timeout(10.0):
@@ -165,21 +165,21 @@ async def test_a_worker_that_is_asked_to_stop(graphflow_runner: asyncio.Runner, 
             assert ends == []
         until_it_has_listened()
     assert ends == [worker.EXIT_ERROR]
-    report._socket.close()
+    reporter._socket.close()
 
 
 async def test_a_worker_that_was_asked_before_it_could_stop(graphflow_runner: asyncio.Runner, ends: list[int]) -> None:
     """It stops as soon as it can."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        report = SocketReporter(server.getsockname()[1], "secret", "/a")
+        reporter = SocketReporter(server.getsockname()[1], "secret", "/a")
         connection, _ = server.accept()
         with connection:
             connection.sendall(b'{"do": "stop"}\n')
         until_it_has_listened()
     stopped: list[bool] = []
-    report.listen(lambda: stopped.append(True), nothing)
+    reporter.listen(lambda: stopped.append(True), nothing)
     assert stopped == [True]
-    report._socket.close()
+    reporter._socket.close()
 
 
 def nothing(line: bytes) -> None:

@@ -31,10 +31,10 @@ class Graph:
         self.asked: list[str] = []
         self.clients = Clients(lambda: self.asked.append("empty"))
 
-    def hello(self) -> dict[str, Any]:
+    def hello(self) -> Any:
         return {"event": "hello", "version": "0.0.0", "layout": self.clients.layout}
 
-    def describe(self) -> list[dict[str, Any]]:
+    def describe(self) -> Any:
         return [{"node": "/a", "state": "ready"}]
 
     def begin_stop(self, *, now: bool, reason: str) -> None:
@@ -161,7 +161,7 @@ async def test_what_was_asked_last_is_done(portable: str, tmp_path: Path, monkey
     task = asyncio.ensure_future(one.follow())
     await until(lambda: bool(one.nodes))
     for i in range(100):
-        graph.clients.tell(event="note", text=str(i))
+        graph.clients.broadcast({"event": "note", "text": str(i)})
         one.send(do="keep_layout", layout={"windows": [i]})
     await one.leave()
     assert graph.clients.layout == {"windows": [99]}
@@ -194,7 +194,7 @@ async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.Monkey
     one = Supervision(run_at(await server.open(tmp_path / "c.sock")), heard.append)
     task = asyncio.ensure_future(one.follow())
     await until(lambda: bool(one.nodes))
-    graph.clients.tell(event="end", exit_code=3)
+    graph.clients.broadcast({"event": "end", "exit_code": 3})
     await server.close()
     await asyncio.wait_for(task, 5.0)
     assert one.exit_code == 3

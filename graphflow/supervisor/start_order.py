@@ -1,0 +1,42 @@
+"""The order in which processes and steps of a plan start."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+
+from graphflow.graph.plan import Plan
+from graphflow.machines.process import Need, Order
+from graphflow.supervisor.processes.process import Process
+
+
+def start_order(plan: Plan, processes: Iterable[Process]) -> Order:
+    """Derive the needs of processes and steps from `after` of the plan's nodes and steps.
+
+    A step is named `step NAME`. Nodes of one process do not wait for each other.
+    """
+    processes = list(processes)
+    process_of = {node.name: process.name for process in processes for node in process.nodes}
+
+    def needs(after: Mapping[str, str]) -> set[Need]:
+        return {
+            Need(process_of[name], what) if name in process_of else Need(f"step {name}", "done")
+            for name, what in after.items()
+        }
+
+    order: dict[str, frozenset[Need]] = {}
+    for process in processes:
+        own = {need for node in process.nodes for need in needs(node.after)}
+        order[process.name] = frozenset(need for need in own if need.name != process.name)
+    for step in plan.steps:
+        order[f"step {step.name}"] = frozenset(needs(step.after))
+    return Order(order)
+
+
+def needs_of_up(order: Order, processes: Collection[str]) -> set[Need]:
+    """Return what must be met for the graph to be up.
+
+    Processes and steps that need the end of a process are left out: it may never come.
+    """
+    later = order.later(processes)
+    names = [name for name in order.after if name not in later]
+    return {Need(name) if name in processes else Need(name, "done") for name in names}
