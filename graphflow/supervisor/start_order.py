@@ -40,3 +40,11 @@ def needs_of_up(order: Order, processes: Collection[str]) -> set[Need]:
     later = order.later(processes)
     names = [name for name in order.after if name not in later]
     return {Need(name) if name in processes else Need(name, "done") for name in names}
+
+
+def restarted_with(name: str, strategy: str, order: Order, processes: Iterable[str]) -> list[str]:
+    """Return the other processes that are restarted when one has failed."""
+    others = [other for other in processes if other != name]
+    if strategy == "one_for_all":
+        return others
+    return [other for other in others if strategy == "rest_for_one" and name in order.all_before(other)]

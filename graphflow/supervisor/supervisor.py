@@ -23,25 +23,19 @@ from graphflow.supervisor.launching import debugging
 from graphflow.supervisor.launching.programs import signal_of, words_of
 from graphflow.supervisor.lifecycle_manager import Lives
 from graphflow.supervisor.processes.health import Health
-from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, worker_start
+from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, no_mesh, worker_start
 from graphflow.supervisor.processes.process import Process
-from graphflow.supervisor.processes.starter import Start, Starter
+from graphflow.supervisor.processes.starter import Starter
 from graphflow.supervisor.rundir import log_file
-from graphflow.supervisor.start_order import needs_of_up, start_order
+from graphflow.supervisor.start_order import needs_of_up, restarted_with, start_order
 from graphflow.supervisor.steps import StepRunner
 
 if TYPE_CHECKING:
     from graphflow.supervisor.control.messages import Hello, NodeRow
-    from graphflow.supervisor.processes.messages import (
-        Beat,
-        DebuggerAwaited,
-        LifecycleChanged,
-        LogLost,
-        ProcessEvent,
-        ProgramJob,
-    )
+    from graphflow.supervisor.processes import messages
 
 logger = logging.getLogger("graphflow.supervisor")
+_ENDING = (State.STOPPING, State.RESTARTING, State.RESETTING)
 
 
 class Supervisor:
@@ -79,8 +73,6 @@ class Supervisor:
         self._layers: list[list[str]] = []
         """Processes that are still to be stopped, in that order."""
         self._began = time.monotonic()
-
-    # requests of clients
 
     def describe(self) -> list[NodeRow]:
         """Return one row per node, for `ps`."""
@@ -173,15 +165,10 @@ class Supervisor:
         """Send clients a remark about the graph's environment."""
         self.clients.broadcast({"event": "note", "text": text})
 
-    # events of processes
-
     async def run(self) -> int:
         """Bring the graph up and keep it until it has ended; returns its exit code."""
         if len(self._processes) > MESH_LIMIT:
-            self.note(
-                f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages "
-                "pass through the rendezvous; nodes that share a `process:` need fewer"
-            )
+            self.note(no_mesh(len(self._processes)))
         self._start_ready_ones()
         health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
         await self.ended.wait()
@@ -194,7 +181,7 @@ class Supervisor:
         self.clients.broadcast({"event": "end", "exit_code": self.exit_code})
         return self.exit_code
 
-    def on_event(self, event: ProcessEvent) -> None:
+    def on_event(self, event: messages.ProcessEvent) -> None:
         """Take in an event of a process."""
         process = self._processes.get(event.get("process", ""))
         if process is None:
@@ -215,7 +202,11 @@ class Supervisor:
             case _:
                 self._observe(process, event)
 
-    def _observe(self, process: Process, event: Beat | LifecycleChanged | DebuggerAwaited | LogLost) -> None:
+    def _observe(
+        self,
+        process: Process,
+        event: messages.Beat | messages.LifecycleChanged | messages.DebuggerAwaited | messages.LogLost,
+    ) -> None:
         """Take in an event that changes no process's state."""
         match event["event"]:
             case "beat":
@@ -230,7 +221,7 @@ class Supervisor:
 
     def _has_spawned(self, process: Process, pid: int) -> None:
         process.pid = pid
-        if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # it had no pid to signal until now
+        if process.state in _ENDING:  # it had no pid to signal until now
             self._act(process, Do.TERMINATE)
         elif process.is_program and process.nodes[0].lifecycle:
             self._lives.begin(process.name, process.nodes[0])
@@ -266,8 +257,6 @@ class Supervisor:
             self._happen(process, Event.READY)
             self._meet(process.name, "ready")
 
-    # decisions carried out
-
     def _start_ready_ones(self) -> None:
         if self._stopping:
             return
@@ -293,8 +282,7 @@ class Supervisor:
             answer = await self._steps.run(planned)
         except GraphflowError as error:
             logger.error("step %s: %s", planned.name, error)
-            text = f"{planned.target}: {error}"
-            self.clients.broadcast({"event": "step", "step": planned.name, "ok": False, "text": text})
+            self._step_ended(planned, f"{planned.target}: {error}", ok=False)
             self._fail(f"step {planned.name} failed")
             return
         if planned.do == "shutdown":
@@ -303,9 +291,11 @@ class Supervisor:
         if planned.do == "log":
             self.clients.broadcast({"event": "said", "text": planned.target})
         else:
-            text = f"{planned.target} -> {answer}"
-            self.clients.broadcast({"event": "step", "step": planned.name, "ok": True, "text": text})
+            self._step_ended(planned, f"{planned.target} -> {answer}", ok=True)
         self._meet(f"step {planned.name}", "done")
+
+    def _step_ended(self, planned: PlannedStep, text: str, *, ok: bool) -> None:
+        self.clients.broadcast({"event": "step", "step": planned.name, "ok": ok, "text": text})
 
     def _fail(self, reason: str) -> None:
         self.exit_code = 1
@@ -313,7 +303,7 @@ class Supervisor:
 
     def _happen(self, process: Process, event: Event) -> None:
         was = process.state
-        if event is Event.LATE and was in (State.STOPPING, State.RESTARTING, State.RESETTING):
+        if event is Event.LATE and was in _ENDING:
             self.note(f"{process.name} did not end within {process.alarm_after:g} s: killed")
         process.state, actions = step(was, event)
         if process.state is not was:
@@ -324,7 +314,7 @@ class Supervisor:
             process.alarm_after = process.may_stay(time.monotonic())
             if process.alarm_after is not None:
                 process.alarm = self._context.loop.call_later(process.alarm_after, self._happen, process, Event.LATE)
-        if was in (State.RESTARTING, State.RESETTING) and event is Event.EXIT and process.state is not State.ENDED:
+        if was in _ENDING and event is Event.EXIT and process.state is not State.ENDED:
             self._send_exit(process, unexpected=False)
         for action in actions:
             self._act(process, action)
@@ -353,15 +343,14 @@ class Supervisor:
     def _spawn(self, process: Process) -> None:
         process.begin()
         self.clients.broadcast({"event": "starting", "process": process.name, "again": process.starts > 1})
-        self._starter.spawn(*self._start_of(process))
-
-    def _start_of(self, process: Process) -> Start:
         nodes = process.nodes
         if process.is_program:
-            job: ProgramJob = {"command": words_of(nodes[0]), "signal": signal_of(nodes[0])}
-            return Start(process.name, job, process.log, environment_of(nodes))
+            job: messages.ProgramJob = {"command": words_of(nodes[0]), "signal": signal_of(nodes[0])}
+            self._starter.spawn(process.name, job, process.log, environment_of(nodes))
+            return
         described = [self._planned[node.name] for node in nodes]
-        return worker_start(self.plan, self._context.domain, process.name, nodes, described, process.log)
+        start = worker_start(self.plan, self._context.domain, process.name, nodes, described, process.log)
+        self._starter.spawn(*start)
 
     def _member_changed(self, process: Process, node: PlannedNode, joined: bool) -> None:
         """Take in that a node was loaded or unloaded: a restart of the process keeps to that."""
@@ -411,15 +400,8 @@ class Supervisor:
         process.delay = follows.delay
         self._met.discard(Need(process.name))
         self._happen(process, Event.AGAIN)
-        for name in self._restarted_with(process.name):
+        for name in restarted_with(process.name, self.plan.strategy, self._order, self._processes):
             self._happen(self._processes[name], Event.RESET)
-
-    def _restarted_with(self, name: str) -> list[str]:
-        """Return the other processes that are restarted when one has failed."""
-        others = [other for other in self._processes if other != name]
-        if self.plan.strategy == "one_for_all":
-            return others
-        return [o for o in others if self.plan.strategy == "rest_for_one" and name in self._order.all_before(o)]
 
     def _judge_end(self, process: Process, was: State) -> None:
         """Stop the graph if it cannot go on without a process that has ended for good."""
@@ -435,22 +417,9 @@ class Supervisor:
                 self._fail(f"{waits[0]} waits until {process.name} is done, and that has failed")
 
     def _send_exit(self, process: Process, *, unexpected: bool, again: Again | GiveUp | None = None) -> None:
-        if process.exit is None:
-            return
-        self.clients.broadcast(
-            {
-                "event": "exited",
-                "process": process.name,
-                "nodes": [n.name for n in process.nodes],
-                "pid": process.pid,
-                "how": str(process.exit),
-                "unexpected": unexpected,
-                "error": process.error,
-                "log": process.log,
-                "again": again.delay if isinstance(again, Again) else None,
-                "given_up": process.given_up,
-            }
-        )
+        if process.exit is not None:
+            delay = again.delay if isinstance(again, Again) else None
+            self.clients.broadcast(process.exit_event(process.exit, unexpected=unexpected, again=delay))
 
     def _end_if_all_have(self) -> None:
         """End with the last process, unless a console is attached, which may restart one."""
@@ -470,7 +439,7 @@ class Supervisor:
             self.note("all nodes have ended; restart one, or stop the graph")
 
     def _stop_next_layer(self) -> None:
-        while self._layers and all(self._processes_ended(name) for name in self._layers[0]):
+        while self._layers and all(self._processes[name].state is State.ENDED for name in self._layers[0]):
             self._layers.pop(0)
         if self._layers:
             for name in self._layers[0]:
@@ -479,6 +448,3 @@ class Supervisor:
                     process.stop_requested = True
                     self._happen(process, Event.STOP)
         self._end_if_all_have()
-
-    def _processes_ended(self, name: str) -> bool:
-        return self._processes[name].state is State.ENDED

@@ -20,18 +20,7 @@ from graphflow.supervisor.processes.guardian import GRACE
 from graphflow.supervisor.processes.starter import Start
 
 if TYPE_CHECKING:
-    from graphflow.supervisor.processes.messages import (
-        InterfacesJson,
-        Job,
-        LogRequest,
-        Order,
-        OrderRequest,
-        PreloadEvent,
-        PreloadRequest,
-        ProbeRequest,
-        ProcessEvent,
-        SpawnRequest,
-    )
+    from graphflow.supervisor.processes import messages
 
 REAP_LIMIT = 1.0
 """Seconds that the preload process has to report how a worker ended."""
@@ -44,29 +33,29 @@ class ForkingStarter:
 
     def __init__(self, keep: tuple[int, ...]) -> None:
         self._channel, self._status, self._pid = preload.start(keep)
-        self._preload: Lines[PreloadEvent]
-        self._reports: Lines[ProcessEvent]
+        self._preload: Lines[messages.PreloadEvent]
+        self._reports: Lines[messages.ProcessEvent]
         self._workers: dict[int, tuple[str, int]] = {}
         """Living workers by process id: the name of each, and the pidfd that becomes readable at its end, or -1."""
         self._programs: dict[str, signal.Signals] = {}
         """Processes that are foreign programs."""
-        self._begun: dict[str, list[ProcessEvent]] = {}
+        self._begun: dict[str, list[messages.ProcessEvent]] = {}
         """Events of workers that were started ahead and not spawned yet."""
-        self._on_event: Callable[[ProcessEvent], None]
+        self._on_event: Callable[[messages.ProcessEvent], None]
         self._lost: Callable[[str], None]
         self._is_open = self._has_ended = False
         self._ending: asyncio.Task[None] | None = None
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
-        request: ProbeRequest = {"do": "probe", "classes": list(classes), "root": root}
+        request: messages.ProbeRequest = {"do": "probe", "classes": list(classes), "root": root}
         with suppress(ConnectionError):  # it has ended, as `probed` finds out
             self._send_blocking(request)
 
-    def _send_blocking(self, request: PreloadRequest) -> None:
+    def _send_blocking(self, request: messages.PreloadRequest) -> None:
         """Send a request before the loop runs."""
         self._channel.sendall(json.dumps(request).encode() + b"\n")
 
-    def probed(self) -> InterfacesJson:
+    def probed(self) -> messages.InterfacesJson:
         data = b""
         while not data.endswith(b"\n"):
             try:
@@ -76,7 +65,7 @@ class ForkingStarter:
             if not chunk:
                 raise SupervisorError(f"{self._end_in_words()} before the graph was up")
             data += chunk
-        answer: PreloadEvent = json.loads(data)
+        answer: messages.PreloadEvent = json.loads(data)
         if answer["event"] == "broken":
             raise SupervisorError(f"process {self._pid}, which starts the nodes, failed:\n{answer['trace']}")
         assert answer["event"] == "probed"
@@ -95,15 +84,17 @@ class ForkingStarter:
             with suppress(ConnectionError):  # it has ended, as is reported once this is open
                 self._send_blocking(_spawn_request(*start))
 
-    async def open(self, log: Path, on_event: Callable[[ProcessEvent], None], lost: Callable[[str], None]) -> None:
+    async def open(
+        self, log: Path, on_event: Callable[[messages.ProcessEvent], None], lost: Callable[[str], None]
+    ) -> None:
         self._on_event, self._lost = on_event, lost
         self._preload = Lines(self._channel, self._take_answer, self._lose)
         self._reports = Lines(self._status, self._report, _ignore_end_of_reports)
         self._is_open = True
-        request: LogRequest = {"do": "log", "path": str(log)}
+        request: messages.LogRequest = {"do": "log", "path": str(log)}
         self._preload.send(request)
 
-    def _report(self, event: ProcessEvent) -> None:
+    def _report(self, event: messages.ProcessEvent) -> None:
         """Report an event of a worker; keep it for later if the worker has not been spawned yet."""
         early = self._begun.get(event.get("process", ""))
         if early is None:
@@ -111,7 +102,7 @@ class ForkingStarter:
         else:
             early.append(event)
 
-    def _take_answer(self, event: PreloadEvent) -> None:
+    def _take_answer(self, event: messages.PreloadEvent) -> None:
         """Take in an answer of the preload process."""
         if event["event"] == "broken" or event["event"] == "probed":
             return  # a broken one has written why to the log, and its end is reported in a moment
@@ -183,7 +174,7 @@ class ForkingStarter:
             if pid in self._workers:
                 self._ended(pid, status)
 
-    def spawn(self, process: str, job: Job, log: str, env: dict[str, str]) -> None:
+    def spawn(self, process: str, job: messages.Job, log: str, env: dict[str, str]) -> None:
         if process in self._begun:
             # Not at once: the supervisor is still in the middle of the transition that called this.
             asyncio.get_running_loop().call_soon(self._report_begun, process)
@@ -196,8 +187,8 @@ class ForkingStarter:
         for event in self._begun.pop(process):
             self._on_event(event)
 
-    def send_order(self, process: str, order: Order) -> None:
-        request: OrderRequest = {"do": "tell", "process": process, "order": order}
+    def send_order(self, process: str, order: messages.Order) -> None:
+        request: messages.OrderRequest = {"do": "tell", "process": process, "order": order}
         self._preload.send(request)
 
     def terminate(self, process: str, pid: int) -> None:
@@ -224,7 +215,7 @@ class ForkingStarter:
         process_tree.end_descendants(os.getpid(), process_tree.reap_children)
 
 
-def _spawn_request(process: str, job: Job, log: str, env: dict[str, str]) -> SpawnRequest:
+def _spawn_request(process: str, job: messages.Job, log: str, env: dict[str, str]) -> messages.SpawnRequest:
     return {"do": "spawn", "process": process, "job": job, "log": log, "env": env}
 
 

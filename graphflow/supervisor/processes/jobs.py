@@ -17,6 +17,14 @@ MESH_LIMIT = 24
 """Number of processes up to which each is a peer of every other; more are clients of the rendezvous."""
 
 
+def no_mesh(count: int) -> str:
+    """Describe the way of messages in a graph with too many processes for a mesh."""
+    return (
+        f"{count} processes are more than a mesh carries ({MESH_LIMIT}): their messages pass through the rendezvous; "
+        "nodes that share a `process:` need fewer"
+    )
+
+
 def worker_start(
     plan: Plan, domain: int, process: str, nodes: Sequence[PlannedNode], described: list[NodeJson], log: str
 ) -> Start:

@@ -36,20 +36,7 @@ from graphflow.supervisor.processes.orphaned import LOG_VARIABLE, Orphan
 from graphflow.system import end_with_parent
 
 if TYPE_CHECKING:
-    from graphflow.supervisor.processes.messages import (
-        Exited,
-        Failed,
-        InterfacesJson,
-        Obeyed,
-        Order,
-        OrderRequest,
-        PreloadEvent,
-        PreloadRequest,
-        ProbeRequest,
-        ProgramJob,
-        SpawnRequest,
-        WorkerJob,
-    )
+    from graphflow.supervisor.processes import messages
 
 ORDER_BOUND = 1 << 16
 """Largest order to a worker in bytes: the capacity of an empty pipe (pipe(7))."""
@@ -185,7 +172,7 @@ class _Preload:
     def _serve(self) -> None:
         while b"\n" in self._buffer:
             line, _, self._buffer = self._buffer.partition(b"\n")
-            request: PreloadRequest = json.loads(line)
+            request: messages.PreloadRequest = json.loads(line)
             if request["do"] == "probe":
                 self._answer({"event": "probed", "interfaces": self._probe_classes(request)})
             elif request["do"] == "log":
@@ -201,13 +188,13 @@ class _Preload:
             os.dup2(out, fd)
         os.close(out)
 
-    def _answer(self, event: PreloadEvent) -> None:
+    def _answer(self, event: messages.PreloadEvent) -> None:
         try:
             self._channel.sendall(json.dumps(event).encode() + b"\n")
         except ConnectionError:
             self._end()
 
-    def _probe_classes(self, request: ProbeRequest) -> InterfacesJson:
+    def _probe_classes(self, request: messages.ProbeRequest) -> messages.InterfacesJson:
         """Import classes in a child of their own, which confines the side effects."""
         read, write = os.pipe()
         parent, pid = os.getpid(), os.fork()
@@ -221,22 +208,7 @@ class _Preload:
             finally:
                 os._exit(0)
         os.close(write)
-        data, done = b"", False
-        deadline = time.monotonic() + PROBE_LIMIT
-        with selectors.DefaultSelector() as selector:
-            selector.register(read, selectors.EVENT_READ)
-            selector.register(
-                self._channel, selectors.EVENT_READ
-            )  # the supervisor sends nothing now; only its end can show
-            while not done and (left := deadline - time.monotonic()) > 0:
-                for key, _ in selector.select(left):
-                    if key.fileobj is self._channel:
-                        self._receive(socket.MSG_PEEK)
-                        selector.unregister(self._channel)
-                        continue
-                    chunk = os.read(read, 65536)
-                    data += chunk
-                    done = not chunk
+        data, done = self._read_probe(read)
         os.close(read)
         if not done:
             os.kill(pid, signal.SIGKILL)
@@ -248,19 +220,34 @@ class _Preload:
             import numpy  # noqa: F401 - once, for all workers to inherit
         return result
 
-    def _pass_on(self, request: OrderRequest) -> None:
+    def _read_probe(self, read: int) -> tuple[bytes, bool]:
+        """Read the answer of a probing child; returns it, and whether it was complete in time."""
+        data, done = b"", False
+        deadline = time.monotonic() + PROBE_LIMIT
+        with selectors.DefaultSelector() as selector:
+            selector.register(read, selectors.EVENT_READ)
+            selector.register(self._channel, selectors.EVENT_READ)  # readable at the supervisor's end: it sends nothing
+            while not done and (left := deadline - time.monotonic()) > 0:
+                for key, _ in selector.select(left):
+                    if key.fileobj is self._channel:
+                        self._receive(socket.MSG_PEEK)
+                        selector.unregister(self._channel)
+                        continue
+                    chunk = os.read(read, 65536)
+                    data += chunk
+                    done = not chunk
+        return data, done
+
+    def _pass_on(self, request: messages.OrderRequest) -> None:
         """Pass an order on to its worker; answer for a worker that does not read, stopped perhaps."""
         for worker in self._workers.values():
             if worker.process == request["process"] and worker.orders >= 0:
                 error = _write_order(worker.orders, request["order"])
                 if not error:
                     return
-                number = request["order"]["order"]
-                answer: Obeyed = {"event": "obeyed", "process": worker.process, "order": number, "node": "",
-                                  "number": 0, "error": error}  # fmt: skip
-                self._answer(answer)
+                self._answer(_refusal(request, error))
 
-    def _spawn(self, request: SpawnRequest) -> None:
+    def _spawn(self, request: messages.SpawnRequest) -> None:
         parent = os.getpid()
         orders = write = -1
         try:
@@ -282,12 +269,12 @@ class _Preload:
         self._answer({"event": "spawned", "process": request["process"], "pid": pid})
 
     def _report_unstarted(self, process: str, error: Exception) -> None:
-        failed: Failed = {"event": "failed", "process": process, "error": f"cannot be started: {error}"}
-        exited: Exited = {"event": "exited", "process": process, "pid": None, "status": 1}
+        failed: messages.Failed = {"event": "failed", "process": process, "error": f"cannot be started: {error}"}
+        exited: messages.Exited = {"event": "exited", "process": process, "pid": None, "status": 1}
         self._answer(failed)
         self._answer(exited)
 
-    def _run_worker(self, request: SpawnRequest, parent: int, orders: int, write: int) -> NoReturn:
+    def _run_worker(self, request: messages.SpawnRequest, parent: int, orders: int, write: int) -> NoReturn:
         """Be the worker, in the child."""
         try:
             self._channel.close()
@@ -302,15 +289,15 @@ class _Preload:
         finally:
             os._exit(70)
 
-    def _be_worker(self, request: SpawnRequest, parent: int, orders: int) -> None:
+    def _be_worker(self, request: messages.SpawnRequest, parent: int, orders: int) -> None:
         from graphflow.supervisor.processes import worker
 
         worker.become(request["log"], {**request["env"], LOG_VARIABLE: request["log"]}, parent)
         _reseed()
         orphan = Orphan(parent, self._status, orders, request["log"])
-        worker.main(cast("WorkerJob", request["job"]), worker.PipeReporter(self._status, orders, orphan))
+        worker.main(cast("messages.WorkerJob", request["job"]), worker.PipeReporter(self._status, orders, orphan))
 
-    def _spawn_fresh(self, request: SpawnRequest, orders: int) -> int:
+    def _spawn_fresh(self, request: messages.SpawnRequest, orders: int) -> int:
         """Start a worker in a new interpreter, for an environment that a running one cannot adopt."""
         log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         with open(log, "ab") as out:
@@ -349,7 +336,7 @@ class _Preload:
             is_ours = living & process_tree.environment(pid) or logs & process_tree.files(pid)
             if pid not in self._workers and not is_ours:
                 process_tree.kill(pid, signal.SIGKILL)
-                process_tree.end_descendants(pid, _reap_nothing)
+                process_tree.end_descendants(pid, lambda: None)  # they are not this process's children
 
     def _end(self) -> NoReturn:
         """End all workers, as the supervisor would have done that is gone now, and exit."""
@@ -364,7 +351,7 @@ class _Preload:
         os._exit(0)
 
 
-def _spawn_program(request: SpawnRequest, job: ProgramJob) -> int:
+def _spawn_program(request: messages.SpawnRequest, job: messages.ProgramJob) -> int:
     """Start a foreign program with default signal handling: this process blocks some signals and ignores others."""
     parent = os.getpid()
 
@@ -389,7 +376,7 @@ def _spawn_program(request: SpawnRequest, job: ProgramJob) -> int:
     return child.pid
 
 
-def answer_probe(request: ProbeRequest, write: int) -> None:
+def answer_probe(request: messages.ProbeRequest, write: int) -> None:
     """Import the classes and write their interfaces, in the probing child."""
     from graphflow.supervisor.launching.classes import add_root, interfaces
 
@@ -402,7 +389,7 @@ def answer_probe(request: ProbeRequest, write: int) -> None:
         data = data[os.write(write, data) :]
 
 
-def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> InterfacesJson:
+def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> messages.InterfacesJson:
     """Read the answer of a probing child, or give the reason for its failure as the problem of each class.
 
     Args:
@@ -414,11 +401,16 @@ def probe_result(data: bytes, done: bool, classes: list[str], code: int) -> Inte
     if code or not data:
         how = f"the process that imported it was ended by {Exit.of_status(code)}"
         return {path: {"problem": how} for path in classes}
-    result: InterfacesJson = json.loads(data)
+    result: messages.InterfacesJson = json.loads(data)
     return result
 
 
-def _write_order(fd: int, order: Order) -> str:
+def _refusal(request: messages.OrderRequest, error: str) -> messages.Obeyed:
+    number, process = request["order"]["order"], request["process"]
+    return {"event": "obeyed", "process": process, "order": number, "node": "", "number": 0, "error": error}
+
+
+def _write_order(fd: int, order: messages.Order) -> str:
     """Write an order into a worker's pipe; returns why it could not be; empty if it was."""
     line = json.dumps(order).encode() + b"\n"
     if len(line) > ORDER_BOUND:
@@ -438,10 +430,6 @@ def _write_whole(fd: int, line: bytes) -> bool:
         return False
 
 
-def _reap_nothing() -> None:
-    """Do nothing: they are not this process's children."""
-
-
 def sweep(group: int) -> None:
     """End the processes that a worker has left in its process group."""
     try:
@@ -455,6 +443,5 @@ def _reseed() -> None:
     import random
 
     random.seed()
-    numpy_random = sys.modules.get("numpy.random")
-    if numpy_random is not None:
-        numpy_random.seed()
+    if "numpy.random" in sys.modules:
+        sys.modules["numpy.random"].seed()

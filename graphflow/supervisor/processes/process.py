@@ -14,7 +14,7 @@ from graphflow.machines.process import ALARMS, BLOCKED_STOP_LIMIT, Exit, State
 from graphflow.machines.restarts import BACKOFF, Restarts
 
 if TYPE_CHECKING:
-    from graphflow.supervisor.control.messages import NodeRow
+    from graphflow.supervisor.control.messages import NodeRow, ProcessExited
 
 logger = logging.getLogger("graphflow.supervisor")
 
@@ -152,6 +152,25 @@ class Process:
             }
             for node in self.nodes
         ]
+
+    def exit_event(self, end: Exit, *, unexpected: bool, again: float | None) -> ProcessExited:
+        """Return the event of its end for the clients.
+
+        Args:
+            again: Seconds until it is started again; None if it is not.
+        """
+        return {
+            "event": "exited",
+            "process": self.name,
+            "nodes": [node.name for node in self.nodes],
+            "pid": self.pid,
+            "how": str(end),
+            "unexpected": unexpected,
+            "error": self.error,
+            "log": self.log,
+            "again": again,
+            "given_up": self.given_up,
+        }
 
     def begin(self) -> None:
         """Reset the record for a new process."""
