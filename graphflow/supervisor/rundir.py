@@ -1,12 +1,11 @@
-"""What a running graph leaves on disk: the run directory, the run file, the logs.
+"""A running graph on disk: the run directory, the run file, the logs.
 
     $XDG_RUNTIME_DIR/graphflow/<domain>/<graph>/       run.json, control.sock      (0700)
-    $XDG_RUNTIME_DIR/graphflow/<domain>.<graph>.lock   held while the graph runs
+    $XDG_RUNTIME_DIR/graphflow/<domain>.<graph>.lock   locked while the graph runs
     $XDG_STATE_HOME/graphflow/<graph>/<run id>/        <node>.log, +supervisor.log; `latest` points to the newest
 
-Without XDG_RUNTIME_DIR, or where that is no absolute path, a private folder under the temporary directory is used;
-ROS_LOG_DIR moves the logs.
-A graph runs when its run file names a process that is alive and was started when the file says.
+Without an absolute path in XDG_RUNTIME_DIR a private folder under the temporary directory is used; ROS_LOG_DIR moves
+the logs. A graph runs when its run file names a living process with the start time in the file.
 """
 
 from __future__ import annotations
@@ -20,7 +19,6 @@ import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
@@ -28,20 +26,20 @@ from graphflow.folders import log_root, make_private, named, newest_logs, tempor
 from graphflow.system import is_portable
 
 SUPERVISOR_LOG = "+supervisor.log"
-"""What the supervisor says of itself; no node can be called so."""
+"""The supervisor's own log; no node can have this name."""
 NAMES_PATIENCE = 5.0
 """Seconds that another graph may take to claim its names."""
 LOG_NAME_LIMIT = 200
-"""Characters of a node's name in that of its log: file systems take 255 bytes in all."""
+"""Characters of a node's name that its log's name keeps: file systems take 255 bytes in all."""
 SOCKET_PATH_LIMIT = 100
-"""Bytes that a Unix socket's path may have, leaving room for the C string's end."""
+"""Longest path of a Unix socket in bytes: below the 104 of macOS with its NUL."""
 
 
 def runtime_root() -> Path:
-    """The folder of all this user's run directories, made if need be.
+    """Return the folder of all this user's run directories; it is created if need be.
 
     Raises:
-        SupervisorError: The folder cannot be made, or belongs to another user.
+        SupervisorError: The folder cannot be created, or belongs to another user.
     """
     given = named("XDG_RUNTIME_DIR")
     if given is None:
@@ -51,15 +49,15 @@ def runtime_root() -> Path:
 
 
 def new_run_id() -> str:
-    """A name for a run that sorts by time."""
+    """Return a name for a run that sorts by time."""
     return f"{time.strftime('%Y-%m-%d-%H-%M-%S')}-{os.getpid()}"
 
 
 def open_logs(graph: str, run_id: str) -> Path:
-    """Make a run's log folder and point `latest` to it.
+    """Create a run's log folder and point `latest` to it.
 
     Raises:
-        SupervisorError: The folder cannot be made.
+        SupervisorError: The folder cannot be created.
     """
     folder = log_root() / graph / run_id
     try:
@@ -67,7 +65,7 @@ def open_logs(graph: str, run_id: str) -> Path:
         link = newest_logs(graph)
         fresh = folder.parent / f".latest-{os.getpid()}"
         fresh.unlink(missing_ok=True)
-        if not is_portable():  # links take a privilege on Windows that few users have
+        if not is_portable():  # symbolic links need a privilege on Windows
             fresh.symlink_to(run_id)
             fresh.replace(link)
     except OSError as error:
@@ -76,13 +74,13 @@ def open_logs(graph: str, run_id: str) -> Path:
 
 
 def latest_logs(graph: str | None) -> Path | None:
-    """The log folder of the newest run, of one graph or of any; None when nothing has ever run."""
+    """Return the log folder of the newest run, of one graph or of any; None if there is none."""
     runs = [f for f in log_root().glob(f"{graph or '*'}/*/") if f != newest_logs(f.parent.name)]
     return max(runs, key=lambda f: f.stat().st_mtime, default=None)
 
 
 def log_file(folder: Path, node: str) -> Path:
-    """The log of one node: `/turtle1/follower` logs to `turtle1.follower.log`; a name too long for a file is cut."""
+    """Return the log of a node: `/turtle1/follower` logs to `turtle1.follower.log`; a long name is cut and hashed."""
     name = node.strip("/").replace("/", ".")
     if len(name) > LOG_NAME_LIMIT:
         name = f"{name[:LOG_NAME_LIMIT]}-{hashlib.sha256(name.encode()).hexdigest()[:16]}"
@@ -90,10 +88,10 @@ def log_file(folder: Path, node: str) -> Path:
 
 
 def start_time(pid: int) -> float | None:
-    """When a live process was started, in some fixed unit; None when it is not alive."""
+    """Return the start time of a process, in a unit of the system's; None if it is not alive."""
     try:
         text = Path(f"/proc/{pid}/stat").read_text()
-        fields = text.rpartition(")")[2].split()
+        fields = text.rpartition(")")[2].split()  # from field 3 on: field 22 is the start time (proc_pid_stat(5))
         return None if fields[0] == "Z" else float(fields[19])
     except FileNotFoundError:
         if Path("/proc/self/stat").exists():
@@ -110,7 +108,7 @@ def start_time(pid: int) -> float | None:
 
 @dataclass(frozen=True)
 class GraphRun:
-    """A run file's content."""
+    """The content of a run file."""
 
     run_id: str
     graph: str
@@ -119,20 +117,20 @@ class GraphRun:
     started: float
     """`start_time` of the supervisor."""
     began: float
-    """When the run began, in seconds since 1970."""
+    """Time at which the run began, in seconds since 1970."""
     file: str
     socket: str
     logs: str
     endpoint: str
     plan_hash: str
     guardian: int = 0
-    """The process that ends what is left when the supervisor has ended; 0 for none."""
+    """The process id of the guardian; 0 for none."""
     guardian_started: float = 0.0
-    """`start_time` of it."""
+    """`start_time` of the guardian."""
 
     @property
     def is_here(self) -> bool:
-        """Whether it runs in the domain and at the endpoint that this process would use."""
+        """Whether it runs in the domain and at the endpoint of this process."""
         return self.domain == domain_id() and self.endpoint in ("", rendezvous_endpoint())
 
     @property
@@ -140,23 +138,23 @@ class GraphRun:
         return start_time(self.pid) == self.started
 
     def wait_gone(self, timeout: float) -> bool:
-        """Wait until nothing of the graph is left, so that it can be started again; False when something is."""
+        """Wait until supervisor and guardian have ended, so that the graph can be started again; False on timeout."""
         deadline = time.monotonic() + timeout
-        while self.is_alive or self._is_guarded:
+        while self.is_alive or self.is_guarded:
             if time.monotonic() > deadline:
                 return False
             time.sleep(0.01)
         return True
 
     def renewed(self) -> GraphRun:
-        """The same run with the guardian that it has now, if there is still a run file."""
+        """Return the run with its present guardian, if the run file still exists."""
         now = read_run(runtime_root() / str(self.domain) / self.graph / "run.json")
         return now if now is not None and now.run_id == self.run_id else self
 
     @property
     def unguarded(self) -> str:
-        """The end of the guardian in words; empty while it lives, and where there is none."""
-        return f"the guardian, process {self.guardian}, was ended" if self.guardian and not self._is_guarded else ""
+        """The end of the guardian in words; empty while it lives, or if there is none."""
+        return f"the guardian, process {self.guardian}, was ended" if self.guardian and not self.is_guarded else ""
 
     @property
     def guard_again(self) -> str:
@@ -164,31 +162,31 @@ class GraphRun:
         return f"{self.unguarded}; to have it guarded again: graphflow up --replace {self.file}"
 
     @property
-    def _is_guarded(self) -> bool:
-        """Whether the guardian is there still."""
+    def is_guarded(self) -> bool:
+        """Whether the guardian is alive."""
         return bool(self.guardian) and start_time(self.guardian) == self.guardian_started
 
 
 class RunDirectory:
-    """The run directory of one graph in one domain, held by its supervisor."""
+    """The run directory of one graph in one domain, owned by its supervisor."""
 
     def __init__(self, domain: int, graph: str) -> None:
         self.path = runtime_root() / str(domain) / graph
         self._lock: int | None = None
         self.changing = threading.RLock()
-        """Held by the thread that makes, fills or removes the directory: another may be ending this process."""
+        """Lock of the thread that changes the directory: the lifeline's thread may end this process meanwhile."""
 
     def claim(self) -> None:
-        """Take the directory for this process.
+        """Claim the directory for this process.
 
         Raises:
-            SupervisorError: The graph is already running, or the directory cannot be made.
+            SupervisorError: The graph is already running, or the directory cannot be created.
         """
         with self.changing:
             self._claim()
 
     def _claim(self) -> None:
-        # Next to the directory, and never removed: the process that holds the lock on this one file owns the directory.
+        # Next to the directory, and never removed: a lock on a removed file would lock nobody else out.
         lock = _lock_of(self.path)
         try:
             self._lock = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
@@ -211,7 +209,7 @@ class RunDirectory:
             raise SupervisorError(f"{self.path}: {error.strerror}") from None
 
     def claim_names(self, names: Iterable[str]) -> None:
-        """Claim the names of the graph's nodes, before it is known to the network that there are such nodes.
+        """Claim the names of the graph's nodes, before their tokens are known to the network.
 
         Raises:
             SupervisorError: Another graph of this user, domain and rendezvous has claimed some of them.
@@ -239,11 +237,11 @@ class RunDirectory:
             os.close(guard)
 
     def is_there(self, run: GraphRun) -> bool:
-        """Whether verbs still find the graph: a logout takes the directory away."""
+        """Return whether verbs still find the graph: a logout removes the directory."""
         return read_run(self.path / "run.json") == run
 
     def restore(self) -> None:
-        """Make the directory again. Raises SupervisorError if that is not possible."""
+        """Create the directory again. Raises SupervisorError if that fails."""
         try:
             self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
@@ -256,7 +254,7 @@ class RunDirectory:
 
     @property
     def socket(self) -> Path:
-        """Where the control socket goes: inside, or in a short place when the path is too long for a socket."""
+        """The path of the control socket: inside, or elsewhere if that path is too long for a socket."""
         inside = self.path / "control.sock"
         if len(os.fsencode(inside)) <= SOCKET_PATH_LIMIT:
             return inside
@@ -264,14 +262,14 @@ class RunDirectory:
         return temporary_root("XDG_RUNTIME_DIR") / f"{digest}.sock"
 
     def write(self, run: GraphRun) -> None:
-        """Write the run file, whole or not at all."""
+        """Write the run file atomically."""
         fresh = self.path / "run.json.new"
         with self.changing:
             fresh.write_text(json.dumps(asdict(run), indent=1))
             fresh.replace(self.path / "run.json")
 
     def release(self) -> None:
-        """Remove what `claim` and `write` left, if anything."""
+        """Remove the files and the directory, and unlock it, if it was claimed."""
         with self.changing:
             if self._lock is not None:
                 self._remove()
@@ -294,7 +292,7 @@ def _lock_of(directory: Path) -> Path:
 
 
 def is_locked(file: Path) -> bool:
-    """Whether the process that has locked a file lives."""
+    """Return whether a living process has locked a file."""
     try:
         fd = os.open(file, os.O_RDWR | os.O_CLOEXEC)
     except OSError:
@@ -309,7 +307,7 @@ def is_locked(file: Path) -> bool:
 
 
 def _lock_soon(fd: int, file: Path) -> None:
-    """Lock a file that others hold for a moment only."""
+    """Lock a file that other processes lock only for moments."""
     deadline = time.monotonic() + NAMES_PATIENCE
     while True:
         try:
@@ -323,7 +321,7 @@ def _lock_soon(fd: int, file: Path) -> None:
 
 
 def lock_file(fd: int) -> None:
-    """Lock a file until its descriptor is closed; raises OSError when another process has locked it."""
+    """Lock a file until its descriptor is closed; raises OSError if another process has locked it."""
     if sys.platform == "win32":
         import msvcrt
 
@@ -335,21 +333,20 @@ def lock_file(fd: int) -> None:
 
 
 def read_run(path: Path) -> GraphRun | None:
-    """A run file's content; None when it is missing or not a run file."""
+    """Read a run file; None if it is missing or not a run file."""
     try:
-        data: Any = json.loads(path.read_text())
-        return GraphRun(**data)
+        return GraphRun(**json.loads(path.read_text()))
     except (OSError, ValueError, TypeError):
         return None
 
 
 def running() -> list[GraphRun]:
-    """Every graph of this user that is running now, by name."""
+    """Return the running graphs of this user, sorted by name."""
     found = [read_run(path) for path in sorted(runtime_root().glob("*/*/run.json"))]
     return sorted((r for r in found if r is not None and r.is_alive), key=lambda r: (r.graph, r.domain))
 
 
 def left_over() -> list[tuple[Path, GraphRun]]:
-    """What graphs have left that were killed with all that guards them: their folders, and what ran."""
+    """Return the run directories, with the runs, of graphs that were killed together with their guardians."""
     found = [(path.parent, read_run(path)) for path in sorted(runtime_root().glob("*/*/run.json"))]
-    return [(folder, run) for folder, run in found if run is not None and not run.is_alive and not run._is_guarded]
+    return [(folder, run) for folder, run in found if run is not None and not run.is_alive and not run.is_guarded]

@@ -1,11 +1,10 @@
-"""Graphs that are being started: known from the first moment on, though not yet by name or domain.
+"""Graphs that are being started: announced from the first moment on, before their name and domain are known.
 
     $XDG_RUNTIME_DIR/graphflow/<process id>.start   the graph file, once it is known; locked until there is a run file
 
-The command announces its graph, and that before it imports anything else: so it is seen by every `down` that begins
-after it, which imports as much.
+The command announces its graph before it imports anything else, so that every `down` that is typed after it sees it.
 
-Source: flock(2); a lock goes with its process, however that ends.
+Source: flock(2): a lock ends with its process, however that ends.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from graphflow.errors import SupervisorError
 from graphflow.supervisor.rundir import is_locked, lock_file, runtime_root
 
 PATIENCE = 30.0
-"""Seconds that a start may take until its graph can be asked: importing all classes may take most of them."""
+"""Seconds until the graph must have a control socket: importing all classes may take most of them."""
 
 
 class Start(NamedTuple):
@@ -29,24 +28,24 @@ class Start(NamedTuple):
     pid: int
     """The command."""
     file: str
-    """Empty as long as the command has not found it."""
+    """The graph file; empty until the command has found it."""
 
     def __str__(self) -> str:
         return f"{self.file or 'a graph'}, which is being started by process {self.pid}"
 
 
 class Announcement:
-    """Tells others that this process starts a graph, from `begin` until it is told that this is done."""
+    """The announcement, to other processes, that this one starts a graph: from `begin` to `end`."""
 
     def __init__(self) -> None:
         self._path = Path()
         self._fd = -1
 
     def begin(self, file: Path | None = None) -> None:
-        """Announce a graph, or, when it has been announced without its file, this.
+        """Announce a graph, at first perhaps without its file.
 
         Raises:
-            SupervisorError: The file for it cannot be written.
+            SupervisorError: The announcement cannot be written.
         """
         self._path = runtime_root() / f"{os.getpid()}.start"
         fresh, before = self._path.with_suffix(".start.new"), self._fd
@@ -54,7 +53,7 @@ class Announcement:
             self._fd = os.open(fresh, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
             lock_file(self._fd)
             os.write(self._fd, b"" if file is None else os.fsencode(file.resolve()))
-            fresh.replace(self._path)  # from here on others see it; one that nobody has locked they would remove
+            fresh.replace(self._path)  # locked before it is visible: others remove unlocked ones
         except OSError as error:
             raise SupervisorError(f"{self._path}: {error.strerror}") from None
         finally:
@@ -62,30 +61,30 @@ class Announcement:
                 os.close(before)
 
     def leave(self) -> None:
-        """Leave it to the parent, in a forked child: else it would stay locked as long as this lives."""
+        """Leave the announcement to the parent, in a forked child, which would keep it locked."""
         if self._fd >= 0:
             os.close(self._fd)
             self._fd = -1
 
     def end(self) -> None:
-        """The graph has a run file, or will have none."""
+        """Withdraw the announcement: the graph has a run file, or will have none."""
         if self._fd >= 0:
             self._path.unlink(missing_ok=True)
             self.leave()
 
 
 ANNOUNCEMENT = Announcement()
-"""That of this process."""
+"""The announcement of this process."""
 
 
 def starting() -> list[Start]:
-    """The graphs of this user that are being started now."""
+    """Return the graphs of this user that are being started."""
     found = []
     for path in sorted(runtime_root().glob("*.start")):
         if is_locked(path):
             try:
                 found.append(Start(int(path.stem), os.fsdecode(path.read_bytes())))
-            except (OSError, ValueError):  # it is done by now
+            except (OSError, ValueError):  # it has just ended
                 continue
         else:  # its process was killed
             path.unlink(missing_ok=True)
@@ -93,24 +92,27 @@ def starting() -> list[Start]:
 
 
 def being_started() -> str:
-    """The graphs of this user that are being started, for a command that has found none; empty if there are none."""
+    """Describe the graphs of this user that are being started; empty if there are none."""
     files = ", ".join(f"{start.file or 'a graph'} (process {start.pid})" for start in starting())
     return f"being started: {files}; wait for it with: graphflow wait" if files else ""
 
 
-def wait_started(told: Callable[[Start], object], file: Path | None = None) -> bool:
-    """Wait until the graphs that are being started now can be asked, or have failed; returns whether there were any.
+def wait_started(on_wait: Callable[[Start], object], file: Path | None = None) -> bool:
+    """Wait until the graphs that are being started have a control socket or have failed.
 
     Args:
-        told: Called with each that is waited for.
-        file: Only those of this graph file, as far as they are known.
+        on_wait: Called with each graph before the wait.
+        file: Wait only for graphs of this file.
+
+    Returns:
+        Whether there were any.
 
     Raises:
-        SupervisorError: One has not begun within `PATIENCE` (exit 4).
+        SupervisorError: One has no control socket within `PATIENCE` (exit 4).
     """
     begun = [start for start in starting() if file is None or start.file == str(file.resolve())]
     for start in begun:
-        told(start)
+        on_wait(start)
     deadline, pids = time.monotonic() + PATIENCE, {start.pid for start in begun}
     while left := [start for start in starting() if start.pid in pids]:
         if time.monotonic() > deadline:

@@ -1,10 +1,10 @@
-"""Steps: what a graph does once while it comes up."""
+"""Steps: actions of a graph that run once while it comes up."""
 
 from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 from graphflow.errors import ParameterError, ServiceUnavailable
@@ -19,14 +19,14 @@ from graphflow.runtime.node_core import core_of
 from graphflow.wire.liveliness import Kind
 
 _DOUBLE, _DOUBLES = 3, 8
-"""Numbers of rcl_interfaces/msg/ParameterType."""
+"""Values of rcl_interfaces/msg/ParameterType."""
 
 
 class StepRunner:
-    """Carries steps out, under a hidden node of the supervisor.
+    """The steps of a graph, carried out by a hidden node of the supervisor.
 
     Args:
-        types: Types of services and actions by step name, as far as the plan's classes say.
+        types: Types of services and actions by step name, as far as the plan's classes declare them.
     """
 
     def __init__(self, context: Context, types: dict[str, str]) -> None:
@@ -35,8 +35,8 @@ class StepRunner:
         self._node: Node | None = None
         self._started: asyncio.Future[None]
 
-    async def run(self, step: PlannedStep) -> Any:
-        """Carry out a step; returns what came of it.
+    async def run(self, step: PlannedStep) -> object:
+        """Carry out a step; returns its result.
 
         Raises:
             CallError: The service is unavailable, failed, or did not answer within the step's timeout.
@@ -47,24 +47,29 @@ class StepRunner:
         if step.do in ("log", "shutdown"):
             return step.target
         node = await self.node()
-        deeds = {"call": self._call_service, "set": self._set, "goal": self._send_goal, "wait": self._wait}
         if step.do == "delay":
             await self._context.clock.sleep(step.timeout)
             return "over"
-        return await deeds[step.do](step, node)
+        actions: dict[str, Callable[[PlannedStep, Node], Awaitable[object]]] = {
+            "call": self._call_service,
+            "set": self._set,
+            "goal": self._send_goal,
+            "wait": self._wait,
+        }
+        return await actions[step.do](step, node)
 
     async def node(self) -> Node:
-        """The hidden node, started when it is first needed."""
+        """Return the hidden node, which is started at its first use."""
         if self._node is None:
             self._node = Node(f"_graphflow_{os.getpid()}", start_parameter_services=False, enable_rosout=False)
             self._started = asyncio.ensure_future(core_of(self._node).start(self._context))
-        await asyncio.shield(self._started)
+        await asyncio.shield(self._started)  # a cancelled step must not cancel the start for the others
         return self._node
 
-    async def _call_service(self, step: PlannedStep, node: Node) -> Any:
+    async def _call_service(self, step: PlannedStep, node: Node) -> object:
         return await self.call(await self._type(step), step.target, step.request, step.timeout)
 
-    async def call(self, type_name: str, name: str, fields: dict[str, Any], timeout: float) -> Any:
+    async def call(self, type_name: str, name: str, fields: dict[str, object], timeout: float) -> Any:
         """Call a service; returns its response.
 
         Args:
@@ -89,11 +94,11 @@ class StepRunner:
         from graphflow.msgs.rcl_interfaces.msg import Parameter
         from graphflow.runtime.parameters.values import to_message
 
-        def ask(service: str, **fields: Any) -> Any:
+        def call(service: str, **fields: object) -> Any:
             type_name = f"rcl_interfaces/srv/{service.title().replace('_', '')}"
             return self.call(type_name, f"{step.target}/{service}", fields, step.timeout)
 
-        described = (await ask("describe_parameters", names=list(step.request))).descriptors
+        described = (await call("describe_parameters", names=list(step.request))).descriptors
         wanted = []
         for declared, (name, value) in zip(described, step.request.items(), strict=True):
             if declared.type == _DOUBLE and type(value) is int:
@@ -102,12 +107,12 @@ class StepRunner:
                 value = [float(number) if type(number) is int else number for number in value]
             type_ = declared.type if value == [] else type_id(value)
             wanted.append(Parameter(name=name, value=to_message(value, type_)))
-        result = (await ask("set_parameters_atomically", parameters=wanted)).result
+        result = (await call("set_parameters_atomically", parameters=wanted)).result
         if not result.successful:
             raise ParameterError(result.reason or f"{step.target} refused it")
         return ", ".join(f"{name} = {value}" for name, value in step.request.items())
 
-    async def _send_goal(self, step: PlannedStep, node: Node) -> Any:
+    async def _send_goal(self, step: PlannedStep, node: Node) -> object:
         action: Any = registry.interface_class(await self._type(step))
         client = node.create_action_client(action, step.target)
         try:
@@ -126,7 +131,7 @@ class StepRunner:
             if step.target in cache.actions():
                 return "action"
             kinds = {Kind.PUBLISHER: "topic", Kind.SERVICE: "service"}
-            return next((word for kind, word in kinds.items() if cache.endpoints(kind, step.target)), "")
+            return next((name for kind, name in kinds.items() if cache.endpoints(kind, step.target)), "")
 
         if not await self._until(lambda: bool(found()), step.timeout):
             known = [*cache.nodes(hidden=False), *cache.topics(), *cache.services()]
@@ -136,7 +141,7 @@ class StepRunner:
         return f"the {found()} is there"
 
     async def _type(self, step: PlannedStep) -> str:
-        """The type of the service or action that a step needs."""
+        """Return the type of the service or action that a step needs."""
         known = self._types.get(step.name)
         if known:
             return registry.full_name(known)
@@ -147,12 +152,12 @@ class StepRunner:
             return [str(server.type) for server in self._context.cache.endpoints(Kind.SERVICE, step.target)]
 
         if not await self._until(lambda: bool(types()), step.timeout):
-            what = "action" if step.do == "goal" else "service"
-            raise ServiceUnavailable(f"no node offers the {what} {step.target}{self._instead(step)}")
+            kind = "action" if step.do == "goal" else "service"
+            raise ServiceUnavailable(f"no node offers the {kind} {step.target}{self._instead(step)}")
         return types()[0]
 
     def _instead(self, step: PlannedStep) -> str:
-        """The end of a sentence on a step's target that is not there: what it is, and the key for that."""
+        """Return advice on a step's target that does not exist: its kind, and the key for that."""
         cache = self._context.cache
         actions, (services, hidden) = cache.served_actions(), cache.offered()
         if step.do == "call" and step.target in actions:

@@ -20,7 +20,7 @@ from graphflow.runtime.context import Context
 from graphflow.supervisor.control.clients import Clients
 from graphflow.supervisor.control.components import Components
 from graphflow.supervisor.launching import debugging
-from graphflow.supervisor.launching.programs import signal_of, words_of
+from graphflow.supervisor.launching.programs import command_of, signal_of
 from graphflow.supervisor.lifecycle_manager import Lives
 from graphflow.supervisor.processes.health import Health
 from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, no_mesh, worker_start
@@ -345,7 +345,7 @@ class Supervisor:
         self.clients.broadcast({"event": "starting", "process": process.name, "again": process.starts > 1})
         nodes = process.nodes
         if process.is_program:
-            job: messages.ProgramJob = {"command": words_of(nodes[0]), "signal": signal_of(nodes[0])}
+            job: messages.ProgramJob = {"command": command_of(nodes[0]), "signal": signal_of(nodes[0])}
             self._starter.spawn(process.name, job, process.log, environment_of(nodes))
             return
         described = [self._planned[node.name] for node in nodes]

@@ -1,1 +1,1 @@
-"""From a graph file to a running supervisor: classes are imported and asked, launch files run, programs found."""
+"""From a graph file to a running supervisor: import classes, run launch files, find programs."""

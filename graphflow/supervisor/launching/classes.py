@@ -1,4 +1,4 @@
-"""Node classes by their paths, as graph files name them: imported, and described without being run."""
+"""Node classes by their paths in graph files: import them, and describe their interfaces without running them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.user_code import place_in
@@ -27,8 +27,11 @@ from graphflow.runtime.node_options import why_not
 from graphflow.typographic import plain
 from graphflow.workspace.project import INSTALLED_DEMOS, add_interfaces
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import InterfacesJson
+
 _FOLDERS_BOUND = 200
-"""Folders of a project in which a misspelt module is looked for."""
+"""Largest number of folders of a project that are searched for a misspelt module."""
 _roots: list[str] = []
 
 
@@ -42,15 +45,15 @@ def add_root(root: str) -> None:
     add_interfaces(Path(root))
     installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
     at = next(installed, len(sys.path))
-    if root not in sys.path[:at]:  # it may be behind, after another project that is installed to be edited
+    if root not in sys.path[:at]:  # an editable install may have it further behind
         sys.path.insert(at, root)
 
 
 def import_class(class_path: str) -> type[Node]:
-    """The node class at `package.module:Class`.
+    """Import the node class at `package.module:Class`.
 
     Raises:
-        NoModule: There is no such module; the text names the nearest, or where modules are looked for.
+        NoModule: There is no such module; the text names the nearest, or the folder that is searched.
         GraphflowError: The module has no such class, or importing it failed; the text says where.
     """
     module_name, _, class_name = class_path.partition(":")
@@ -65,20 +68,20 @@ def import_class(class_path: str) -> type[Node]:
 
 
 def import_module_of(name: str, class_name: str = "") -> ModuleType:
-    """A module of a project.
+    """Import a module of a project.
 
     Args:
-        class_name: The class that is wanted of it, for the text of an error.
+        class_name: The class that is needed from it, for the text of an error.
 
     Raises:
-        NoModule: There is no such module; the text names the nearest, or where modules are looked for.
+        NoModule: There is no such module; the text names the nearest, or the folder that is searched.
         GraphflowError: Importing it failed; the text says where.
     """
     bundled = f"graphflow.{name}" if name.startswith("nodes.") else ""
     try:
         with importing(name):
             return import_module(bundled if bundled and _roots[-1:] == [str(INSTALLED_DEMOS)] else name)
-    except (Exception, SystemExit) as error:
+    except (Exception, SystemExit) as error:  # the user's module may raise anything
         if isinstance(error, ModuleNotFoundError) and error.name and name.startswith(error.name):
             if bundled and _is_there(bundled):  # a project has no such node of its own
                 return import_module_of(bundled, class_name)
@@ -88,7 +91,7 @@ def import_module_of(name: str, class_name: str = "") -> ModuleType:
 
 
 def _is_there(name: str) -> bool:
-    """Whether there is a module of that name; the packages above it are imported."""
+    """Return whether a module exists; the packages above it are imported."""
     try:
         return find_spec(name) is not None
     except ModuleNotFoundError:
@@ -96,19 +99,19 @@ def _is_there(name: str) -> bool:
 
 
 def node_classes(module: ModuleType, *, imported: bool = False) -> dict[str, type[Node]]:
-    """The node classes of a module, by name.
+    """Return the node classes of a module, by name.
 
     Args:
-        imported: Those that it has from elsewhere too.
+        imported: Include classes that it imports.
     """
     found = {k: v for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node) and v is not Node}
     return {k: v for k, v in found.items() if imported or v.__module__ == module.__name__}
 
 
 def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
-    """What is said when `wanted` cannot be imported for want of `module`: the nearest, or where it was looked for."""
+    """Describe the failed import of `wanted`, for lack of `module`: name the nearest, or the searched folder."""
     near = nearest_module(wanted, root)
-    if near == wanted:  # it is there, and another package of that name comes before it
+    if near == wanted:  # it exists, but another package of that name comes before it on sys.path
         top = wanted.partition(".")[0]
         taken = getattr(sys.modules.get(top), "__file__", None)
         return f"cannot import {wanted}: {top!r} is {taken}; give the package in {root} another name"
@@ -122,9 +125,9 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
 
 
 def nearest_module(module: str, root: str) -> str | None:
-    """The module of a project, by its full name, whose name is most like that of one that is not there.
+    """Return the full name of the project's module whose name is most like that of a missing one.
 
-    Modules beside it come first; then those of the project's folder and of the folders in it.
+    Modules of the same package come first; then those of the project's folder and its subfolders.
     """
     parent, _, last = module.rpartition(".")
     beside = getattr(sys.modules.get(parent), "__path__", [root] if not parent else [])
@@ -139,7 +142,7 @@ def nearest_module(module: str, root: str) -> str | None:
 
 
 def _where(error: BaseException) -> str:
-    """The error on one line, with the place in the user's code it came from."""
+    """Describe an error on one line, with its place in the user's code and advice."""
     if isinstance(error, SyntaxError):
         line = (error.text or "").strip()
         hint = f"; write {plain(line)}" if "invalid character" in error.msg and plain(line) != line else ""
@@ -160,16 +163,16 @@ def _where(error: BaseException) -> str:
         text += '; write `from graphflow import Node`: the page "coming from ROS 2" has each word of rclpy'
     elif missing in ("rospy", "roscpp", "roslib"):
         text += f"; {missing} is ROS 1's: write `from graphflow import Node`, or ROS 2's import rclpy"
-    elif remark := remark_on(error) or _way_beside(error, place):
+    elif remark := remark_on(error) or _advise_on_sibling(error, place):
         text += f"; {remark}"
-    # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
+    # A declaration's error gives the place of the declaration, which is nearer to the mistake than the raising frame.
     return text if text.startswith("/") else f"{place}{place and ': '}{type(error).__name__}: {text}"
 
 
-def _way_beside(error: BaseException, place: str) -> str:
-    """What to write for a module that lies beside the file that imports it; empty if that is not known.
+def _advise_on_sibling(error: BaseException, place: str) -> str:
+    """Return advice on the import of a module in the same folder; empty if there is none.
 
-    A file that is run as a program finds what lies beside it; a module of a package is found from the project's folder.
+    A program finds modules in its own folder; a module of a package is found from the project's folder.
     """
     path, _, number = place.rpartition(":")
     file, written = Path(path), _IMPORT.match(linecache.getline(path, int(number)) if number else "")
@@ -189,7 +192,7 @@ def _way_beside(error: BaseException, place: str) -> str:
 
 
 _IMPORT = re.compile(r"\s*(?:from\s+([\w.]+)\s+import\s+([^#\n]+)|import\s+([\w.]+)\s*(?:#|$))")
-"""An import of names from a module, or of one module."""
+"""Matches an import of names from a module, or of one module."""
 
 
 def _lies_in(folder: Path, module: str) -> bool:
@@ -198,19 +201,19 @@ def _lies_in(folder: Path, module: str) -> bool:
 
 
 def _as_module(file: Path) -> str:
-    """How a file is run that imports from its own package."""
+    """Describe how to run a file that imports from its own package."""
     package, above = file.parent.name, file.parent.parent
     return f"as a module of {package} it finds that: graphflow run {package}.{file.stem}, in {above}"
 
 
 def _package_of(file: Path) -> str:
-    """The package of a module of the project's; empty for none."""
+    """Return the package of a module of the project; empty for none."""
     root = next((root for root in reversed(_roots) if file.is_relative_to(root)), None)
     return "" if root is None else ".".join(file.relative_to(root).parent.parts)
 
 
 def _instead_of(word: str) -> str:
-    """The import to write for one of something that graphflow does not have; empty if that is not known."""
+    """Return advice on the import of a name that graphflow does not have; empty if there is none."""
     if word in ("msg", "srv", "action", "message", "messages"):
         return "messages are in graphflow.msgs, as in from graphflow.msgs.std_msgs.msg import String"
     names: list[str] = vars(sys.modules["graphflow"])["__all__"]  # the facade above, which the user's file imports
@@ -219,13 +222,13 @@ def _instead_of(word: str) -> str:
     return f"write from graphflow import {meant[near]}" if near is not None else ""
 
 
-def interfaces(class_paths: list[str], *, with_slips: bool = False) -> dict[str, Any]:
-    """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
+def interfaces(class_paths: list[str], *, with_slips: bool = False) -> InterfacesJson:
+    """Return interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
 
-    Beside each stands `needs_numpy`: whether nodes of the class will load it; and, if that is asked for, `slips`: those
-    in its source, which a node tells when it starts.
+    Each also has `needs_numpy`, whether nodes of the class will load NumPy, and with `with_slips` the slips in its
+    source, which a node logs when it starts.
     """
-    found: dict[str, Any] = {}
+    found: InterfacesJson = {}
     for path in class_paths:
         try:
             cls = import_class(path)

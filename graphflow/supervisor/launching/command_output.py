@@ -1,4 +1,4 @@
-"""What `$(command ...)` in a graph file stands for: what a program prints."""
+"""The substitution `$(command ...)` of graph files: the output of a program."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import shlex
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from graphflow.markup.substitutions import MAX_TEXT, SubstitutionError
 from graphflow.system import SITE
@@ -21,12 +20,12 @@ LIMIT = 30.0
 
 
 def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, str]) -> str:
-    """What a program prints.
+    """Run a program; returns its output.
 
     Args:
-        words: The program and its arguments; there is no shell.
-        on_stderr: What is done with its error output: one of `substitutions.ON_STDERR`.
-        folder: Where it runs.
+        words: The program and its arguments, which no shell reads.
+        on_stderr: The treatment of its error output: one of `substitutions.ON_STDERR`.
+        folder: Its working directory.
         env: Its environment.
 
     Raises:
@@ -34,9 +33,17 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
     """
     written = f"$(command {shlex.join(words)[:60]})"
     errors = subprocess.STDOUT if on_stderr == "capture" else subprocess.PIPE
-    options: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": errors, "cwd": folder, "env": _with_ros(env)}
     try:
-        ended = subprocess.run(words, stdin=subprocess.DEVNULL, timeout=LIMIT, check=False, **options)
+        ended = subprocess.run(
+            words,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            cwd=folder,
+            env=_with_ros(env),
+            timeout=LIMIT,
+            check=False,
+        )
         text = str(ended.stdout, "utf-8")
     except subprocess.TimeoutExpired:
         raise SubstitutionError(f"{written}: it has not ended within {LIMIT:g} s") from None
@@ -60,7 +67,7 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
 
 
 def _with_ros(env: Mapping[str, str]) -> dict[str, str]:
-    """An environment in which Python finds what programs such as xacro ask for a package's folder."""
+    """Extend an environment by graphflow's ament_index_python, which programs such as xacro import."""
     if is_ros_sourced(env):
         return dict(env)
     return {**env, "PYTHONPATH": os.pathsep.join(filter(None, [env.get("PYTHONPATH"), SITE]))}

@@ -1,4 +1,4 @@
-"""One node that is to join a running graph, as a graph file would plan it."""
+"""Planning of a node that joins a running graph."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ GIVEN = Place("command line")
 
 
 def planned_component(interface: Interface, name: str, namespace: str, ros: RosArgs, log_level: str) -> PlannedNode:
-    """The node.
+    """Plan a node as a graph file would.
 
     Args:
         ros: Its remaps and parameters.
@@ -33,6 +33,6 @@ def planned_component(interface: Interface, name: str, namespace: str, ros: RosA
 
 
 def check_component(node: PlannedNode, interface: Interface) -> list[Problem]:
-    """Every problem of the node: parameters and names that its class does not have, values that do not fit."""
+    """Return every problem of the node: unknown parameters and names, and values of the wrong type."""
     plan = Plan("", "", "", (node,))
     return check(plan, {node.class_path: interface})

@@ -1,11 +1,11 @@
-"""From a graph file to a running supervisor: what happens between `graphflow up` and the first node.
+"""The launch of a graph: from `graphflow up` to the start of the first node.
 
-The command forks the guardian before anything heavy is imported, that the supervisor, and that at once the preload
-process, so that imports there, reading the file here and waiting in the command overlap. Whatever goes wrong before the
-graph runs goes back over a report pipe, as the exit code and text the command ends with.
+The command forks the guardian before anything heavy is imported. The guardian forks the supervisor, and that at once
+the preload process, so that imports there, reading the file here and waiting in the command overlap. An error before
+the graph runs goes back over a report pipe, as the command's exit code and message.
 
-From the first moment the command holds one end of a *lifeline*: when it ends without having let go, however it ends,
-the graph goes down, or never comes up.
+From the first moment the command has one end of a *lifeline*: when it ends without having let go, however it ends, the
+graph goes down, or never comes up.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, NamedTuple
+from typing import IO, TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypedDict
 
 from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.guardian import guard, leave_note
@@ -34,23 +34,53 @@ if TYPE_CHECKING:
     from graphflow.supervisor.rundir import GraphRun, RunDirectory
     from graphflow.supervisor.supervisor import Supervisor
 
-Report = dict[str, Any]
-
 GONE = "its terminal went away"
 
 
+class Accepted(TypedDict):
+    """The report of a graph that is being brought up."""
+
+    ok: Literal[True]
+    run: dict[str, object]
+    """The run file's content."""
+    classes: dict[str, str]
+    """Places of the node classes, by class path."""
+
+
+class Refused(TypedDict):
+    """The report of a graph that cannot be started."""
+
+    ok: Literal[False]
+    exit_code: int
+    message: str
+
+
+Report: TypeAlias = Accepted | Refused
+
+
+class LaunchJob(TypedDict):
+    """The parameters of `launch`, for the supervisor."""
+
+    file: str
+    given: list[str]
+    domain: int | None
+    only: list[str]
+    debug: list[str]
+    watch: bool
+
+
 class Launched(NamedTuple):
-    """A supervisor that has begun, as the command sees it."""
+    """The command's connections to a supervisor."""
 
     report: int
-    """The descriptor its report comes from."""
+    """The reading end of the report pipe."""
     lifeline: int
     """The command's end of the lifeline."""
     wait: Callable[[], str]
-    """Waits until it has ended, with all that belonged to it; says what ended it."""
+    """Waits until the supervisor and its graph have ended; returns the cause in words."""
 
     def let_go(self) -> None:
-        """Let the graph go on without this command. Its end still shows: the lifeline stays open until then."""
+        """Let the graph outlive this command, whose end the lifeline still shows."""
         with suppress(OSError):  # it may have ended
             os.write(self.lifeline, LET_GO)
 
@@ -64,41 +94,38 @@ def launch(
     *,
     watch: bool = False,
 ) -> tuple[Report, Launched]:
-    """Start a supervisor for a graph file; returns when the graph is being brought up, or has been refused.
+    """Start a supervisor for a graph file; returns when the graph is being brought up or has been refused.
 
     Args:
         file: The graph file.
         given: `name:=value` arguments.
         domain: See `domain.domain_id`.
-        only: Nodes that are wanted, if not all are.
+        only: Nodes to start; empty for all.
         debug: Nodes whose processes wait for a debugger.
-        watch: Start nodes again when their source changes.
-
-    Returns:
-        `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
+        watch: Restart nodes when their source changes.
     """
     offer_ros2()
     ANNOUNCEMENT.begin(file)
     begin = _begin_portable if is_portable() else _begin_forked
-    begun = begin(
+    launched = begin(
         {"file": str(file), "given": given, "domain": domain, "only": list(only), "debug": list(debug), "watch": watch}
     )
     data = b""
     try:
-        while not data.endswith(b"\n") and (chunk := os.read(begun.report, 65536)):
+        while not data.endswith(b"\n") and (chunk := os.read(launched.report, 65536)):
             data += chunk
     finally:
-        os.close(begun.report)
+        os.close(launched.report)
         ANNOUNCEMENT.end()
     if not data.endswith(b"\n"):
-        return {"ok": False, "exit_code": 1, "message": f"{begun.wait()} before the graph was up"}, begun
+        return {"ok": False, "exit_code": 1, "message": f"{launched.wait()} before the graph was up"}, launched
     report: Report = json.loads(data)
     if not report["ok"]:
-        begun.wait()
-    return report, begun
+        launched.wait()
+    return report, launched
 
 
-def _begin_forked(job: dict[str, Any]) -> Launched:
+def _begin_forked(job: LaunchJob) -> Launched:
     report, write = os.pipe()
     watched, lifeline = os.pipe()
     noted, note = os.pipe()
@@ -111,9 +138,9 @@ def _begin_forked(job: dict[str, Any]) -> Launched:
             os.close(lifeline)
             ANNOUNCEMENT.leave()
             os.setsid()
-            # Told here: a supervisor that asked for its parent might get an answer after the guardian's end.
-            begun = _Launch(job, write, watched, note, guardian=os.getpid())
-            guard(begun.supervise, noted, (write, watched, note))
+            # Passed on: a supervisor that called getppid() might do so after the guardian's end.
+            process = _Launch(job, write, watched, note, guardian=os.getpid())
+            guard(process.supervise, noted, (write, watched, note))
         finally:
             os._exit(1)
     for fd in (write, watched, noted, note):
@@ -122,7 +149,7 @@ def _begin_forked(job: dict[str, Any]) -> Launched:
 
 
 def _end_of(guardian: int) -> str:
-    """Wait for the guardian, which ends with the exit code of its supervisor; returns what ended the two."""
+    """Wait for the guardian, which ends with the supervisor's exit code; returns the cause of the end in words."""
     from graphflow.machines.process import Exit
 
     code = os.waitstatus_to_exitcode(os.waitpid(guardian, 0)[1])
@@ -131,7 +158,7 @@ def _end_of(guardian: int) -> str:
     return f"the supervisor was ended by {Exit.of_status(128 - code if code > 128 else code)}"
 
 
-def _begin_portable(job: dict[str, Any]) -> Launched:
+def _begin_portable(job: LaunchJob) -> Launched:
     import subprocess
 
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.launching.launch"]
@@ -144,16 +171,16 @@ def _begin_portable(job: dict[str, Any]) -> Launched:
 
 
 def _kept(stream: IO[bytes]) -> int:
-    """A descriptor that outlives the object which has it."""
+    """Duplicate a stream's descriptor, so that it outlives the stream."""
     with stream:
         return os.dup(stream.fileno())
 
 
 def _end_at_once(directory: RunDirectory | None = None) -> None:
-    """End this process, whatever it is doing, before it has started anything."""
+    """End this process, which has started nothing yet, at once."""
     if directory is None:
         os._exit(1)
-    with directory.changing:  # and so nothing comes into the directory any more
+    with directory.changing:  # so that no other thread writes into the directory any more
         try:
             directory.release()
         finally:
@@ -170,7 +197,7 @@ class _Launch:
         guardian: The guardian's process id; 0 for none.
     """
 
-    def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1, guardian: int = 0) -> None:
+    def __init__(self, job: LaunchJob, report: int, lifeline: int, note: int = -1, guardian: int = 0) -> None:
         self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
         self._is_watching, self._debug = bool(job["watch"]), job["debug"]
         self._report_pipe, self._lifeline, self._note = report, Lifeline(lifeline, _end_at_once), note
@@ -181,16 +208,17 @@ class _Launch:
     def supervise(self) -> int:
         """Bring the graph up and supervise it to its end; returns the exit code."""
         from graphflow.errors import GraphFileError, GraphflowError, SupervisorError
+        from graphflow.supervisor.processes.starter import make_starter
 
         for name in ("SIGINT", "SIGHUP"):
             if hasattr(signal, name):
                 signal.signal(getattr(signal, name), signal.SIG_IGN)
         process_tree.name_process("gf-supervisor", f"supervisor of {self._file}")
-        process_tree.adopt_orphans()  # the nodes, should the preload process end
+        process_tree.adopt_orphans()  # the nodes, if the preload process ends
         starter = None
         try:
             keep = (self._report_pipe, *(fd for fd in (self._note,) if fd >= 0))
-            starter = self._starter = _make_starter(keep)
+            starter = self._starter = make_starter(keep)
             self._lifeline.watch()
             return self._run()
         except GraphFileError as error:
@@ -208,8 +236,8 @@ class _Launch:
             if starter is not None:
                 starter.end()
 
-    def _report(self, **report: Any) -> None:
-        if self._report_pipe < 0:  # the command already knows that the graph is up; what comes now goes to the log
+    def _report(self, report: Report) -> None:
+        if self._report_pipe < 0:  # the command already knows that the graph is up; later errors go to the log
             sys.stderr.write(f"{report}\n")
             return
         try:
@@ -218,7 +246,7 @@ class _Launch:
             return
 
     def _refuse(self, exit_code: int, message: str) -> int:
-        self._report(ok=False, exit_code=exit_code, message=message)
+        self._report({"ok": False, "exit_code": exit_code, "message": message})
         return exit_code
 
     def _run(self) -> int:
@@ -274,10 +302,10 @@ class _Launch:
             if self._note >= 0:
                 leave_note(self._note, domain, plan.name, logs / rundir.SUPERVISOR_LOG)
             router = establish()
-            if not reaches_out():  # a link that is refused keeps a graph from being started
+            if not reaches_out():  # a refused link to another machine would stop the start, so it is tried first
                 self._lifeline.on_cut(self._cut_early)
                 self._starter.begin(first_starts(plan, domain, logs))
-            from graphflow.runtime.context import Context  # all that follows overlaps with the start of the nodes
+            from graphflow.runtime.context import Context  # from here on all overlaps with the start of the nodes
 
             context = await Context.open(domain, link=False, checked=True, router=router)
             try:
@@ -299,11 +327,12 @@ class _Launch:
         step_types: dict[str, str],
     ) -> int:
         import asyncio
-        from dataclasses import replace
+        from dataclasses import asdict, replace
 
         from graphflow.supervisor import rundir
         from graphflow.supervisor.control import server as controlling
         from graphflow.supervisor.control.reachable import keep_reachable
+        from graphflow.supervisor.launching.remarks import examine, forward_network_logs
         from graphflow.supervisor.status import mirror
         from graphflow.supervisor.supervisor import Supervisor
 
@@ -321,42 +350,41 @@ class _Launch:
         self._lifeline.on_cut(partial(on_loop, cut), partial(on_loop, control.expect_nobody))
         if self._was_cut:
             cut()
-        _tell_notes(supervisor.note)
+        forward_network_logs(supervisor.note)
         await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.on_event, supervisor.starter_lost)
         run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
         classes = {path: str(interface.place) for path, interface in interfaces.items()}
-        self._report(ok=True, run=run.__dict__, classes=classes)
+        self._report({"ok": True, "run": asdict(run), "classes": classes})
         os.close(self._report_pipe)
         self._report_pipe = -1
-        linked = asyncio.create_task(context.wait_linked())
-        kept = asyncio.create_task(keep_reachable(supervisor, control, directory, run))
-        warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
-        mirrored = asyncio.create_task(mirror(supervisor, context))
-        watching = asyncio.create_task(_watch(supervisor, plan, interfaces)) if self._is_watching else None
+        background = [
+            asyncio.create_task(context.wait_linked()),
+            asyncio.create_task(keep_reachable(supervisor, control, directory, run)),
+            asyncio.create_task(examine(supervisor, plan, interfaces)),
+            asyncio.create_task(mirror(supervisor, context)),
+        ]
+        if self._is_watching:
+            background.append(asyncio.create_task(_watch(supervisor, plan, interfaces)))
         try:
             code = await supervisor.run()
             await control.wait_followed()
             return code
         finally:
             context.session.leave()
-            linked.cancel()
-            kept.cancel()
-            warned.cancel()
-            mirrored.cancel()
-            if watching is not None:
-                watching.cancel()
+            for task in background:
+                task.cancel()
             await control.close()
             await self._starter.close()
 
     def _cut_early(self) -> None:
-        """The command has ended while workers were being started: they are stopped as soon as that can be done."""
+        """Record that the command has ended while workers were being started; they are stopped once they can be."""
         self._was_cut = True
 
     def _log_to(self, path: Path) -> None:
-        """From here on the supervisor writes only to its log; the terminal belongs to the command."""
+        """Redirect all output to the supervisor's log: the terminal belongs to the command."""
         import logging
 
         null = os.open(os.devnull, os.O_RDWR)
@@ -367,29 +395,8 @@ class _Launch:
         logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
 
 
-async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
-    """Report what is odd in the graph's files and, once it is up, the deadlocks that its source shows."""
-    import asyncio
-    import logging
-
-    from graphflow.analysis.deadlock_check import findings, warnings
-    from graphflow.graph.checks.loose_ends import loose_ends
-
-    try:
-        for remark in (*plan.remarks, *map(str, loose_ends(plan, interfaces))):
-            supervisor.note(remark)  # it may be the reason why the graph does not come up
-        await supervisor.up.wait()
-        ways = await asyncio.to_thread(findings, plan, interfaces) if plan.deadlock != "off" else []
-        for text in warnings(ways, plan.file):
-            supervisor.note(text)
-    except Exception as error:  # remarks must not keep a graph from running
-        logging.getLogger("graphflow.supervisor").error("the graph was not examined: %s", error, exc_info=error)
-    finally:  # `up -d` waits for it
-        supervisor.clients.broadcast({"event": "checked"})
-
-
 async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
-    """Once the graph is up, start nodes again when their source changes."""
+    """Restart nodes when their source changes, once the graph is up."""
     from graphflow.interface import Interface
     from graphflow.supervisor.processes.watching import Watch
 
@@ -426,35 +433,8 @@ def _run_file(plan: Plan, run_id: str, logs: Path, domain: int, guardian: int) -
     )
 
 
-def _tell_notes(note: Callable[[str], None]) -> None:
-    """Pass what the supervisor's process learns about the network on to the clients that follow the graph."""
-    import logging
-
-    class Notes(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            note(record.getMessage())
-
-    for name in ("graphflow.link", "graphflow.rendezvous"):
-        logging.getLogger(name).addHandler(Notes(logging.INFO))
-
-
-def _make_starter(keep: tuple[int, ...]) -> Starter:
-    """A starter of the kind that this system uses. Must be made while this process has one thread.
-
-    Args:
-        keep: Descriptors that workers must not inherit.
-    """
-    if is_portable():
-        from graphflow.supervisor.processes.spawning import SpawningStarter
-
-        return SpawningStarter()
-    from graphflow.supervisor.processes.forking import ForkingStarter
-
-    return ForkingStarter(keep)
-
-
 def _read_line(fd: int) -> bytes:
-    """The first line that comes, and no byte of the next."""
+    """Read one line, and no byte of the next."""
     line = b""
     while not line.endswith(b"\n") and (byte := os.read(fd, 1)):
         line += byte

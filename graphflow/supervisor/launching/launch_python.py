@@ -1,4 +1,4 @@
-"""Launch files in Python: each describes itself in a process of its own, to stand-ins for ROS's launch packages."""
+"""Run Python launch files, each in a process of its own that records its launch actions."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.launchfiles.recorded import Description
 
 PYTHON_LIMIT = 20.0
-"""Seconds that a launch file may take to describe itself."""
+"""Seconds that a launch file may run."""
 
 
 def described(file: Path, name: str, values: Mapping[str, Any] | None) -> Description:
-    """What a launch file says: its `actions`, and `problems` and `remarks` on what it says in vain. It is run.
+    """Run a launch file; returns its `actions`, and `problems` and `remarks` on its unsupported parts.
 
     Args:
         name: The file as messages show it.
-        values: The arguments that it is about to be started with; None if it is only to be written down.
+        values: The arguments that it is started with; None if it is only converted.
 
     Raises:
         GraphFileError: It failed, or took too long.
     """
-    # By way of what lets Python import rclpy and the packages of the file's workspace.
+    # Through graphflow.rclpy, by which Python finds rclpy and the packages of the file's workspace.
     recorder = ["-m", "graphflow.rclpy", "-m", "graphflow.supervisor.launching.launch_recorder"]
     command = [sys.executable, "-P", *recorder, str(file)]
     command += [] if values is None else [json.dumps(values)]
@@ -34,11 +34,11 @@ def described(file: Path, name: str, values: Mapping[str, Any] | None) -> Descri
         ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
     except subprocess.TimeoutExpired:
         raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
-    if values is not None:  # what it prints is for whoever starts it
+    if values is not None:  # its output is for the user who starts it
         sys.stderr.write(ran.stderr.decode(errors="replace"))
     try:
-        told: Description = json.loads(ran.stdout)
+        recorded: Description = json.loads(ran.stdout)
     except ValueError:
-        words = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
-        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {words}")]) from None
-    return told
+        last = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {last}")]) from None
+    return recorded

@@ -1,11 +1,10 @@
-"""A launch file in Python, run in a process of its own against stand-ins that record what it describes.
+"""The recorder of Python launch files: a process that runs one against substitutes for ROS's launch packages.
 
     python -m graphflow.rclpy -m graphflow.supervisor.launching.launch_recorder FILE [VALUES]
         ->   {"actions": [...], "problems": [...], "remarks": [...]}
 
-What they are called with is written down as the actions of ROS's YAML dialect, each with its line. With VALUES, the
-file's arguments as JSON, it is about to be started: folders of packages are what they are, and a function that asks
-for a value is told it.
+The recorded calls are converted to actions of the YAML launch dialect, each with its line. VALUES, the file's arguments
+as JSON, are for a file that is to be started: then package folders and the values of arguments are real.
 """
 
 from __future__ import annotations
@@ -38,21 +37,21 @@ _HOMES = {name: f"from {module} import {name}" for module, names in NAMES.items(
     name: f"from ament_index_python.packages import {name}"
     for name in ("get_package_share_directory", "get_package_share_path", "get_package_prefix")
 }
-"""How names that launch files use are imported."""
+"""Import statements for the names that launch files use."""
 
 
 class _Environment(dict[str, str]):
-    """What a file that is only written down sees: what is not set is a substitution, and so is a path made of it."""
+    """The environment of a file that is only converted: a missing variable is a substitution, which paths keep."""
 
     def __missing__(self, name: str) -> str:
         return f"$(env {name})"
 
 
 def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
-    """Run a launch file; returns its actions, what could not be written down, and what is left out.
+    """Run a launch file; returns its actions, the problems of those that cannot be converted, and remarks.
 
     Args:
-        values: The arguments that it is about to be started with; None if it is only written down.
+        values: The arguments that it is started with; None if it is only converted.
     """
     RECORDING.file = path
     if values is not None:
@@ -60,22 +59,22 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         logging.basicConfig(level=logging.INFO, format="[%(levelname)s] [%(name)s]: %(message)s", stream=sys.stderr)
     sys.meta_path.insert(0, StandIns())
     sys.argv = ["ros2", "launch", path, *(f"{name}:={value}" for name, value in (RECORDING.values or {}).items())]
-    os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
+    os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in a shell that sources ROS 2
     before = dict(os.environ)
     if values is None:
-        os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
+        os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - for Python alone, not for child processes
     found: list[dict[str, Any]] = []
     try:
         tree = _tree(path)
         whole = _described(path, tree)
         number_targets(whole)
         found = actions(whole)
-        _tell_unused(tree, found)
+        _report_unused(tree, found)
         changed = {name: value for name, value in os.environ.items() if before.get(name) != value}
         if not found and not RECORDING.problems:
             RECORDING.remarks.append({"line": 1, "message": "the launch description has no actions"})
         found = [*({"set_env": {"name": n, "value": v, "line": 1}} for n, v in changed.items()), *found]
-    except (Exception, SystemExit) as error:  # whatever a user's file does
+    except (Exception, SystemExit) as error:  # the user's file may raise anything
         trace, line = error.__traceback__, getattr(error, "lineno", None) or RECORDING.written_at
         known: set[str] = set()
         while trace is not None:
@@ -94,18 +93,18 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def _before_launch(error: BaseException) -> str:
-    """The end of a sentence on an error of code that takes a substitution for its value; empty for others."""
+    """Return advice on code that uses a substitution as if it were its value; empty for other errors."""
     if not isinstance(error, (TypeError, ValueError, AttributeError)) or "write" in str(error):
         return ""
     of_one = next((name for name in re.findall(r"\w+", str(error)) if BASES.get(name) == "Substitution"), "")
-    if not of_one and "$(" in str(error):  # the text that stands for it, as in int(str(...))
+    if not of_one and "$(" in str(error):  # its text form, as in int(str(...))
         of_one = "a substitution"
     how = "write OpaqueFunction(function=setup), with def setup(context): and .perform(context) in it"
     return f"; {of_one} has no value before the launch: {how}" if of_one else ""
 
 
 def _explain() -> None:
-    """Have a problem whose cause is told by a remark say that, once."""
+    """Merge each problem with the remark that gives its cause."""
     static = {remark["line"] for remark in RECORDING.remarks if _IN_F_STRING not in remark["message"]}
     RECORDING.remarks = [r for r in RECORDING.remarks if _IN_F_STRING not in r["message"] or r["line"] not in static]
     for problem in RECORDING.problems:
@@ -115,25 +114,25 @@ def _explain() -> None:
                 problem["message"] = remark["message"]
 
 
-def _tell_unused(tree: ast.Module, found: list[dict[str, Any]]) -> None:
-    """Tell of actions that are in no description; of an argument that is asked for, as the problem it is."""
+def _report_unused(tree: ast.Module, found: list[dict[str, Any]]) -> None:
+    """Remark on actions that are in no description; an argument that another action uses is a problem."""
     written = json.dumps(found)
     known = {*(RECORDING.values or {}), *RECORDING.set}
     for line, message, argument in unused_actions(tree):
         is_missed = argument and re.search(rf"\$\(var '?{re.escape(argument)}'?\)", written)
-        is_set = argument in known or any(f'"{word}": {{' in written for word in ("let", "include"))
+        is_set = argument in known or any(f'"{kind}": {{' in written for kind in ("let", "include"))
         if is_missed and not is_set:
             RECORDING.problems.append({"line": line, "message": message})
-            found.insert(0, {"arg": {"name": argument, "default": "", "line": line}})  # told once
+            found.insert(0, {"arg": {"name": argument, "default": "", "line": line}})  # so that it is reported once
         else:
             RECORDING.remarks.append({"line": line, "message": message})
 
 
 def _instead(name: str, known: set[str]) -> str:
-    """The end of a sentence on a name that is not defined: the one that may be meant, and how it is imported.
+    """Return advice on an undefined name: the name that may be meant, and its import.
 
     Args:
-        known: The names that are defined where it stands.
+        known: The names that are defined there.
     """
     near = name if name in _HOMES else nearest(name, [*known, *_HOMES], cutoff=0.8)
     if near is None:
@@ -148,7 +147,7 @@ def _tree(path: str) -> ast.Module:
 
 
 def _described(path: str, tree: ast.Module) -> list[Any]:
-    """What a file describes: by its function, or where it would start it itself."""
+    """Return the description of a file: from its function, or from the `LaunchService` that it runs."""
     code = compile(tree, path, "exec")
     for node in ast.walk(tree):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Attribute) and node.value.attr in _ADDING:
@@ -161,21 +160,21 @@ def _described(path: str, tree: ast.Module) -> list[Any]:
         if any(isinstance(n, ast.Name | ast.Attribute) and _last(n) == "LaunchService" for n in ast.walk(tree)):
             try:
                 runpy.run_path(path, run_name="__main__")
-            except Described as told:
-                return told.description
+            except Described as described:
+                return described.description
         functions = {n.name: n.lineno for n in tree.body if isinstance(n, ast.FunctionDef)}
         near = nearest(_FUNCTION, functions, cutoff=0.75)
         where = f"; rename {near} in line {functions[near]}" if near else ""
         raise NameError(f"it has no function {_FUNCTION}(){where}")
-    described = space[_FUNCTION]()
-    if not isinstance(described, RecordedCall):
-        what, hint = repr(described), ""
-        if isinstance(described, (list, tuple)):
+    description = space[_FUNCTION]()
+    if not isinstance(description, RecordedCall):
+        what, hint = repr(description), ""
+        if isinstance(description, (list, tuple)):
             what, hint = "a list", "; write LaunchDescription(...) around it"
-        elif described is None:
+        elif description is None:
             hint = "; a return is missing"
         raise TypeError(f"{_FUNCTION}() returned {what}, and not a LaunchDescription{hint}")
-    return [described]
+    return [description]
 
 
 def _last(expression: ast.Name | ast.Attribute) -> str:
@@ -184,7 +183,7 @@ def _last(expression: ast.Name | ast.Attribute) -> str:
 
 def main() -> None:
     out = os.dup(1)
-    os.dup2(2, 1)  # what the file prints is not the answer
+    os.dup2(2, 1)  # output of the file must not mix with the answer
     with contextlib.redirect_stdout(sys.stderr):
         found = record(os.path.abspath(sys.argv[1]), json.loads(sys.argv[2]) if len(sys.argv) > 2 else None)
     os.write(out, json.dumps(found).encode())

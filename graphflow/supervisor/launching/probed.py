@@ -1,21 +1,25 @@
-"""The answer of a process that has imported node classes, read where none of them, nor what runs nodes, is imported."""
+"""The answer of a probe, read without importing node classes or the runtime."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from graphflow.errors import Place, Problem
 from graphflow.interface import Interface
 
+if TYPE_CHECKING:
+    from graphflow.supervisor.processes.messages import InterfacesJson
 
-def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
-    """What `interfaces` returned, as Interfaces and Problems."""
+
+def read_interfaces(data: InterfacesJson) -> dict[str, Interface | Problem]:
+    """Convert the result of `classes.interfaces` to interfaces, or the problem of each class that has none."""
     return {
-        path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
+        path: Problem(Place(""), str(value["problem"])) if "problem" in value else Interface.from_json(value)
         for path, value in data.items()
     }
 
 
-def slips_in(data: dict[str, Any]) -> list[str]:
-    """The slips in the source of the classes, each once; a class that is there twice, or derived from, has the same."""
-    return list(dict.fromkeys(text for value in data.values() for text in value.get("slips", ())))
+def slips_in(data: InterfacesJson) -> list[str]:
+    """Return the slips in the source of the classes, each once: derived classes repeat those of their base."""
+    found = (value.get("slips", ()) for value in data.values())
+    return list(dict.fromkeys(str(text) for slips in found if isinstance(slips, (list, tuple)) for text in slips))

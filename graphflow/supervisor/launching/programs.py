@@ -1,4 +1,4 @@
-"""The words that start a program of a graph, and with which one of a package gets its name, remaps and parameters."""
+"""Command lines of the programs of a graph, with the name, remaps and parameters as ROS arguments."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from graphflow.names import split
 from graphflow.workspace.packages import uses_ros
 
 
-def words_of(node: PlannedNode) -> list[str]:
-    """The program of a planned node that has no class, and its words."""
+def command_of(node: PlannedNode) -> list[str]:
+    """Return the program of a planned node that has no class, and its arguments."""
     match node.command:
-        case "graphflow", "run", *words if node.executable:
-            command = [sys.executable, "-P", "-m", "graphflow.rclpy", *words]
-        case "graphflow", *words:  # this one, whether or not it is on the PATH
-            command = [sys.executable, "-P", "-m", "graphflow", *words]
-        case (("python" | "python3"), script, *words) if script.endswith(".py") and uses_ros(Path(script)):
-            command = [sys.executable, "-P", "-m", "graphflow.rclpy", script, *words]  # that Python may have no rclpy
-        case words:
-            command = list(words)
+        case "graphflow", "run", *args if node.executable:
+            command = [sys.executable, "-P", "-m", "graphflow.rclpy", *args]
+        case "graphflow", *args:  # this one, whether or not it is on the PATH
+            command = [sys.executable, "-P", "-m", "graphflow", *args]
+        case (("python" | "python3"), script, *args) if script.endswith(".py") and uses_ros(Path(script)):
+            command = [sys.executable, "-P", "-m", "graphflow.rclpy", script, *args]  # that Python may have no rclpy
+        case program:
+            command = list(program)
     return [*command, *(_ros_args(node) if node.executable else ())]
 
 
 def signal_of(node: PlannedNode) -> str:
-    """The signal that asks such a program to end; those of ROS 2 expect what Ctrl-C sends."""
+    """Return the signal that asks such a program to end: ROS 2's programs expect that of Ctrl-C."""
     return "SIGINT" if node.executable else "SIGTERM"
 
 

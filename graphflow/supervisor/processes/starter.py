@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from graphflow.system import is_portable
+
 if TYPE_CHECKING:
     from graphflow.supervisor.processes.messages import InterfacesJson, Job, Order, ProcessEvent
 
@@ -74,3 +76,19 @@ class Starter(Protocol):
 
     def end(self) -> None:
         """Release everything, after the loop has ended."""
+
+
+def make_starter(keep: tuple[int, ...]) -> Starter:
+    """Create a starter for this system. The process must have one thread.
+
+    Args:
+        keep: Descriptors that workers must not inherit.
+    """
+    # Imported here: each starter needs modules that the other, or the other's systems, do without.
+    if is_portable():
+        from graphflow.supervisor.processes.spawning import SpawningStarter
+
+        return SpawningStarter()
+    from graphflow.supervisor.processes.forking import ForkingStarter
+
+    return ForkingStarter(keep)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from typing import Any
 
 from graphflow.errors import Place, Problem
 from graphflow.interface import Interface
@@ -13,7 +14,7 @@ from graphflow.supervisor.launching.probed import read_interfaces, slips_in
 
 def test_an_answer_is_read() -> None:
     """An Interface for each class that could be imported, and a problem for each other."""
-    told = interfaces(["graphflow.nodes.talker:Talker"])
+    told: Any = interfaces(["graphflow.nodes.talker:Talker"])
     read = read_interfaces({**told, "a:A": {"problem": "there is no module a"}})
     talker = read["graphflow.nodes.talker:Talker"]
     assert isinstance(talker, Interface)

@@ -15,7 +15,7 @@ import pytest
 from graphflow.errors import Place
 from graphflow.graph.plan import PlannedNode, Rule, Setting
 from graphflow.runtime.args import parse_ros_args
-from graphflow.supervisor.launching.programs import words_of
+from graphflow.supervisor.launching.programs import command_of
 from graphflow.system import is_portable
 from tests.cases import slow, some
 from tests.conftest import Machine, alive
@@ -65,19 +65,19 @@ def executable(name: str, **settings: Any) -> PlannedNode:
         ),
     ],
 )
-def test_words_of_an_executable(node: PlannedNode, words: list[str]) -> None:
+def test_command_of_an_executable(node: PlannedNode, words: list[str]) -> None:
     """Its own words, then what the graph file gives it, as ROS 2's; values read back as what they are."""
-    program, given = words_of(node)[:4], words_of(node)[4:]
+    program, given = command_of(node)[:4], command_of(node)[4:]
     assert program == [sys.executable, "-P", "-m", "graphflow.rclpy"]
     assert given == ["p", "e", "-x", "--ros-args", *words]
     [(_, _, read, _)] = parse_ros_args(given).params or [(None, "", None, "")]
     assert [read] == ([setting.value for setting in node.params.values()] or [None])
 
 
-def test_words_of_a_program() -> None:
+def test_command_of_a_program() -> None:
     """As they are written, unless it is graphflow itself, which need not be on the PATH."""
-    assert words_of(PlannedNode("/a", "", HERE, HERE, command=("ls", "-l"))) == ["ls", "-l"]
-    assert words_of(PlannedNode("/a", "", HERE, HERE, command=("graphflow", "ps")))[3:] == ["graphflow", "ps"]
+    assert command_of(PlannedNode("/a", "", HERE, HERE, command=("ls", "-l"))) == ["ls", "-l"]
+    assert command_of(PlannedNode("/a", "", HERE, HERE, command=("graphflow", "ps")))[3:] == ["graphflow", "ps"]
 
 
 def pids_of(machine: Machine) -> list[int]:
