@@ -17,22 +17,22 @@ LAYOUT = struct.Struct("<qqB16s")
 SIZE = LAYOUT.size
 _pack, _unpack = LAYOUT.pack, LAYOUT.unpack
 _new = tuple.__new__
-"""Makes a named tuple without its Python constructor: one is made for every message."""
+"""Creates a named tuple without its Python-level constructor: one is created for every message."""
 
 
 class MessageInfo(NamedTuple):
-    """What comes with a message."""
+    """The metadata of a message."""
 
     sequence: int
     """Sequence number, from 1 per publisher or client."""
     source_ns: int
-    """When it was sent, nanoseconds since 1970 on the sender's clock."""
+    """Time of sending, nanoseconds since 1970 on the sender's clock."""
     gid: bytes
-    """The GID, 16 bytes: the sender's or, with a response, the client's."""
+    """The GID, 16 bytes: the sender's or, in a response, the client's."""
 
 
 def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
-    """The attachment's bytes.
+    """Encode an attachment.
 
     Args:
         gid: 16 bytes.
@@ -41,7 +41,7 @@ def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
 
 
 def fields(data: bytes) -> tuple[int, int, bytes]:
-    """Read an attachment into what `MessageInfo` is made of.
+    """Read the fields of `MessageInfo` from an attachment.
 
     Raises:
         DecodeError: `data` has another length or layout.

@@ -1,7 +1,7 @@
-"""Definitions from elsewhere: type descriptions read back into text, and what a set of texts must satisfy to be used.
+"""Definitions from other processes and bags: type descriptions converted to text, and checks before texts are used.
 
-They come from other processes and from bags, so nothing in them is believed: names and sizes go through the parser of
-definitions, and together they must have the hash that was announced.
+Nothing in them is trusted: names and sizes go through the parser of definitions, and together they must have the
+announced hash.
 
 Source: type_description_interfaces (REP-2016); RIHS01.
 """
@@ -18,25 +18,25 @@ from graphflow.wire.schema import Action, FieldType, Interface, Message, Service
 from graphflow.wire.typehash import HIDDEN, Lookup, base_of, referenced, type_hash
 
 DESCRIBING = "type_description_interfaces/srv/GetTypeDescription"
-"""The service that tells a node's definitions."""
+"""The service that returns a node's type definitions."""
 TYPES_BOUND = 500
-"""Types that one definition may need."""
+"""Largest number of types that one definition may need."""
 LINE_BOUND = 1000
-"""Characters that a line may have beside its comment."""
+"""Longest line without its comment, in characters."""
 TEXT_BOUND = 300_000
-"""Characters that their texts may have together."""
+"""Largest total of their texts, in characters."""
 FIELDS_BOUND = 20_000
-"""Fields that a type may have with those of the types in it, each counted wherever it is used. The largest of ROS 2's
-own types has a thirtieth of that; the code for as many takes about a second to write."""
+"""Largest number of fields of a type with its nested types, counted wherever used. The largest of ROS 2's own types has
+a thirtieth of that; writing the code for as many takes about a second."""
 FIXED_BOUND = 1_000_000
-"""Values that a message may have in arrays of fixed size: they are there in an empty one, too."""
+"""Largest number of values in arrays of fixed size, which an empty message contains, too."""
 VALUES_BOUND = 2_000_000
-"""Values that the lists of a message of such a type may have, arrays of numbers left out."""
+"""Largest number of values in the lists of a message of such a type, arrays of numbers left out."""
 _BY_HAND = "if it is meant, put its files into interfaces/"
 
 
-class FieldSaid(NamedTuple):
-    """A field as a type description has it: type_description_interfaces/msg/Field and FieldType."""
+class DescribedField(NamedTuple):
+    """A field of a type description: type_description_interfaces/msg/Field and FieldType."""
 
     name: str
     type_id: int
@@ -45,18 +45,18 @@ class FieldSaid(NamedTuple):
     nested_type_name: str
 
 
-def definition_of(name: str, fields: list[FieldSaid]) -> str:
-    """The text of a message's definition file. Defaults and constants are not in descriptions.
+def definition_of(name: str, fields: list[DescribedField]) -> str:
+    """Return the text of a message's definition file. Type descriptions have no defaults and constants.
 
     Raises:
-        InterfaceError: A field is of no type that there is.
+        InterfaceError: A field has an unknown type.
     """
     if [f.name for f in fields] == [HIDDEN]:
         return ""
     return "".join(f"{_type(name, field)} {field.name}\n" for field in fields)
 
 
-def _type(name: str, field: FieldSaid) -> FieldType:
+def _type(name: str, field: DescribedField) -> FieldType:
     found = base_of(field.type_id)
     if found is None:
         raise InterfaceError(f"{name}: field {field.name!r} is of the unknown type {field.type_id}")
@@ -67,15 +67,15 @@ def _type(name: str, field: FieldSaid) -> FieldType:
 
 
 def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, Interface]:
-    """The interfaces of a definition and of all types in it, and no others.
+    """Check the definition of a type and of its nested types; returns exactly their interfaces.
 
     Args:
         name: `package/kind/Name`.
         digest: The hash that it must have; empty for any.
-        sources: The texts of its definition file and of the others', by type.
+        sources: The definition texts of the type and of its nested types, by type.
 
     Raises:
-        InterfaceError: They are wrong, too large, not complete, or of another hash.
+        InterfaceError: They are wrong, too large, incomplete, or of another hash.
     """
     if len(sources) > TYPES_BOUND or sum(map(len, sources.values())) > TEXT_BOUND:
         raise InterfaceError(f"{name}: its definition is larger than any that there is")
@@ -105,7 +105,7 @@ def _messages(interface: Interface) -> tuple[Message, ...]:
 
 
 def _refuse_size(name: str, lookup: Lookup) -> None:
-    """Refuse types whose code, or whose empty messages, would fill the memory."""
+    """Refuse types whose code, or whose empty messages, would exhaust the memory."""
     size = extent(name, lookup)
     if size.fields > FIELDS_BOUND:
         raise InterfaceError(f"{name}: with the types in it, it has more than {FIELDS_BOUND:,} fields; {_BY_HAND}")

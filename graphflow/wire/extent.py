@@ -1,7 +1,7 @@
-"""The size of a message type together with the types in it: those without an end are refused.
+"""The extent of a message type with its nested types; types of unbounded size are refused.
 
-Twenty definitions of two fields each, every one in the one before, are a million fields: sizes multiply, and the texts
-do not show it.
+Twenty definitions of two fields each, each nested in the next, make a million fields: sizes multiply, and the texts do
+not show it.
 """
 
 from __future__ import annotations
@@ -12,25 +12,25 @@ from graphflow.errors import InterfaceError
 from graphflow.wire.typehash import Lookup
 
 DEPTH_BOUND = 50
-"""Types that may be in each other: what handles types calls itself for each."""
+"""Deepest nesting of types: code for types recurses once for each level."""
 
 
 class Extent(NamedTuple):
-    """The size of a type."""
+    """The extent of a type."""
 
     depth: int
-    """Types in each other, itself included."""
+    """Levels of nesting, the type itself included."""
     fields: int
-    """Its fields and those of the types in it, each counted wherever it is used: code is written for all of them."""
+    """Number of fields with those of nested types, counted wherever they are used: code is written for all of them."""
     values: int
-    """Values of an empty message: arrays of fixed size are there in it."""
+    """Number of values in an empty message, which contains its arrays of fixed size."""
 
 
 def extent(name: str, lookup: Lookup) -> Extent:
-    """The size of a message type.
+    """Return the extent of a message type.
 
     Raises:
-        InterfaceError: It contains itself, or more types in each other than `DEPTH_BOUND`.
+        InterfaceError: It contains itself, or is nested deeper than `DEPTH_BOUND`.
     """
     known: dict[str, Extent] = {}
 
@@ -39,7 +39,7 @@ def extent(name: str, lookup: Lookup) -> Extent:
             raise InterfaceError(f"a message cannot contain itself: {' in '.join([type_, *reversed(chain)])}")
         if type_ not in known:
             depth = fields = values = 0
-            # Before its fields are looked at: nothing here may go as deep as somebody's definitions do.
+            # Before its fields are read: the recursion here must not go as deep as a foreign definition does.
             if len(chain) >= DEPTH_BOUND:
                 raise _too_deep(name)
             for field in lookup(type_).fields:

@@ -6,10 +6,10 @@ import xxhash
 
 
 def gid(token: str) -> bytes:
-    """The GID's 16 bytes: the low 64 bits of the hash little-endian, then the high 64 bits."""
+    """Return the GID's 16 bytes: the low 64 bits of the hash little-endian, then the high 64 bits."""
     return xxhash.xxh3_128_digest(token.encode())[::-1]
 
 
 def gid_text(value: bytes) -> str:
-    """The GID as `ros2 topic info -v` prints it: `01.0f.44...`."""
+    """Format a GID as `ros2 topic info -v` does: `01.0f.44...`."""
     return ".".join(f"{b:02x}" for b in value)

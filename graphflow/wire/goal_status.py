@@ -1,7 +1,7 @@
-"""The states of an action's goals as CDR, in which a change writes one entry, however many goals there are.
+"""The states of an action's goals as CDR, in which a change writes a single entry, however many goals there are.
 
-An `action_msgs/msg/GoalStatusArray` is a list of entries: a goal's id (16 bytes), in all but the first the 3 bytes by
-which the time is aligned, when the goal was accepted (int32 seconds, uint32 nanoseconds), and its state (int8).
+An `action_msgs/msg/GoalStatusArray` is a list of entries: a goal's id (16 bytes); in all but the first, 3 bytes of
+padding; the time at which it was accepted (int32 seconds, uint32 nanoseconds); its state (int8).
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from graphflow.times import NANOSECONDS
 _ENTRY = struct.Struct("<16s3xiIb")
 _HEADER = b"\0\1\0\0"
 _PADDING = slice(16, 19)
-"""The padding that the first entry does not have."""
+"""Padding before an entry's time, which the first entry does not have."""
 _FIRST = 8
-"""Where the first id begins: behind the header and the number of entries."""
+"""Offset of the first id: behind the header and the number of entries."""
 _TRIES = 16
-"""How often an id is looked for further on: by chance it never is where no entry begins."""
+"""Largest number of searches for an id: finding it by chance at an offset that is no entry's is next to impossible."""
 _OTHERS = _FIRST - 3
-"""Where the others' ids begin, if one counts back by whole entries."""
+"""Offset of the other ids, modulo the size of an entry."""
 
 
 class GoalStates:
-    """The goals that an action server tells of."""
+    """The goals that an action server announces."""
 
     def __init__(self) -> None:
         self._ids: list[bytes] = []
@@ -33,7 +33,7 @@ class GoalStates:
         self._entries = bytearray()
 
     def add(self, goal_id: bytes, accepted_ns: int) -> None:
-        """Tell of one more goal; its state is unknown at first.
+        """Add a goal, whose state is unknown at first.
 
         Args:
             accepted_ns: The time of day, nanoseconds since 1970.
@@ -43,11 +43,11 @@ class GoalStates:
         self._entries += _ENTRY.pack(goal_id, accepted_ns // NANOSECONDS, accepted_ns % NANOSECONDS, 0)
 
     def put(self, goal_id: bytes, state: int) -> None:
-        """Change the state of a goal that is told of."""
+        """Change the state of a goal."""
         self._entries[(self._places[goal_id] + 1) * _ENTRY.size - 1] = state
 
     def remove(self, goal_id: bytes) -> None:
-        """Tell no more of a goal; the last one takes its place."""
+        """Remove a goal; the last one takes its place."""
         place, last = self._places.pop(goal_id), self._ids.pop()
         entry = self._entries[-_ENTRY.size :]
         del self._entries[-_ENTRY.size :]
@@ -56,14 +56,14 @@ class GoalStates:
             self._entries[place * _ENTRY.size : (place + 1) * _ENTRY.size] = entry
 
     def to_bytes(self) -> bytes:
-        """All of them as a message."""
+        """Encode the goals as a message."""
         entries = memoryview(self._entries)
         count = len(self._ids).to_bytes(4, "little")
         return b"".join((_HEADER, count, entries[: _PADDING.start], entries[_PADDING.stop :]))
 
 
 def states_in(payload: bytes, goal_ids: Iterable[bytes]) -> dict[bytes, int]:
-    """The states of goals of which a message tells.
+    """Read the states of goals from a message.
 
     Raises:
         DecodeError: It is no such message, or of another byte order.
@@ -78,7 +78,7 @@ def states_in(payload: bytes, goal_ids: Iterable[bytes]) -> dict[bytes, int]:
         for _ in range(_TRIES):
             if at <= _FIRST or not (at - _OTHERS) % _ENTRY.size:
                 break
-            at = payload.find(goal_id, at + 1, size)  # those were bytes of two entries that look like it
+            at = payload.find(goal_id, at + 1, size)  # a match across two entries
         else:
             at = -1
         if at >= 0:

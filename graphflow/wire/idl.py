@@ -1,6 +1,6 @@
-"""The text of .msg, .srv and .action files read into schemas.
+"""The parser of .msg, .srv and .action files.
 
-Every rule broken is an `InterfaceError` with the line and the rule, since students write these files by hand.
+Every broken rule is an `InterfaceError` with the line and the rule: students write these files by hand.
 
 Source: ROS 2 interface definition article, "Field names", "Constants", "Default values".
 """
@@ -33,7 +33,7 @@ _CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z")
 _TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _PACKAGE_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*\Z")
 _NEAR_SEPARATOR = re.compile(r"\s*[-_=\u2013\u2014]+\s*(#.*)?\Z")
-"""A line that is probably meant to part two sections."""
+"""A line that is probably meant to separate two sections."""
 _STRING = re.compile(r"""(?P<q>["'])(?P<body>(?:\\.|(?!(?P=q))[^\\])*)(?P=q)\Z""")
 _ALIASES = {"Header": "std_msgs/msg/Header"}
 _ELSEWHERE = {"double": "float64", "float": "float32", "int": "int32", "uint": "uint32", "short": "int16"} | {
@@ -43,7 +43,7 @@ _ELSEWHERE = {"double": "float64", "float": "float32", "int": "int32", "uint": "
     "time": "builtin_interfaces/Time",
     "duration": "builtin_interfaces/Duration",
 }
-"""Types of C++, Python, Java and ROS 1, and those that take their place."""
+"""Types of C++, Python, Java and ROS 1, with their replacements."""
 _SLIPS = (
     (re.compile(r"(?:vector|list|List|std::vector|sequence)[<\[]([\w/]+)[>\]]"), r"\1[]"),
     (re.compile(r"(string|wstring)[<(](\d+)[>)]?"), r"\1<=\2"),
@@ -52,22 +52,22 @@ _SLIPS = (
     (re.compile(r"([a-z]\w*)(?:\.msg)?\.([A-Z]\w*)(\[.*\])?"), r"\1/\2\3"),
     (re.compile(r"([a-z]\w*)::(?:msg::)?([A-Z]\w*)(\[.*\])?"), r"\1/\2\3"),
 )
-"""Types as other languages and hasty fingers write them, and as they are written."""
+"""Common misspellings of types, with their corrections."""
 _SEPARATOR = "---"
 _COMMENTS = ("//", "/*")
-"""Beginnings of comments in other languages."""
+"""Prefixes of comments in other languages."""
 
 
 def is_type_name(text: str) -> bool:
-    """Whether an interface may be called so."""
+    """Return whether an interface may have this name."""
     return _TYPE_NAME.match(text) is not None
 
 
 def check_interface_name(package: str, name: str) -> None:
-    """Refuse a package or type name that ROS 2 would refuse.
+    """Check a package or type name by ROS 2's rules.
 
     Raises:
-        InterfaceError: With the rule.
+        InterfaceError: It breaks a rule, which the text gives.
     """
     if not _PACKAGE_NAME.match(package):
         raise InterfaceError(f"package {package!r}: lower-case letters, digits and single _, beginning with a letter")
@@ -76,10 +76,10 @@ def check_interface_name(package: str, name: str) -> None:
 
 
 def parse(full_name: str, text: str) -> Interface:
-    """Read the definition of `package/msg/Name`, `package/srv/Name` or `package/action/Name`.
+    """Parse the definition of `package/msg/Name`, `package/srv/Name` or `package/action/Name`.
 
     Raises:
-        InterfaceError: The first fault, with its line in `text`.
+        InterfaceError: The first mistake, with its line in `text`.
     """
     package, kind, name = full_name.split("/")
     check_interface_name(package, name)
@@ -126,7 +126,7 @@ def _sections(full_name: str, text: str, expected: int) -> list[list[_Line]]:
 
 
 def without_comment(line: str) -> str:
-    """A line of a definition up to its comment; a `#` in a text is none."""
+    """Strip the comment of a line; a `#` inside a string does not start one."""
     quote, escaped = "", False
     for i, c in enumerate(line):
         if escaped:
@@ -195,7 +195,7 @@ def _member(package: str, line: str) -> Field | Constant:
 
 
 def _turned(name: str, rest: str, package: str) -> str:
-    """A field whose name stands before its type, the right way round; empty for another."""
+    """Return a field that was written name first in the right order; empty if that is not the mistake."""
     name, type_text = name.rstrip(":"), rest.split()[0].rstrip(",;")
     try:
         parse_type(type_text, package)
@@ -205,7 +205,7 @@ def _turned(name: str, rest: str, package: str) -> str:
 
 
 def parse_type(text: str, package: str) -> FieldType:
-    """`float64[3]`, `string<=8`, `Point`, `geometry_msgs/Point[]` as a type; bare names are of `package`.
+    """Parse a type such as `float64[3]`, `string<=8`, `Point` or `geometry_msgs/Point[]`; bare names are of `package`.
 
     Raises:
         InterfaceError: `text` is none of these.
@@ -233,7 +233,7 @@ def parse_type(text: str, package: str) -> FieldType:
 
 
 def _put_right(slip: re.Pattern[str], with_: str, text: str) -> str:
-    """A type that is written otherwise, as it should be; empty for another text."""
+    """Return the correction of a misspelt type; empty if there is none."""
     found = slip.fullmatch(text)
     meant = found.expand(with_) if found is not None else ""
     return meant if _TYPE.match(meant) else ""

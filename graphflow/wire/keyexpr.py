@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 
 def dds_type(type_name: str) -> str:
-    """`std_msgs/msg/String` as `std_msgs::msg::dds_::String_`."""
+    """Convert `std_msgs/msg/String` to `std_msgs::msg::dds_::String_`."""
     package, kind, name = type_name.split("/")
     return f"{package}::{kind}::dds_::{name}_"
 
 
 def ros_type(dds_name: str) -> str:
-    """`std_msgs::msg::dds_::String_` as `std_msgs/msg/String`; anything else as it is."""
+    """Convert `std_msgs::msg::dds_::String_` to `std_msgs/msg/String`; return anything else unchanged."""
     head, marker, tail = dds_name.partition("dds_::")
     if not marker or not tail.endswith("_"):
         return dds_name
@@ -35,7 +35,7 @@ class DataKey(NamedTuple):
 
 
 def parse_data_key(key: str) -> DataKey | None:
-    """The parts of a key, or None when it is not a data key."""
+    """Parse a data key; None if it is not one."""
     parts = key.split("/")
     if len(parts) < 4 or not parts[0].isdecimal():
         return None

@@ -1,9 +1,9 @@
-"""Liveliness tokens: how nodes and endpoints announce themselves, and their QoS in a few characters.
+"""Liveliness tokens: the announcements of nodes and endpoints, with their QoS in a few characters.
 
     @ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<node>
     @ros2_lv/<domain>/<zid>/<nid>/<eid>/MP|MS|SS|SC/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>
 
-Every `/` inside a chunk is written `%`. Parsing is lenient, as peers of other versions add chunks and values.
+Every `/` inside a chunk is written `%`. Parsing is lenient, as peers of other versions append chunks and values.
 
 Source: rmw_zenoh design document, "Graph cache"; rmw_zenoh liveliness_utils.
 """
@@ -21,7 +21,7 @@ from graphflow.wire.gid import gid
 
 ADMIN_SPACE = "@ros2_lv"
 TOKEN_BOUND = 4_000
-"""Characters of a token: those of four names of the greatest length, and room."""
+"""Longest token in characters: four names of the greatest length, and room."""
 
 
 _LARGEST = 2**64 - 1
@@ -37,7 +37,7 @@ class Kind(StrEnum):
 
 
 NODES = f"{ADMIN_SPACE}/*/*/*/*/{Kind.NODE}/**"
-"""The key that the tokens of all nodes match, in all domains."""
+"""The key that matches the tokens of all nodes in all domains."""
 
 
 def _mangle(name: str) -> str:
@@ -68,12 +68,12 @@ class Entity(_Entity):
 
     @property
     def node_name(self) -> str:
-        """The node's full name."""
+        """The full name of the node."""
         return join(self.namespace, self.node)
 
     @cached_property
     def token(self) -> str:
-        """The token; for a parsed entity exactly as received, since its GID is the hash of that."""
+        """The token; of a parsed entity exactly as received, since its GID is a hash of that."""
         parts = [
             ADMIN_SPACE,
             str(self.domain),
@@ -99,12 +99,12 @@ class Entity(_Entity):
 
 
 def watch_key(domain: int) -> str:
-    """The key that all tokens of a domain match."""
+    """Return the key that matches all tokens of a domain."""
     return f"{ADMIN_SPACE}/{domain}/**"
 
 
 def whole_number(text: str) -> int | None:
-    """A number from the network, of 64 bits at most; None for anything else. Long ones are never converted."""
+    """Parse a number from the network, of 64 bits at most; None for anything else. Long texts are never converted."""
     if not (text.isascii() and text.isdecimal() and len(text) <= _DIGITS):
         return None
     number = int(text)
@@ -115,7 +115,7 @@ _KINDS = {kind.value: kind for kind in Kind}
 
 
 def parse_token(token: str) -> Entity | None:
-    """The entity that a token announces, or None when it announces none known here."""
+    """Parse a token; None if it announces nothing known here."""
     if len(token) > TOKEN_BOUND or not token.isprintable():
         return None
     parts = token.split("/")
@@ -141,7 +141,7 @@ _SECOND = 1_000_000_000
 
 
 def qos_chunk(qos: Qos) -> str:
-    """A profile in a token: fields that equal rmw_zenoh's defaults are left empty."""
+    """Encode a profile for a token: values that equal rmw_zenoh's defaults are left empty."""
 
     def unless(value: int, default: int) -> str:
         return "" if value == default else str(value)
@@ -162,9 +162,9 @@ def qos_chunk(qos: Qos) -> str:
     )
 
 
-@lru_cache(maxsize=256)  # a graph uses few different ones, in thousands of tokens
+@lru_cache(maxsize=256)  # a graph uses few different profiles in thousands of tokens
 def parse_qos(chunk: str) -> Qos:
-    """Read a QoS chunk; whatever is missing or not understood gets its default."""
+    """Parse a QoS chunk; missing or unknown values get their defaults."""
     fields = [part.split(",") for part in chunk.split(":")]
 
     def number(field: int, part: int, default: int) -> int:

@@ -1,7 +1,7 @@
-"""How a link tells this machine's commands which net profile is in force.
+"""The announcement of net profiles: a link tells the commands of this machine which profile is in force.
 
-@graphflow/<domain>/net/<zid>/<file>/<patterns>      a token, file and patterns quoted; none of graphflow's own leave
-                                                     the machine
+@graphflow/<domain>/net/<zid>/<file>/<patterns>      a token, with file and patterns quoted; graphflow's own keys
+                                                     never leave the machine
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from urllib.parse import quote, unquote
 from graphflow.errors import printable
 
 TOKEN_BOUND = 1 << 16
-"""Characters of a token that are read."""
+"""Longest token that is read, in characters."""
 
 
 class NetToken(NamedTuple):
-    """A net profile that is in force."""
+    """A net profile in force."""
 
     file: str
     allow: tuple[str, ...]
-    """Patterns of names, with * for one part and ** for any number of them."""
+    """Patterns of names: `*` matches one part, `**` any number of them."""
 
     def passes(self, name: str) -> bool:
-        """Whether a topic or service may pass."""
+        """Return whether a topic or service may pass."""
         return any(_matches(pattern, name) for pattern in self.allow)
 
     def __str__(self) -> str:
@@ -32,17 +32,17 @@ class NetToken(NamedTuple):
 
 
 def token(domain: int, zid: str, file: str, allow: Iterable[str]) -> str:
-    """The token of a link."""
+    """Return the token of a link."""
     return f"@graphflow/{domain}/net/{zid}/{quote(file, safe='')}/{quote(' '.join(allow), safe='')}".replace("*", "%2A")
 
 
 def watch_key(domain: int) -> str:
-    """The key that matches the tokens of all links of a domain."""
+    """Return the key that matches the tokens of all links of a domain."""
     return f"@graphflow/{domain}/net/**"
 
 
 def refusal(name: str, profiles: Iterable[NetToken]) -> str:
-    """Which net profile keeps a topic or service on its machine, and what to do about it; empty if none does."""
+    """Describe which net profile keeps a topic or service on its machine, and the remedy; empty if none does."""
     blocking = next((profile for profile in profiles if not profile.passes(name)), None)
     if blocking is None:
         return ""
@@ -58,10 +58,10 @@ def parse(text: str) -> NetToken | None:
 
 
 def _matches(pattern: str, name: str) -> bool:
-    """Whether a name is of a pattern. In time that grows with both lengths, since anybody may announce patterns."""
+    """Return whether a name matches a pattern, in time O(pattern * name), since any process may announce patterns."""
     parts, names = pattern.split("/")[1:], name.split("/")[1:]
     at = there = 0
-    star, begun = -1, 0  # the last `**`, and where in the name it ends so far: only there is it worth another try
+    star, begun = -1, 0  # the last `**`, and the end of its match so far: backtracking only to the last one suffices
     while there < len(names):
         if at < len(parts) and parts[at] == "**":
             star, begun, at = at, there, at + 1

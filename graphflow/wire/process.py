@@ -1,7 +1,7 @@
-"""How a graphflow process shows itself in a domain, and where it answers other processes.
+"""The tokens of graphflow processes in a domain, and the keys at which they answer queries.
 
 @graphflow/<domain>/proc/<zid>/<uid>/<pid>/<host>    the token of a process
-@graphflow/<domain>/<what>/<zid>                     its answers: `answer_key`
+@graphflow/<domain>/<what>/<zid>                     the key of its answers: `answer_key`
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from graphflow.wire.liveliness import TOKEN_BOUND, whole_number
 
 
 class ProcessToken(NamedTuple):
-    """What a process says about itself."""
+    """A process as its token describes it."""
 
     zid: str
-    """The id of its session."""
+    """The Zenoh id of its session."""
     user: str
     pid: int
     host: str
@@ -27,37 +27,37 @@ class ProcessToken(NamedTuple):
 
     @property
     def why_silent(self) -> str:
-        """What may keep the process from answering, and what to do about it."""
+        """Explain why the process may not answer, with the remedy."""
         if self.host == host_name() and is_stopped(self.pid):
             return f"it is stopped: kill -CONT {self.pid}"
         return "it is stopped, or something holds its interpreter, or it cannot be reached"
 
     @property
     def command(self) -> str:
-        """The command that started the process, where this system can tell."""
+        """The command line of the process, where this system can read it."""
         try:
-            words = _bytes(f"/proc/{self.pid}/cmdline").split(b"\0") if self.host == host_name() else []
+            args = _bytes(f"/proc/{self.pid}/cmdline").split(b"\0") if self.host == host_name() else []
         except OSError:
             return ""
-        return b" ".join(words).decode(errors="replace").strip()
+        return b" ".join(args).decode(errors="replace").strip()
 
 
 def token(domain: int, zid: str) -> str:
-    """This process's own token."""
+    """Return this process's own token."""
     return f"@graphflow/{domain}/proc/{zid}/{user_id()}/{os.getpid()}/{host_name()}"
 
 
 def watch_key(domain: int) -> str:
-    """The key that matches all process tokens of a domain."""
+    """Return the key that matches all process tokens of a domain."""
     return f"@graphflow/{domain}/proc/**"
 
 
 WAITS, NUMBERS, LOOK, GROUPS, GOALS = "waits", "numbers", "look", "groups", "goals"
-"""What a process answers; see `deadlock.inspection` and `runtime.reasons`."""
+"""Kinds of answers; see `deadlock.inspection` and `runtime.reasons`."""
 
 
 def answer_key(domain: int, what: str, zid: str = "*") -> str:
-    """Where the processes of a domain answer."""
+    """Return the key at which the processes of a domain answer."""
     return f"@graphflow/{domain}/{what}/{zid}"
 
 
@@ -71,14 +71,14 @@ def parse(text: str) -> ProcessToken | None:
 
 
 def is_stopped(pid: int) -> bool:
-    """Whether a process of this machine is stopped, as by Ctrl-Z or a debugger; False where the system does not say."""
+    """Return whether a local process is stopped, as by Ctrl-Z or a debugger; False if the system cannot tell."""
     return _state(pid) in ("T", "t")
 
 
 def stopped() -> dict[int, str]:
-    """The stopped processes of this machine that may be of this graph, by number: a sentence each with the next step.
+    """Describe the stopped processes of this machine that may belong to this graph, by pid, each with its next step.
 
-    The network forgets a process that does not answer for some seconds; the system knows it, on Linux.
+    The network forgets a process that does not answer for some seconds; Linux still lists it.
     """
     found = {}
     for pid in sorted(int(name) for name in _listed("/proc") if name.isdecimal()):
@@ -86,7 +86,7 @@ def stopped() -> dict[int, str]:
             if is_stopped(pid) and b"zenoh" in _bytes(f"/proc/{pid}/maps") and _rendezvous_of(pid) == _rendezvous():
                 command = _bytes(f"/proc/{pid}/cmdline").replace(b"\0", b" ").decode(errors="replace").strip()
                 found[pid] = f"process {pid}, {command}, is stopped: kill -CONT {pid}"
-        except OSError:  # it has ended, or is another user's
+        except OSError:  # it has ended, or belongs to another user
             continue
     return found
 
@@ -94,13 +94,13 @@ def stopped() -> dict[int, str]:
 def _listed(folder: str) -> list[str]:
     try:
         return os.listdir(folder)
-    except OSError:  # another system
+    except OSError:  # not Linux
         return []
 
 
 def _rendezvous_of(pid: int) -> str:
-    words = _bytes(f"/proc/{pid}/environ").split(b"\0")
-    return next((os.fsdecode(w.partition(b"=")[2]) for w in words if w.startswith(b"GRAPHFLOW_RENDEZVOUS=")), "")
+    variables = _bytes(f"/proc/{pid}/environ").split(b"\0")
+    return next((os.fsdecode(v.partition(b"=")[2]) for v in variables if v.startswith(b"GRAPHFLOW_RENDEZVOUS=")), "")
 
 
 def _rendezvous() -> str:
@@ -108,7 +108,7 @@ def _rendezvous() -> str:
 
 
 def _state(pid: int) -> str:
-    """Linux's letter for a process's state."""
+    """Return Linux's letter for the state of a process."""
     try:
         return _bytes(f"/proc/{pid}/stat").decode(errors="replace").rpartition(")")[2].split()[0]
     except (OSError, IndexError):

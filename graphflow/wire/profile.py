@@ -1,4 +1,4 @@
-"""Wire profiles: which definitions keys and tokens use, since a few differ between ROS 2's distributions.
+"""Wire profiles: the definitions used in keys and tokens, a few of which differ between ROS 2's distributions.
 
 | | jazzy | kilted | lyrical |
 |---|---|---|---|
@@ -27,10 +27,10 @@ _LYRICAL_TRANSITION_EVENT = "RIHS01_78b19e2be41a797fc009c96bda68944182edabec7852
 
 
 def wire_profile() -> str:
-    """This process's profile: GRAPHFLOW_WIRE, else jazzy.
+    """Return this process's profile: GRAPHFLOW_WIRE, else jazzy.
 
     Raises:
-        GraphflowError: The variable holds something other than a profile's name.
+        GraphflowError: The variable has another value than a profile's name.
     """
     profile = os.environ.get(VARIABLE, "").strip() or PROFILES[0]
     if profile not in PROFILES:
@@ -39,13 +39,13 @@ def wire_profile() -> str:
 
 
 def wire_type(name: str, profile: str) -> str:
-    """The name that an interface has on a profile's wire."""
+    """Return the name of an interface on a profile's wire."""
     package, _, rest = name.partition("/")
     return f"turtlesim_msgs/{rest}" if package == "turtlesim" and profile != "jazzy" else name
 
 
 def speakers(entity: Entity) -> tuple[str, ...]:
-    """The profiles that an endpoint with such a token can belong to; empty when that is unknown."""
+    """Return the profiles that an endpoint may use, judged by its token; empty if that is unknown."""
     if entity.hash == "TypeHashNotSupported":
         return ("humble",)
     if "/backends:" in entity.token:
@@ -57,7 +57,7 @@ def speakers(entity: Entity) -> tuple[str, ...]:
 
 
 def advice(entity: Entity, profile: str) -> str:
-    """What to do when a peer's token is of another profile than this process's; empty when it is not."""
+    """Advise on a peer whose token is of another profile than this process's; empty if it is not."""
     spoken = speakers(entity)
     if not spoken or profile in spoken:
         return ""

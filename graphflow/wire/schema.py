@@ -1,4 +1,4 @@
-"""The shape of an interface: what the codec, the type hash and the message classes are made from.
+"""The schema of interfaces, from which codecs, type hashes and message classes are derived.
 
 Source: rosidl's interface definition article; derived types as made by rosidl_generator_type_description.
 """
@@ -30,15 +30,15 @@ Value = bool | int | float | str | list["Value"]
 
 
 def string_length(base: str, text: str) -> int:
-    """What a string's bound counts: bytes of UTF-8 in a `string`, UTF-16 code units in a `wstring`."""
+    """Return the length that a string's bound limits: UTF-8 bytes of a `string`, UTF-16 code units of a `wstring`."""
     return len(text.encode()) if base == "string" else len(text.encode("utf-16-le", "surrogatepass")) // 2
 
 
 class FieldType(NamedTuple):
-    """A field's type: `string<=5[<=10]` is base string, string_bound 5, a bounded array of 10."""
+    """The type of a field: `string<=5[<=10]` is base string, string_bound 5, a bounded array of 10."""
 
     base: str
-    """A primitive's name, or `package/msg/Name`."""
+    """The name of a primitive, or `package/msg/Name`."""
     string_bound: int = 0
     array: str = ""
     """The kind of array: empty for none, `fixed`, `bounded` or `unbounded`."""
@@ -68,7 +68,7 @@ class Constant(NamedTuple):
 
 
 class Message(NamedTuple):
-    """A message type. `name` is `package/msg/Name`, or `package/srv/Name_Request` and the like."""
+    """A message type. `name` is `package/msg/Name`, or derived, as `package/srv/Name_Request`."""
 
     name: str
     fields: tuple[Field, ...] = ()
@@ -88,7 +88,7 @@ class Service(NamedTuple):
 
     @property
     def event(self) -> Message:
-        """What service introspection publishes: the call's metadata, then request and response if known."""
+        """The message of service introspection: the call's metadata, then request and response if known."""
         return Message(
             f"{self.name}_Event",
             (
@@ -116,7 +116,7 @@ class Service(NamedTuple):
 
 
 class Action(NamedTuple):
-    """An action type with the services and messages that carry it."""
+    """An action type with its derived services and messages."""
 
     name: str
     goal: Message

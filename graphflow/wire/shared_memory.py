@@ -1,9 +1,9 @@
-"""How processes of one user on one machine tell each other of memory that they share.
+"""The messages by which processes of one user on one machine share memory.
 
 @graphflow/<domain>/reader/<zid>/<eid>/<pid>/<fd>    the token of a subscription that reads rings, and its proof
-@graphflow/<domain>/ring/<data key>                  descriptors, in the place of a topic's large messages
+@graphflow/<domain>/ring/<data key>                  descriptors, in place of a topic's large messages
 
-A reader proves that it is a process of the same user on the same machine by an open file: an anonymous one with its
+A reader proves that it is a process of the same user on the same machine by an open file: an anonymous file with the
 session's id in its name, which only such a process can have at `/proc/<pid>/fd/<fd>`.
 """
 
@@ -19,27 +19,27 @@ DESCRIPTOR_SIZE = _DESCRIPTOR.size
 
 
 class Descriptor(NamedTuple):
-    """Where a message lies."""
+    """The place of a message in shared memory."""
 
     pid: int
     """The writing process."""
     fd: int
-    """The ring's file there."""
+    """The descriptor of the ring's file in that process."""
     ring: int
-    """A random number that the ring begins with."""
+    """A random number at the beginning of the ring."""
     slot: int
     start: int
-    """Bytes from the slot's beginning."""
+    """Offset in bytes from the beginning of the slot."""
     size: int
     generation: int
-    """The slot's while it holds the message."""
+    """The generation of the slot while it holds the message."""
 
     def pack(self) -> bytes:
         return _DESCRIPTOR.pack(*self)
 
 
 def unpack(payload: bytes) -> Descriptor | None:
-    """Read a descriptor; None if it is none."""
+    """Parse a descriptor; None if it is not one."""
     return Descriptor._make(_DESCRIPTOR.unpack(payload)) if len(payload) == DESCRIPTOR_SIZE else None
 
 
@@ -57,12 +57,12 @@ def reader_token(domain: int, reader: Reader) -> str:
 
 
 def readers_key(domain: int) -> str:
-    """The key that the tokens of all readers match."""
+    """Return the key that matches the tokens of all readers."""
     return f"@graphflow/{domain}/reader/**"
 
 
 def parse_reader(token: str) -> Reader | None:
-    """Read a token; None if the text is none."""
+    """Parse a token; None if the text is not one."""
     parts = token.split("/") if len(token) <= TOKEN_BOUND and token.isprintable() else []
     if len(parts) != 7 or parts[0] != "@graphflow" or parts[2] != "reader":
         return None
@@ -71,5 +71,5 @@ def parse_reader(token: str) -> Reader | None:
 
 
 def ring_key(domain: int, data_key: str) -> str:
-    """Where the descriptors of a topic's large messages are published."""
+    """Return the key for the descriptors of a topic's large messages."""
     return f"@graphflow/{domain}/ring/{data_key}"

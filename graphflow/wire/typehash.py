@@ -1,6 +1,6 @@
 """RIHS01: the hash of a type's description, part of every key and token.
 
-Source: REP-2011; rosidl_generator_type_description. Defaults, constants and comments do not enter.
+Source: REP-2011; rosidl_generator_type_description. Defaults, constants and comments are not hashed.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from graphflow.wire.schema import FieldType, Message
 
 PREFIX = "RIHS01_"
 HIDDEN = "structure_needs_at_least_one_member"
-"""The field that a type without fields is described with."""
+"""The field that describes a type without fields."""
 
 _IDS = {
     "int8": 2,
@@ -37,19 +37,19 @@ _BASES = {number: base for base, number in (*_IDS.items(), *_BOUNDED_STRING_IDS.
 _ARRAY_OFFSETS = {"": 0, "fixed": 48, "bounded": 96, "unbounded": 144}
 
 Lookup = Callable[[str], Message]
-"""Finds the schema of `package/msg/Name`."""
+"""Returns the schema of `package/msg/Name`."""
 
 
 def type_id(type_: FieldType) -> int:
-    """The number of a field type, type_description_interfaces/msg/FieldType."""
+    """Return the number of a field type, as in type_description_interfaces/msg/FieldType."""
     base = _BOUNDED_STRING_IDS[type_.base] if type_.string_bound else _IDS.get(type_.base, 1)
     return base + _ARRAY_OFFSETS[type_.array]
 
 
 def base_of(number: int) -> tuple[str, str] | None:
-    """The reverse of `type_id`: the base, empty for a nested type, and the kind of array; None for no type's number.
+    """Invert `type_id`: return the base, empty for a nested type, and the kind of array; None for an unknown number.
 
-    A `char` is described as a `uint8`, and reads back as one.
+    A `char` is described as a `uint8`, and read back as one.
     """
     kinds = [kind for kind, offset in _ARRAY_OFFSETS.items() if offset // 48 == number // 48]
     base = "" if number % 48 == 1 else _BASES.get(number % 48)
@@ -58,7 +58,7 @@ def base_of(number: int) -> tuple[str, str] | None:
 
 def _describe(message: Message) -> dict[str, object]:
     fields: Iterable[tuple[str, FieldType]] = [(f.name, f.type) for f in message.fields]
-    # A type without fields is described, and sent, as one hidden byte.
+    # A type without fields is described, and encoded, as one hidden byte.
     fields = fields or [(HIDDEN, FieldType("uint8"))]
     return {
         "type_name": message.name,
@@ -78,7 +78,7 @@ def _describe(message: Message) -> dict[str, object]:
 
 
 def referenced(message: Message, lookup: Lookup) -> dict[str, Message]:
-    """Every type reachable from `message`, itself left out, by name."""
+    """Return every type that is reachable from `message`, without itself, by name."""
     found: dict[str, Message] = {}
     todo = [message]
     while todo:
@@ -91,7 +91,7 @@ def referenced(message: Message, lookup: Lookup) -> dict[str, Message]:
 
 
 def type_description(message: Message, lookup: Lookup) -> str:
-    """The JSON text that is hashed."""
+    """Return the JSON text that is hashed."""
     others = referenced(message, lookup)
     return json.dumps(
         {
@@ -102,5 +102,5 @@ def type_description(message: Message, lookup: Lookup) -> str:
 
 
 def type_hash(message: Message, lookup: Lookup) -> str:
-    """`RIHS01_` and 64 hex digits."""
+    """Return `RIHS01_` and 64 hex digits."""
     return PREFIX + hashlib.sha256(type_description(message, lookup).encode()).hexdigest()

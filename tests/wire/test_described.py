@@ -10,7 +10,7 @@ import pytest
 from graphflow.errors import InterfaceError
 from graphflow.msgs import registry
 from graphflow.wire.cdr.codec import Codec
-from graphflow.wire.described import FieldSaid, definition_of, verified
+from graphflow.wire.described import DescribedField, definition_of, verified
 from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import base_of, referenced, type_id
 from tests.cases import sample, slow
@@ -18,9 +18,9 @@ from tests.cases import sample, slow
 from .messages import types_of
 
 
-def said(field: Field) -> FieldSaid:
+def said(field: Field) -> DescribedField:
     t = field.type
-    return FieldSaid(field.name, type_id(t), t.size, t.string_bound, "" if t.is_primitive else t.base)
+    return DescribedField(field.name, type_id(t), t.size, t.string_bound, "" if t.is_primitive else t.base)
 
 
 def described(message: Message) -> dict[str, str]:
@@ -52,7 +52,7 @@ def test_services_and_actions(name: str) -> None:
 
 def test_a_type_without_fields() -> None:
     """Is described by one that is hidden."""
-    assert definition_of("std_msgs/msg/Empty", [FieldSaid("structure_needs_at_least_one_member", 3, 0, 0, "")]) == ""
+    assert definition_of("std_msgs/msg/Empty", [DescribedField("structure_needs_at_least_one_member", 3, 0, 0, "")]) == ""
 
 
 @pytest.mark.parametrize("number", [-1, 0, 12, 14, 19, 20, 23, 48, 96, 192, 255])
@@ -60,7 +60,7 @@ def test_numbers_of_no_type(number: int) -> None:
     """Are no type, and no error of another kind."""
     assert base_of(number) is None
     with pytest.raises(InterfaceError, match=f"p/msg/A: field 'x' is of the unknown type {number}"):
-        definition_of("p/msg/A", [FieldSaid("x", number, 0, 0, "")])
+        definition_of("p/msg/A", [DescribedField("x", number, 0, 0, "")])
 
 
 FIXED = "uint8[1000] x\n"

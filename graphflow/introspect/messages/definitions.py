@@ -11,7 +11,7 @@ from graphflow.errors import GraphflowError, InterfaceError, UnknownInterface, p
 from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
-from graphflow.wire.described import DESCRIBING, FieldSaid, definition_of, verified
+from graphflow.wire.described import DESCRIBING, DescribedField, definition_of, verified
 from graphflow.wire.liveliness import Entity, Kind
 
 if TYPE_CHECKING:
@@ -62,9 +62,9 @@ def sources_in(response: GetTypeDescription_Response, entity: Entity) -> dict[st
     return {name: files[name] for name in needed}
 
 
-def _field_of(field: Field) -> FieldSaid:
+def _field_of(field: Field) -> DescribedField:
     kind = field.type
-    return FieldSaid(field.name, kind.type_id, kind.capacity, kind.string_capacity, kind.nested_type_name)
+    return DescribedField(field.name, kind.type_id, kind.capacity, kind.string_capacity, kind.nested_type_name)
 
 
 def endpoints_of(cache: GraphCache, name: str, kinds: tuple[Kind, ...]) -> list[Entity]:

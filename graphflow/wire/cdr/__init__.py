@@ -1,1 +1,1 @@
-"""CDR, ROS 2's payload format. Begin with `codec`; `encode` and `decode` write the functions of a type as source."""
+"""CDR, ROS 2's payload format. Start with `codec`; `encode` and `decode` generate the functions of a type."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy import ndarray
@@ -11,7 +11,8 @@ from graphflow.wire.schema import INTEGER_RANGES
 
 __all__ = ["DTYPES", "as_array", "ndarray", "view", "zeros"]
 
-DTYPES: dict[str, np.dtype[Any]] = {
+Array: TypeAlias = "ndarray[Any, Any]"
+DTYPES: dict[str, np.dtype[np.generic]] = {
     "bool": np.dtype(np.bool_),
     "byte": np.dtype(np.uint8),
     "char": np.dtype(np.uint8),
@@ -21,20 +22,20 @@ DTYPES: dict[str, np.dtype[Any]] = {
 }
 
 
-def as_array(value: Any, base: str) -> ndarray[Any, Any]:
-    """`value` as a one-dimensional contiguous array of the ROS type `base`; no copy when it already is one.
+def as_array(value: Any, base: str) -> Array:
+    """Return `value` as a one-dimensional contiguous array of the ROS type `base`, without a copy if it already is one.
 
     Raises:
-        ValueError: An element is of another kind or does not fit.
+        ValueError: An element has another kind or does not fit.
     """
     dtype = DTYPES[base]
     if isinstance(value, (bytes, bytearray, memoryview)) and dtype.itemsize == 1 and base != "bool":
         return np.frombuffer(value, dtype)
-    array: ndarray[Any, Any] = np.asarray(value) if len(value) else np.zeros(0, dtype)
+    array: Array = np.asarray(value) if len(value) else np.zeros(0, dtype)
     if array.dtype == dtype:
         return np.ascontiguousarray(array).reshape(-1)
     if dtype.kind in "iu" and array.dtype.kind in "fO" and all(type(v) is int for v in value):
-        # No single numpy type holds these integers: numpy chose floats or objects, and that loses digits.
+        # NumPy found no integer type for these and chose floats or objects, which would lose digits.
         _check_range(min(value), max(value), base)
         return np.array(value, dtype)
     if array.dtype.kind not in {"b": "b", "i": "iu", "u": "iu", "f": "iuf"}[dtype.kind]:
@@ -57,18 +58,18 @@ def _check_range(smallest: int, largest: int, base: str) -> None:
             raise ValueError(f"{edge} does not fit {base}: {low} to {high}")
 
 
-def zeros(base: str, count: int) -> ndarray[Any, Any]:
-    """A new array of `count` zeros of the ROS type `base`."""
-    result: ndarray[Any, Any] = np.zeros(count, DTYPES[base])
+def zeros(base: str, count: int) -> Array:
+    """Return a new array of `count` zeros of the ROS type `base`."""
+    result: Array = np.zeros(count, DTYPES[base])
     return result
 
 
-def view(buf: bytes, dtype: np.dtype[Any], count: int, offset: int) -> ndarray[Any, Any]:
-    """A read-only array over `buf`; a copy when the byte order is not this machine's or the elements are bools."""
+def view(buf: bytes, dtype: np.dtype[np.generic], count: int, offset: int) -> Array:
+    """Return a read-only array over `buf`; a copy if the byte order is foreign or the elements are bools."""
     if not count:
         return np.frombuffer(b"", dtype.newbyteorder("="))
     if dtype.kind == "b":
-        result: ndarray[Any, Any] = np.frombuffer(buf, np.uint8, count, offset) != 0
+        result: Array = np.frombuffer(buf, np.uint8, count, offset) != 0
         result.flags.writeable = False
         return result
     array = np.frombuffer(buf, dtype, count, offset)

@@ -1,8 +1,8 @@
-"""Writes and compiles, for each message type, what copies a message without going through CDR.
+"""The compiler of clone functions, which copy a message without a detour through CDR.
 
 The copy is what a receiver would have decoded: numbers are checked and rounded by the same `struct` formats, nested
-messages are new objects, and arrays are read-only (see `wire.lending`, which says when theirs is shared). So it makes
-no difference to a node whether its peer lives in the same process.
+messages are new objects, and arrays are read-only (`wire.cdr.lending` decides which are shared). So a node sees no
+difference when its peer is in the same process.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ Clone = Callable[[Any], Any]
 
 
 class Cloner(Code):
-    """Each number of the run stands for its source; `targets` has where each goes."""
+    """Each number of the run is its source expression; `targets` has the destinations."""
 
     def __init__(self, types: Types, parts: Parts) -> None:
         super().__init__(types, "<", parts)
         self.targets: list[str] = []
 
     def flush(self) -> None:
-        """Carry the numbers so far from the one message to the other."""
+        """Write the copy of the numbers so far from one message to the other."""
         if not self.run:
             return
         items, self.run = self.run, []
@@ -78,7 +78,7 @@ class Cloner(Code):
         items = self.fresh("l")
         self.line(f"{items} = {source}")
         if type_.is_primitive:
-            # Their characters or keys would be taken for the strings.
+            # A str or mapping would iterate as strings: their characters or keys.
             self.line(f"if isinstance({items}, (str, dict)): raise TypeError('not a sequence')")
             self.names["text"], self.names["wide_text"] = _text, _wide_text
             function = "text" if type_.base == "string" else "wide_text"
@@ -90,7 +90,7 @@ class Cloner(Code):
 
 
 def _text(text: str, bound: int) -> str:
-    """A string as it arrives; raises what encoding it would."""
+    """Return a string as it would arrive; raises the error of encoding it."""
     if text.__class__ is str and not bound and text.isascii():
         return text
     encoded = text.encode()
@@ -107,7 +107,7 @@ def _wide_text(text: str, bound: int) -> str:
 
 
 def compile_clone_part(message: Message, types: Types, parts: Parts) -> Clone:
-    """`clone(message)`, for a part of another message: wrong values raise anything."""
+    """Compile `clone(message)` for a nested message: wrong values raise any exception."""
     code = Cloner(types, parts)
     code.message(message, "m", "o")
     code.flush()
@@ -118,7 +118,7 @@ def compile_clone_part(message: Message, types: Types, parts: Parts) -> Clone:
 
 
 def compile_clone(message: Message, types: Types, encode: Callable[[Any], bytes]) -> Clone:
-    """`clone(message)`; raises EncodeError as encoding it would."""
+    """Compile `clone(message)`, which raises the same EncodeError as encoding."""
     part = compile_clone_part(message, types, {})
 
     def clone(m: Any) -> Any:
@@ -126,7 +126,7 @@ def compile_clone(message: Message, types: Types, encode: Callable[[Any], bytes]
             return part(m)
         except EncodeError:
             raise
-        except Exception:  # converts what can be converted, and names what cannot
+        except Exception:  # any error: the slow path converts, or names the field
             encode(m)
             return part(types.checked(m))
 

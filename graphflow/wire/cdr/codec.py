@@ -1,13 +1,13 @@
-"""CDR, ROS 2's payload format: a pair of functions written and compiled for each message type.
+"""CDR, ROS 2's payload format: a pair of functions generated and compiled for each message type.
 
-Runs of numbers become one `struct` call, numeric arrays one copy. Where a field lies depends on the length of the
+Runs of numbers become one `struct` call, numeric arrays one copy. The position of a field depends on the length of the
 strings and arrays before it, so each run after the first of those has one `struct` per possible alignment, chosen
-by the position; everything else is settled when the function is made.
+by the position; everything else is settled at compile time.
 
 Positions count from the start of the payload, its 4-byte header included; alignment counts from after the header.
 
-Source: OMG formal/02-06-51 chapter 15.3 (plain CDR, XCDR1), as ROS 2's serialisers use it. Padding is written as zeros
-and ignored when read, surplus bytes at the end are ignored.
+Source: OMG formal/02-06-51 chapter 15.3 (plain CDR, XCDR1), as ROS 2's serializers use it. Padding is written as zeros
+and ignored when read; surplus bytes at the end are ignored.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ Decode = Callable[[bytes], Any]
 class Codec:
     """`encode(message) -> payload` and `decode(payload) -> message` for one type.
 
-    Each is written and compiled when it is first asked for, which takes about half a millisecond, and for types with
-    numeric arrays loads numpy. Arrays of a decoded message are read-only views of the payload.
+    Each is compiled at its first use, which takes about half a millisecond; types with numeric arrays then load numpy.
+    Arrays of a decoded message are read-only views of the payload.
 
     `encode` raises EncodeError naming the field; `decode` raises DecodeError and nothing else.
     """
@@ -46,7 +46,7 @@ class Codec:
 
     @cached_property
     def encode_parts(self) -> EncodeParts:
-        """`encode_parts(message) -> (parts, size)`: the payload as buffers, of which arrays are the message's own."""
+        """`encode_parts(message) -> (parts, size)`: the payload as buffers; arrays are the message's own."""
         return compile_encode_parts(self._message, self._types)
 
     @cached_property
@@ -55,7 +55,7 @@ class Codec:
 
     @cached_property
     def clone(self) -> Clone:
-        """Copies a message into one that a receiver in the same process may have."""
+        """`clone(message)`: copies a message for a receiver in the same process."""
         return compile_clone(self._message, self._types, self.encode)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What writing an encoder and writing a decoder have in common: source text, and runs of numbers laid out by `struct`.
+"""The common part of the generated encoders and decoders: source text, and runs of numbers laid out by `struct`.
 
 Positions count from the start of the payload, its 4-byte header included; alignment counts from after the header.
 """
@@ -28,16 +28,16 @@ FORMATS = {
     "float64": "d",
 }
 Order = Literal["<", ">"]
-"""Byte order in `struct`'s and numpy's spelling."""
+"""Byte order as `struct` and numpy write it."""
 
 HEADER = 4
 LITTLE = 0x0100
-"""The header bytes 00 01 00 00 read as a little-endian uint32: plain CDR, little-endian."""
+"""The header bytes 00 01 00 00 as a little-endian uint32: plain CDR, little-endian."""
 
 
 Style = Literal["numpy", "list", "rosidl"]
-"""How messages hold their fields: numeric arrays as numpy's; or as lists, for which numpy is not loaded; or all as in
-the classes that rosidl generates for Python, where `x` is kept in `_x`, a byte is a `bytes` of length one, and
+"""The representation of fields: numeric arrays as numpy's; or as lists, for which numpy is not loaded; or all as in the
+classes that rosidl generates for Python, where `x` is stored in `_x`, a byte is a `bytes` of length one, and
 sequences of numbers are `array.array`."""
 
 
@@ -45,26 +45,26 @@ Parts = dict[str, Any]
 
 
 class Types(NamedTuple):
-    """What the compiler needs to know about types other than the one at hand."""
+    """The compiler's access to types other than the one it compiles."""
 
     schema: Callable[[str], Message]
     message_class: Callable[[str], type]
     checked: Callable[[Any], Any]
-    """A copy of a message with every value checked and converted; raises EncodeError naming the field."""
+    """Copies a message with every value checked and converted; raises EncodeError naming the field."""
     style: Style = "numpy"
-    """How the classes hold their fields."""
+    """The representation of fields in the classes."""
     values: int = 20_000_000
-    """Values that the lists of a decoded message may have, arrays of numbers left out. A byte of a payload can become
-    an object: without a bound, a hundred megabytes from anybody would take all memory."""
+    """Largest number of values in the lists of a decoded message, arrays of numbers left out. A byte of a payload can
+    become an object: without a bound, a hundred megabytes from any peer would exhaust the memory."""
 
     @property
     def prefix(self) -> str:
-        """What comes before a field's name in that of the attribute."""
+        """The prefix of a field's name in the name of its attribute."""
         return "_" if self.style == "rosidl" else ""
 
 
 def min_size(type_: FieldType, schema: Callable[[str], Message]) -> int:
-    """The fewest bytes a value of the type can take on the wire, padding left out."""
+    """Return the smallest encoded size of a value of the type, padding left out."""
     if type_.array in ("bounded", "unbounded") or type_.base in ("string", "wstring"):
         each = 4
         if type_.array == "fixed":
@@ -78,21 +78,21 @@ def min_size(type_: FieldType, schema: Callable[[str], Message]) -> int:
 
 
 def value_count(type_: FieldType, schema: Callable[[str], Message]) -> int:
-    """The values that one element of the type has, itself included; a list in it counts as one."""
+    """Return the number of values in one element of the type, itself included; a list in it counts as one."""
     if type_.array or type_.is_primitive:
         return 1
     return 1 + sum(value_count(f.type, schema) for f in schema(type_.base).fields)
 
 
 class Item(NamedTuple):
-    """One number of a run: its struct format and the expression it comes from or goes to. Format `x` has none."""
+    """One number of a run: its struct format, and the expression of its source or target. Format `x` has none."""
 
     format: str
     expression: str
 
 
 def layout_of(items: list[Item], start: int, order: Order) -> struct.Struct:
-    """The struct that holds a run which begins at position `start`."""
+    """Return the struct of a run that begins at position `start`."""
     text, position = str(order), start
     for item in items:
         size = struct.calcsize(item.format)
@@ -103,10 +103,10 @@ def layout_of(items: list[Item], start: int, order: Order) -> struct.Struct:
 
 
 class Code:
-    """Source text under construction, the objects it refers to, and the run of numbers not yet written out.
+    """Source text under construction, the objects it refers to, and the run of numbers not yet written.
 
     Args:
-        parts: The functions for types that are in lists, by name: each is written once, however often it is used.
+        parts: The functions for types in lists, by name: each is written once, however often it is used.
     """
 
     def __init__(self, types: Types, order: Order, parts: Parts) -> None:
@@ -118,9 +118,9 @@ class Code:
         self.depth = 1
         self.run: list[Item] = []
         self.making: list[str] = []
-        """Lines that make messages of values, once all values are there."""
+        """Lines that create messages, for when all their values exist."""
         self.position: int | None = HEADER
-        """The code's position in the payload, while that is the same for all messages; then None."""
+        """The position in the payload while it is the same for all messages; then None."""
         self._count = 0
 
     def fresh(self, prefix: str) -> str:
@@ -133,18 +133,18 @@ class Code:
         return name
 
     def part(self, name: str, compile_part: Callable[[Message, Types, Parts], Any]) -> str:
-        """The name of the function for a type that is in a list."""
+        """Return the name of the function for a type in a list."""
         if name not in self.parts:
             self.parts[name] = compile_part(self.types.schema(name), self.types, self.parts)
         return self.constant("part", self.parts[name])
 
     def make(self, cls: type, values: list[str], target: str) -> None:
-        """Have a message made of the values of its fields."""
+        """Plan the creation of a message from the values of its fields."""
         made = f"{self.constant('U', unchecked_class(cls))}({', '.join(values)})"
         self.making += [f"{target} = {made}", f"{target}.__class__ = {self.constant('C', cls)}"]
 
     def make_all(self) -> None:
-        """Write what makes the messages, inner ones first."""
+        """Write the creation of the messages, inner ones first."""
         for text in self.making:
             self.line(text)
 
@@ -152,16 +152,16 @@ class Code:
         self.lines.append("    " * self.depth + text)
 
     def format_of(self, base: str) -> str:
-        """The struct format of a number."""
+        """Return the struct format of a number."""
         return "c" if base == "byte" and self.types.style == "rosidl" else FORMATS[base]
 
     def number(self, format_: str, expression: str) -> None:
         self.run.append(Item(format_, expression))
 
     def take_run(self, method: str) -> tuple[str, list[str], int | None] | None:
-        """The struct for the run so far, its operands, and its size if that is fixed.
+        """Return the struct of the run so far, its operands, and its size if that is fixed.
 
-        The struct is an expression: where the size is fixed, of its bound `method`; else of the struct itself.
+        The struct is an expression: of its bound `method` if the size is fixed, else of the struct itself.
         """
         if not self.run:
             return None

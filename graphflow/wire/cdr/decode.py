@@ -1,4 +1,4 @@
-"""Writes and compiles the decoder of a message type."""
+"""The compiler of the decoder of a message type."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class Decoder(Code):
         self.line("p = e")
 
     def unpacked(self, type_: FieldType, target: str, count: str) -> None:
-        """Numbers one by one: each takes many times the memory that it takes on the wire."""
+        """Unpack numbers one by one: each takes many times its encoded size in memory."""
         self.limited(count)
         self.names["unpack_from"] = struct.unpack_from
         self.line(f"{target} = list(unpack_from(f'{self.order}{{{count}}}{self.format_of(type_.base)}', buf, p))")
@@ -155,7 +155,7 @@ class Decoder(Code):
 
 
 def _read_array(code: str, payload: bytes, is_foreign: bool) -> array[Any]:
-    """Numbers as `array.array`, with the bytes of each swapped if they are in the order that this machine's are not."""
+    """Read numbers as `array.array`; swap their bytes if their order is not this machine's."""
     numbers = array(code, payload)
     if is_foreign is (sys.byteorder == "little"):
         numbers.byteswap()
@@ -163,7 +163,7 @@ def _read_array(code: str, payload: bytes, is_foreign: bool) -> array[Any]:
 
 
 def _narrow(utf32: bytes, order: Order) -> str:
-    """UTF-16 code units, each sent as a uint32, as text."""
+    """Convert UTF-16 code units, each sent as a uint32, to text."""
     count = len(utf32) // 4
     units = struct.unpack(f"{order}{count}I", utf32)
     if max(units, default=0) > 0xFFFF:
@@ -172,7 +172,7 @@ def _narrow(utf32: bytes, order: Order) -> str:
 
 
 def compile_decode_part(order: Order, message: Message, types: Types, parts: Parts) -> Any:
-    """`decode(buf, p, size, left) -> (message, p)`: read from position p; `left` has how many values may come."""
+    """Compile `decode(buf, p, size, left) -> (message, p)`: read at position p; `left` bounds the number of values."""
     code = Decoder(types, order, parts)
     code.position = None
     code.message(message, "o")

@@ -1,4 +1,4 @@
-"""Writes and compiles the encoder of a message type."""
+"""The compiler of the encoder of a message type."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Encoder(Code):
                 self.line(f"p += {size}")
 
     def go_dynamic(self) -> None:
-        """From here on the position is the variable `p`."""
+        """Switch to a position that only the variable `p` knows."""
         self.flush()
         if self.position is not None:
             self.line(f"p = {self.position}")
@@ -55,7 +55,7 @@ class Encoder(Code):
     def single(self, type_: FieldType, expression: str) -> None:
         if type_.base in FORMATS:
             if type_.base == "bool":
-                # struct would take any object as true: what is not True or False is not a key, and so not a bool.
+                # struct packs any object by its truth value: a lookup by key accepts only True and False.
                 self.names["BOOL"] = {True: True, False: False}
                 expression = f"BOOL[{expression}]"
             self.number(self.format_of(type_.base), expression)
@@ -122,7 +122,7 @@ class Encoder(Code):
         self.depth -= 1
 
     def rosidl_array(self, type_: FieldType, expression: str) -> None:
-        """What rosidl's classes hold in place of numpy's arrays: lists of bools or bytes, and `array.array`."""
+        """Encode rosidl's representation of arrays: lists of bools or bytes, and `array.array`."""
         a, format_ = self.fresh("a"), FORMATS[type_.base]
         self.line(f"{a} = {expression}")
         check_count(self, type_, f"len({a})")
@@ -156,7 +156,7 @@ class Encoder(Code):
         items, item = self.fresh("l"), self.fresh("i")
         self.line(f"{items} = {expression}")
         if type_.is_primitive:
-            # Their characters or keys would be taken for the strings.
+            # A str or mapping would iterate as strings: their characters or keys.
             self.line(f"if isinstance({items}, (str, dict)): raise TypeError('not a sequence')")
         check_count(self, type_, f"len({items})")
         if type_.array != "fixed":
@@ -172,7 +172,7 @@ class Encoder(Code):
 
 
 def check_count(code: Code, type_: FieldType, count: str) -> None:
-    """Write what refuses an array with more or fewer elements than its type allows."""
+    """Write the check of an array's number of elements."""
     if type_.array == "fixed":
         code.line(f"if {count} != {type_.size}: raise ValueError('wrong length')")
     elif type_.array == "bounded":
@@ -180,7 +180,7 @@ def check_count(code: Code, type_: FieldType, count: str) -> None:
 
 
 def _flags(values: Iterable[object]) -> bytes:
-    """Truth values as bytes."""
+    """Encode truth values as bytes."""
     return bytes(1 if value is True else 0 if value is False else _refuse(value) for value in values)
 
 
@@ -189,13 +189,13 @@ def _refuse(value: object) -> int:
 
 
 def _widen(utf16: bytes) -> bytes:
-    """UTF-16 code units, each as a uint32."""
+    """Widen UTF-16 code units to a uint32 each."""
     count = len(utf16) // 2
     return struct.pack(f"<{count}I", *struct.unpack(f"<{count}H", utf16))
 
 
 def compile_encode_part(message: Message, types: Types, parts: Parts) -> Any:
-    """`encode(message, parts, p) -> p`: append to a payload that is at position p."""
+    """Compile `encode(message, parts, p) -> p`: append to a payload that is at position p."""
     code = Encoder(types, parts)
     code.position = None
     code.message(message, "m")
@@ -209,7 +209,7 @@ def compile_encode(message: Message, types: Types) -> Callable[[Any], bytes]:
 
 
 def compile_encode_parts(message: Message, types: Types) -> Callable[[Any], tuple[list[Any], int]]:
-    """The payload in parts, of a type that has an array."""
+    """Compile the encoder that returns the payload in parts, for a type with an array."""
     return cast("Callable[[Any], tuple[list[Any], int]]", _compile(message, types, "parts, p"))
 
 
@@ -230,7 +230,7 @@ def _compile(message: Message, types: Types, result: str) -> Callable[..., Any]:
         code.flush()
         code.line(f"return {result}")
     code.depth -= 1
-    # Any wrong value fails above in its own way; the slow path converts what can be converted and names what cannot.
+    # Any wrong value fails above, in its own way; the slow path converts or names the field.
     code.names["EncodeError"] = EncodeError
     code.line("except EncodeError: raise")
     code.line("except Exception: pass")

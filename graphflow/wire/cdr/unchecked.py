@@ -1,7 +1,7 @@
-"""Makes messages of values that need no check, such as those that a decoder has just read.
+"""Creation of messages from values that need no check, as those of a decoder.
 
-The constructor of a message class checks what it is given. A class of the same fields without checks makes the object,
-which then becomes one of the message class: both are structs of the same layout.
+The constructor of a message class checks its arguments. A twin class with the same fields and no checks creates the
+object, whose class is then changed to the message class: both are structs of the same layout.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from typing import Any
 from msgspec import Struct, defstruct
 
 LENT = "_lent"
-"""The attribute of a message that has its lent arrays, by field; see `wire.lending`."""
+"""The attribute of a message with its lent arrays by field; see `wire.cdr.lending`."""
 
 
 @cache
 def unchecked_class(cls: Any) -> type[Struct]:
-    """A class that takes the fields of a message class by position, and checks nothing.
+    """Return a class that takes the fields of a message class by position, without checks.
 
-    Assign the message class to the `__class__` of what it makes.
+    Assign the message class to the `__class__` of its instances.
     """
-    made = next(base for base in cls.__mro__ if "SCHEMA" in base.__dict__)  # subclasses of the user's add no fields
+    made = next(base for base in cls.__mro__ if "SCHEMA" in base.__dict__)  # a user's subclasses add no fields
     fields = [(name, Any, None) if name == LENT else (name, Any) for name in made.__struct_fields__]
     return defstruct(made.__name__, fields, bases=made.__bases__, eq=False)
 
 
 def unchecked(cls: Any, *values: Any) -> Any:
-    """A message of a class, with the values of its fields in their order."""
+    """Create a message from the values of its fields, in their order."""
     message: Any = unchecked_class(cls)(*values)
     message.__class__ = cls
     return message
