@@ -1,9 +1,9 @@
-"""Recordings of topics that ROS 2's tools, and all that read MCAP, open: written, read, played.
+"""Recordings of topics in the formats of ROS 2's tools: write, read and play them.
 
 from graphflow.bag import read
 
-for said in read("rosbag2_2026_11_23-12_00_00"):
-    print(said.topic, said.time_ns, said.message)
+for record in read("rosbag2_2026_11_23-12_00_00"):
+    print(record.topic, record.time_ns, record.message)
 """
 
 from graphflow.bag.typed import BagMessage, read

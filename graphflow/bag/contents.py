@@ -1,4 +1,4 @@
-"""What is in a bag: topics, and serialized messages with their times."""
+"""The contents of a bag: topics, and serialized messages with their times."""
 
 from __future__ import annotations
 
@@ -8,46 +8,46 @@ from graphflow.qos import Qos
 
 
 class Topic(NamedTuple):
-    """A topic as a bag has it."""
+    """A topic of a bag."""
 
     name: str
     type: str
     """`package/msg/Name`."""
     hash: str = ""
-    """RIHS01, empty if the bag does not say."""
+    """RIHS01; empty if the bag does not give it."""
     definition: str = ""
-    """The type's definition and those of the types in it, in ROS's form for bags; empty if the bag has none."""
+    """The definitions of the type and of its nested types, in ROS's form for bags; empty if the bag has none."""
     qos: tuple[Qos, ...] = ()
-    """What its publishers offered."""
+    """The QoS profiles that its publishers offered."""
     encoding: str = "cdr"
 
 
 class Record(NamedTuple):
-    """One message of a bag."""
+    """One serialized message of a bag."""
 
     topic: Topic
     log_ns: int
-    """When it was received, nanoseconds since 1970."""
+    """Time of reception, nanoseconds since 1970."""
     publish_ns: int
-    """When it was sent."""
+    """Time of sending."""
     sequence: int
-    """Its number among those of its publisher, 0 if not known."""
+    """The sequence number that its publisher gave it; 0 if not known."""
     data: bytes
-    """CDR, with its header of four bytes."""
+    """CDR with its header of four bytes."""
 
 
 class Contents(NamedTuple):
-    """What a bag, or one of its files, has in it."""
+    """The contents of a bag or of one of its files."""
 
     topics: dict[str, Topic]
     counts: dict[str, int]
-    """Messages by topic."""
+    """Number of messages by topic."""
     start_ns: int
     """Time of the first message; 0 if there is none."""
     end_ns: int
-    """Time of the last."""
+    """Time of the last message."""
     is_whole: bool = True
-    """Whether it was closed properly."""
+    """Whether the bag was closed properly."""
 
     @property
     def message_count(self) -> int:
@@ -55,7 +55,7 @@ class Contents(NamedTuple):
 
 
 def together(parts: list[Contents]) -> Contents:
-    """The contents of several files as one."""
+    """Return the contents of several files as one."""
     topics, counts = dict[str, Topic](), dict[str, int]()
     for part in parts:
         for name, topic in part.topics.items():

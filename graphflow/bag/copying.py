@@ -1,4 +1,4 @@
-"""Bags made of bags: recovered, cut, filtered, merged, packed otherwise."""
+"""Copying bags: recover, cut, filter, merge or compress them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError
 
 TOLD_EVERY = 100
-"""Messages between two reports of how far it is."""
+"""Number of messages between two reports of progress."""
 
 
 def copy(
@@ -24,29 +24,29 @@ def copy(
     remaps: Mapping[str, str] | None = None,
     start_ns: int = 0,
     end_ns: int | None = None,
-    told: Callable[[int, int | None], object] = lambda *_: None,
+    on_progress: Callable[[int, int | None], object] = lambda *_: None,
 ) -> Contents:
-    """Write the messages of bags into another, in the order of their times; returns what is in it then.
+    """Write the messages of bags into another, in the order of their times; returns its contents.
 
     Args:
-        bags: Topics of one name become one.
-        writer: It is not closed.
-        choice: Which topics.
-        remaps: New names by those in the bags.
-        start_ns: From this time on, nanoseconds since 1970.
-        end_ns: Up to this time, which does not belong to it.
-        told: Called now and then with the number of messages so far, and of all; None where that is not known.
+        bags: The sources; topics of the same name become one.
+        writer: The target, which stays open.
+        choice: The topics to copy.
+        remaps: New names by names in the bags.
+        start_ns: Earliest time, nanoseconds since 1970.
+        end_ns: Time before which messages are copied.
+        on_progress: Called now and then with the number of messages so far, and of all; None if that is not known.
 
     Raises:
-        BagError: One cannot be read, or the other not written.
+        BagError: A source cannot be read, or the target cannot be written.
     """
     topics: dict[str, Topic] = {}
-    made: dict[str, Topic] = {}
+    written: dict[str, Topic] = {}
     for bag in bags:
         for name, topic in bag.contents.topics.items():
             if choice.wants(name, topic.type):
                 new = topic._replace(name=(remaps or {}).get(name, name))
-                known = made.setdefault(new.name, new)
+                known = written.setdefault(new.name, new)
                 if (known.type, known.hash, known.encoding) != (new.type, new.hash, new.encoding):
                     other = known.type if known.type != new.type else "another definition of it"
                     raise BagError(f"{bag.path}: {name} is of type {new.type}, and of {other} in another")
@@ -57,13 +57,13 @@ def copy(
     total = sum(bag.contents.counts[name] for bag in bags for name in topics.keys() & bag.contents.counts.keys())
     for count, record in enumerate(heapq.merge(*parts, key=lambda record: record.log_ns)):
         if count % TOLD_EVERY == 0:
-            told(count, total if is_whole else None)
+            on_progress(count, total if is_whole else None)
         writer.add(record._replace(topic=topics[record.topic.name]))
     return writer.contents
 
 
 def times(bags: Sequence[Bag], start: float | None, end: float | None) -> tuple[int, int | None]:
-    """Seconds as nanoseconds since 1970: since 1970 themselves, or from the beginning of the first bag."""
+    """Convert seconds, since 1970 or from the beginning of the first bag, to nanoseconds since 1970."""
     first = min((bag.contents.start_ns for bag in bags if bag.contents.message_count), default=0)
 
     def absolute(seconds: float) -> int:
@@ -73,6 +73,6 @@ def times(bags: Sequence[Bag], start: float | None, end: float | None) -> tuple[
     return 0 if start is None else absolute(start), None if end is None else absolute(end)
 
 
-def beside(path: Path, word: str) -> Path:
-    """A folder beside a bag for what is made of it."""
-    return path.with_name(f"{path.stem}_{word}")
+def beside(path: Path, suffix: str) -> Path:
+    """Return a folder beside a bag for a bag derived from it."""
+    return path.with_name(f"{path.stem}_{suffix}")

@@ -1,22 +1,22 @@
-"""What `bag info` prints, in the words of `ros2 bag info`."""
+"""The output of `bag info`, in the terms of `ros2 bag info`."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import Any
 
 from graphflow.bag.contents import Topic
 from graphflow.bag.reader import Bag
 from graphflow.bag.topic_choice import EVENTS
+from graphflow.qos import Qos
 
 
 def lines(bag: Bag, sort: str = "name", *, verbose: bool = False) -> Iterator[str]:
-    """The lines.
+    """Return the lines.
 
     Args:
         sort: `name`, `type` or `count`.
-        verbose: Whether QoS, hash and definition are told, too.
+        verbose: Whether QoS, hash and definition are included.
     """
     whole = bag.contents
     topics = sorted(whole.topics.values(), key=lambda t: (_key(t, whole.counts, sort), t.name))
@@ -43,8 +43,8 @@ def lines(bag: Bag, sort: str = "name", *, verbose: bool = False) -> Iterator[st
         yield from (f"  | {line}" for line in topic.definition.splitlines())
 
 
-def as_json(bag: Bag) -> dict[str, Any]:
-    """The same for programs."""
+def as_json(bag: Bag) -> dict[str, object]:
+    """Return the information for programs."""
     whole = bag.contents
     return {
         "files": [str(file.path) for file in bag.files],
@@ -63,12 +63,12 @@ def as_json(bag: Bag) -> dict[str, Any]:
 
 
 def topics_of(count: int) -> str:
-    """So many topics, in words."""
+    """Return a number of topics in words."""
     return f"{count:,} topic{'s' if count != 1 else ''}"
 
 
 def size(count: float) -> str:
-    """Bytes, 1024-based as rosbag2 tells them."""
+    """Format a number of bytes, 1024-based as in rosbag2."""
     for unit in ("B", "KiB", "MiB"):
         if count < 1024:
             return f"{count:.1f} {unit}" if unit != "B" else f"{count:.0f} B"
@@ -77,15 +77,15 @@ def size(count: float) -> str:
 
 
 def moment(ns: int) -> str:
-    """A time in words, and in seconds since 1970."""
+    """Format a time as a date, and in seconds since 1970."""
     if ns <= 0 or ns >= 1 << 63:
         return "none"
     text = time.strftime("%b %d %Y %H:%M:%S", time.localtime(ns // 10**9))
     return f"{text}.{ns % 10**9:09d} ({ns // 10**9}.{ns % 10**9:09d})"
 
 
-def _key(topic: Topic, counts: dict[str, int], sort: str) -> Any:
-    return {"name": topic.name, "type": topic.type, "count": counts[topic.name]}[sort]
+def _key(topic: Topic, counts: dict[str, int], sort: str) -> tuple[int, str]:
+    return {"name": (0, topic.name), "type": (0, topic.type), "count": (counts[topic.name], "")}[sort]
 
 
 def _listed(head: str, rows: list[str]) -> Iterator[str]:
@@ -105,5 +105,5 @@ def _service(topic: Topic, counts: dict[str, int]) -> str:
     )
 
 
-def _qos(qos: Any) -> str:
+def _qos(qos: Qos) -> str:
     return f"{qos.reliability.name} {qos.durability.name} {qos.history.name} ({qos.depth})".lower()

@@ -1,4 +1,4 @@
-"""Topics, services and times that were asked for and that bags do not have."""
+"""Requested topics, services and times that bags do not have."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from graphflow.names import did_you_mean
 
 
 def remarks(bags: Sequence[Bag], choice: Choice, others: Collection[str] = ()) -> list[str]:
-    """Sentences about the names that are in none of the bags.
+    """Return remarks on the names that none of the bags has.
 
     Args:
-        choice: Its topics, services and types, also those to leave out.
-        others: More topics, such as those to rename.
+        choice: The requested topics, services and types, excluded ones included.
+        others: Further topics, such as those to rename.
     """
     topics = {name for bag in bags for name in bag.contents.topics}
     types = {topic.type for bag in bags for topic in bag.contents.topics.values()}
@@ -28,14 +28,18 @@ def remarks(bags: Sequence[Bag], choice: Choice, others: Collection[str] = ()) -
 
 
 def check_messages(
-    bags: Sequence[Bag], topics: Collection[str], said: Sequence[str] = (), start_ns: int = 0, end_ns: int | None = None
+    bags: Sequence[Bag],
+    topics: Collection[str],
+    notes: Sequence[str] = (),
+    start_ns: int = 0,
+    end_ns: int | None = None,
 ) -> None:
-    """Check that bags have messages of some topics, in some time. Bags without any messages pass.
+    """Check that bags have messages of some topics in some time. Bags without any messages pass.
 
     Args:
-        said: Remarks about names that are not in the bags.
-        start_ns: From this time on, nanoseconds since 1970.
-        end_ns: Up to this time, which does not belong to it.
+        notes: Remarks on names that the bags do not have, for the error.
+        start_ns: Earliest time, nanoseconds since 1970.
+        end_ns: Time before which messages count.
 
     Raises:
         BagError: There are none.
@@ -50,7 +54,7 @@ def check_messages(
     path = ", ".join(str(bag.path) for bag in bags)
     if not topics:
         known = sorted({name for bag in bags for name in bag.contents.topics})
-        raise BagError(f"{path}: " + ("; ".join(said) or f"no topic matches; there is {', '.join(known)}"))
+        raise BagError(f"{path}: " + ("; ".join(notes) or f"no topic matches; there is {', '.join(known)}"))
     first_ns = min(bag.contents.start_ns for bag in filled)
     last_ns = max(bag.contents.end_ns for bag in filled)
     start = f" from {(start_ns - first_ns) / 1e9:g} s on" if start_ns > first_ns else ""

@@ -1,4 +1,4 @@
-"""Bags beside a path that is none: which one may be meant."""
+"""Suggestions for a path at which there is no bag."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from graphflow.names import nearest
 _ENDINGS = (".mcap", ".db3", ".bag")
 _SHOWN = 5
 LOOKED_AT = 1000
-"""Entries of a folder that are looked at."""
+"""Largest number of entries of a folder that are read."""
 
 
 def meant(path: Path) -> str:
-    """The end of a sentence on a path where nothing is: the bag that may be meant, or those that are beside it."""
+    """Return advice on a path at which there is no bag: the bag that may be meant, or the bags beside it."""
     try:
         found = sorted(islice(filter(_is_bag, path.parent.iterdir()), LOOKED_AT))
     except OSError:

@@ -1,4 +1,4 @@
-"""Files that say which bags `bag convert` makes, as rosbag2 has them: `--output-options`.
+"""Descriptions of the bags that `bag convert` writes, in rosbag2's format: `--output-options`.
 
     output_bags:
       - uri: driving
@@ -6,7 +6,7 @@
         topics: [/cmd_vel]
         storage_preset_profile: zstd_small
 
-Each entry has options of the storage and of recording; with neither topics nor a pattern all are meant.
+Each entry has options of the storage and of recording; without topics and patterns, all topics are chosen.
 
 Source: rosbag2's README, "Converting bags"; StorageOptions and RecordOptions of rosbag2.
 """
@@ -23,7 +23,7 @@ from graphflow.errors import GraphflowError, UsageFault
 from graphflow.names import did_you_mean, expand
 
 _PACKED = {"none": "none", "fastwrite": "none", "zstd_fast": "zstd", "zstd_small": "zstd", "": "zstd"}
-"""How chunks are packed, by rosbag2's presets of MCAP."""
+"""Compression of chunks by rosbag2's presets of MCAP."""
 _LISTS = {"topics", "topic_types", "services", "exclude_topics", "exclude_topic_types", "exclude_services"}
 _LISTS |= {"exclude_service_events"}
 _TEXTS = {"uri", "storage_id", "storage_preset_profile", "compression_mode", "compression_format", "regex"}
@@ -33,36 +33,36 @@ _NUMBERS = {"max_bagfile_size", "max_bagfile_duration", "start_time_ns", "end_ti
 _TAKEN = {"max_cache_size", "snapshot_mode", "rmw_serialization_format", "compression_queue_size", "all_actions"}
 _TAKEN |= {"compression_threads", "is_discovery_disabled", "topic_polling_interval", "include_unpublished_topics"}
 _TAKEN |= {"ignore_leaf_topics", "start_paused", "use_sim_time", "node_prefix", "append"}
-"""Options for recording alone, or without effect here."""
+"""Options that concern recording alone, or have no effect here."""
 _KEYS = _LISTS | _TEXTS | _FLAGS | _NUMBERS | _TAKEN
 
 
 class Output(NamedTuple):
-    """A bag that is to be made."""
+    """A bag to be written."""
 
     folder: Path
     choice: Choice
     storage: str
     compression: str | None
     max_size: int
-    """Bytes after which a new file is begun; 0 for never."""
+    """Size in bytes after which a new file starts; 0 for none."""
     max_seconds: float
     start_ns: int
     end_ns: int | None
     remarks: list[str]
-    """Keys without effect."""
+    """Ignored keys."""
 
 
 def is_options(path: Path) -> bool:
-    """Whether what `-o` names is such a file and not the folder of a new bag, by what is there or by its name."""
+    """Return whether a path given with `-o` is such a file and not the folder of a new bag."""
     return path.is_file() or (path.suffix in (".yaml", ".yml") and not path.exists())
 
 
 def read(path: Path) -> list[Output]:
-    """The bags of a file, at least one.
+    """Read the bags of a file, at least one.
 
     Raises:
-        UsageFault: It cannot be read, or something in it is wrong; the text says what and where.
+        UsageFault: It cannot be read, or has a mistake, which the text describes with its place.
     """
     data = named_file(path, "; to make a bag of that name, write it without .yaml")
     rows = data.get("output_bags") if isinstance(data, Mapping) else None
@@ -77,16 +77,16 @@ def read(path: Path) -> list[Output]:
     return found
 
 
-def _output(row: Any) -> Output:
+def _output(row: object) -> Output:
     if not isinstance(row, Mapping):
         raise ValueError("it is no mapping; write uri: NAME")
-    for key, said in row.items():
-        if key in _TEXTS and type(said) is not str:
-            raise ValueError(f"{key}: {said!r} is not a text")
-        if key in _FLAGS and type(said) is not bool:
-            raise ValueError(f"{key}: {said!r} is not true or false")
-        if key in _NUMBERS and (type(said) is not int or said < 0):
-            raise ValueError(f"{key}: {said!r} is not a whole number that is not negative")
+    for key, value in row.items():
+        if key in _TEXTS and type(value) is not str:
+            raise ValueError(f"{key}: {value!r} is not a text")
+        if key in _FLAGS and type(value) is not bool:
+            raise ValueError(f"{key}: {value!r} is not true or false")
+        if key in _NUMBERS and (type(value) is not int or value < 0):
+            raise ValueError(f"{key}: {value!r} is not a whole number that is not negative")
     if not row.get("uri"):
         raise ValueError("it has no uri, the folder of the new bag")
     storage = row.get("storage_id") or "mcap"
@@ -100,14 +100,14 @@ def _output(row: Any) -> Output:
         max_size=row.get("max_bagfile_size", 0),
         max_seconds=float(row.get("max_bagfile_duration", 0)),
         start_ns=row.get("start_time_ns", 0),
-        end_ns=row["end_time_ns"] + 1 if row.get("end_time_ns") else None,  # which belongs to it
+        end_ns=row["end_time_ns"] + 1 if row.get("end_time_ns") else None,  # ours is exclusive
         remarks=[f"{key} has no effect{did_you_mean(str(key), sorted(_KEYS))}" for key in row if key not in _KEYS],
     )
 
 
 def _choice(row: Mapping[str, Any]) -> Choice:
     topics, services = _names(row, "topics"), _names(row, "services")
-    types, regex = _words(row, "topic_types"), row.get("regex", "")
+    types, regex = _texts(row, "topic_types"), row.get("regex", "")
     is_open = not (topics or services or types or regex)
     everything = row.get("all", False)
     return Choice(
@@ -118,27 +118,27 @@ def _choice(row: Mapping[str, Any]) -> Choice:
         services=services,
         all_services=everything or row.get("all_services", is_open),
         exclude=_names(row, "exclude_topics"),
-        exclude_types=_words(row, "exclude_topic_types"),
+        exclude_types=_texts(row, "exclude_topic_types"),
         exclude_regex=row.get("exclude_regex") or row.get("exclude", ""),
         exclude_services=_names(row, "exclude_services") | _names(row, "exclude_service_events"),
         hidden=row.get("include_hidden_topics", True),
     )
 
 
-def _words(row: Mapping[str, Any], key: str) -> frozenset[str]:
-    said = row.get(key) or []
-    if not isinstance(said, list) or not all(isinstance(word, str) for word in said):
-        raise ValueError(f"{key}: {said!r} is not a list of names")
-    return frozenset(said)
+def _texts(row: Mapping[str, object], key: str) -> frozenset[str]:
+    value = row.get(key) or []
+    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        raise ValueError(f"{key}: {value!r} is not a list of names")
+    return frozenset(value)
 
 
-def _names(row: Mapping[str, Any], key: str) -> frozenset[str]:
-    return frozenset(expand(name, "/", "cli") for name in _words(row, key))
+def _names(row: Mapping[str, object], key: str) -> frozenset[str]:
+    return frozenset(expand(name, "/", "cli") for name in _texts(row, key))
 
 
 def _compression(row: Mapping[str, Any]) -> str:
     mode, preset = row.get("compression_mode", "").lower(), row.get("storage_preset_profile", "")
-    if mode in ("file", "message"):  # what is packed here is chunks
+    if mode in ("file", "message"):  # MCAP has only the compression of chunks
         name = row.get("compression_format") or "zstd"
         if name not in ("zstd", "lz4"):
             raise ValueError(f"compression_format: {name!r} is not there; write zstd or lz4")

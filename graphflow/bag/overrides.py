@@ -1,4 +1,4 @@
-"""Files of QoS profiles by topic, with which a bag is recorded or played: `--qos-profile-overrides-path`.
+"""QoS profiles by topic for recording and playback: `--qos-profile-overrides-path`.
 
     /turtle1/pose:
       reliability: best_effort
@@ -25,19 +25,19 @@ from graphflow.qos import Qos
 from graphflow.reading import found_bytes
 
 BOUND = 1 << 20
-"""Bytes that such a file may have."""
+"""Largest size of such a file in bytes."""
 _ROS_ONLY = "avoid_ros_namespace_conventions"
 _KEYS = (*ENUMS, "depth", *DURATIONS, _ROS_ONLY)
 
 
-def named_file(path: Path, advice: str = "") -> Any:
-    """The YAML of a file that the user has named.
+def named_file(path: Path, advice: str = "") -> object:
+    """Read a YAML file that the user has named.
 
     Args:
-        advice: The end of the message where it cannot be opened.
+        advice: The end of the message if it cannot be opened.
 
     Raises:
-        UsageFault: It cannot be read, or is no YAML.
+        UsageFault: It cannot be read, or is not YAML.
     """
     try:
         return loaded(found_bytes(path, BOUND))
@@ -52,10 +52,10 @@ def named_file(path: Path, advice: str = "") -> Any:
 
 
 def read(path: Path) -> dict[str, Qos]:
-    """The profiles of a file, by the full names of topics; what a profile leaves open is as by default.
+    """Read the profiles of a file, by the full names of topics; policies that a profile leaves out are the defaults.
 
     Raises:
-        UsageFault: It cannot be read, or something in it is wrong; the text says what and where.
+        UsageFault: It cannot be read, or has a mistake, which the text describes with its place.
     """
     data = named_file(path)
     if not isinstance(data, Mapping):
@@ -70,30 +70,30 @@ def read(path: Path) -> dict[str, Qos]:
     return found
 
 
-def _profile(row: Any) -> Qos:
+def _profile(row: object) -> Qos:
     if not isinstance(row, Mapping):
         raise ValueError("a profile has policies, such as reliability: best_effort")
-    given: dict[str, Any] = {}
-    for key, said in row.items():
+    policies: dict[str, Any] = {}
+    for key, value in row.items():
         if key in ENUMS:
             members = ENUMS[key].__members__
-            if str(said).upper() not in members:
-                raise ValueError(f"{key}: {said!r} is none of {', '.join(m.lower() for m in members)}")
-            given[key] = members[str(said).upper()]
+            if str(value).upper() not in members:
+                raise ValueError(f"{key}: {value!r} is none of {', '.join(m.lower() for m in members)}")
+            policies[key] = members[str(value).upper()]
         elif key == "depth":
-            if type(said) is not int or not 0 <= said < 2**31:
-                raise ValueError(f"depth: {said!r} is no number of messages")
-            given[key] = said
+            if type(value) is not int or not 0 <= value < 2**31:
+                raise ValueError(f"depth: {value!r} is no number of messages")
+            policies[key] = value
         elif key in DURATIONS:
-            given[DURATIONS[key]] = _span(key, said)
+            policies[DURATIONS[key]] = _span(key, value)
         elif key != _ROS_ONLY:
             raise ValueError(f"there is no policy {key!r}{did_you_mean(str(key), _KEYS)}")
-    return replace(Qos(), **given)
+    return replace(Qos(), **policies)
 
 
-def _span(key: str, said: Any) -> int:
-    if isinstance(said, Mapping) and {*said} <= {"sec", "nsec"}:
-        sec, nsec = said.get("sec", 0), said.get("nsec", 0)
+def _span(key: str, value: object) -> int:
+    if isinstance(value, Mapping) and {*value} <= {"sec", "nsec"}:
+        sec, nsec = value.get("sec", 0), value.get("nsec", 0)
         if type(sec) is int and type(nsec) is int and 0 <= sec * 10**9 + nsec < 2**63:
             return sec * 10**9 + nsec
-    raise ValueError(f"{key}: {said!r} is no duration; write {{sec: 1, nsec: 0}}")
+    raise ValueError(f"{key}: {value!r} is no duration; write {{sec: 1, nsec: 0}}")

@@ -1,7 +1,7 @@
-"""Plays a bag into a running graph: serialized messages go from the files to the network as they are.
+"""The player of bags: serialized messages go from the files to the network unchanged.
 
-Messages are sent at the moments at which they were received, by a clock that starts once: what one message is late
-does not make the next one late.
+Messages are sent at the moments of their reception, by a clock that starts once: the delay of one message does not
+delay the next one.
 """
 
 from __future__ import annotations
@@ -31,57 +31,57 @@ from graphflow.wire.profile import wire_profile, wire_type
 logger = logging.getLogger("graphflow")
 
 COMMANDS = ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", EVENTS)
-"""Ends of topics that make others act, or tell of those who did."""
+"""Suffixes of topics that make nodes act, or report that they did."""
 STEP_NS = 20_000_000
-"""Longest time that the player sleeps while it looks at its keys."""
+"""Longest sleep of the player, in seconds, between two checks of its commands."""
 MIN_RATE, MAX_RATE = 0.001, 1000.0
-"""How much slower and faster than it was a bag can be played."""
+"""Slowest and fastest rate of playback."""
 REST = 0.01
-"""Seconds between two rounds of a loop: a bag of one message must not fill the network."""
+"""Shortest time of a round of a loop, in seconds: a bag of one message must not flood the network."""
 AT_ONCE = 100
-"""Messages that are sent before others have a turn of the loop."""
+"""Number of messages that are sent before other tasks get a turn of the loop."""
 KEPT = 1000
-"""Messages that a publisher keeps for those who come late, at most."""
+"""Largest number of messages that a publisher keeps for late subscriptions."""
 
 
 @dataclass
 class PlayOptions:
-    """How a bag is played."""
+    """The options of playback."""
 
     rate: float = 1.0
     loop: bool = False
     start_offset: float = 0.0
-    """Seconds of the bag that are left out at its beginning."""
+    """Seconds of the bag that are skipped at its beginning."""
     duration: float | None = None
     """Seconds of the bag that are played."""
     until_ns: int | None = None
-    """Up to which time it is played, nanoseconds since 1970; None for its end."""
+    """Last time that is played, nanoseconds since 1970; None for the bag's end."""
     delay: float = 0.0
-    """Seconds before the first message, in which subscriptions can find the publishers."""
+    """Seconds before the first message, in which subscriptions discover the publishers."""
     clock_hz: float = 0.0
-    """How often the time of the bag is published on /clock; 0 for not."""
+    """Frequency in Hz at which the time of the bag is published on /clock; 0 for never."""
     is_paused: bool = False
     allows_commands: bool = False
     choice: Choice = field(default_factory=lambda: Choice(all=True, hidden=True))
     remaps: Mapping[str, str] = field(default_factory=dict)
-    """New names by those in the bag."""
+    """New names by names in the bag."""
     qos: Mapping[str, Qos] = field(default_factory=dict)
-    """Profiles by names in the bag, in place of those that the bag has."""
+    """Profiles by names in the bag, in place of the recorded ones."""
     clock_topics: frozenset[str] = frozenset()
-    """Topics with each of whose messages the time is published on /clock, too."""
+    """Topics whose messages trigger publishing the time on /clock."""
     clocks_all: bool = False
-    """Whether that is so for every message."""
+    """Whether every message triggers it."""
 
 
 class Player:
-    """Plays a bag through a node.
+    """The playback of a bag through a node.
 
     Args:
-        node: It runs.
-        bag: What is played.
+        node: A node that runs.
+        bag: The bag to play.
 
     Raises:
-        BagError: Nothing of what was asked for is in the bag, or it asks for a command.
+        BagError: The bag has none of the chosen topics, or its options name a command.
     """
 
     def __init__(self, node: Node, bag: Bag, options: PlayOptions) -> None:
@@ -89,13 +89,13 @@ class Player:
         self.rate = options.rate
         self.is_paused = options.is_paused
         self.played = 0
-        """Messages sent."""
+        """Number of messages sent."""
         self.refused: list[str] = []
-        """Topics that are not played, each with its reason."""
+        """Topics that are not played, with the reasons."""
         self.absent = remarks([bag], options.choice, {*options.remaps, *options.clock_topics})
-        """Sentences about names in the options that the bag does not have."""
+        """Remarks on names in the options that the bag does not have."""
         self.now_ns = bag.contents.start_ns
-        """Where in the bag it is, nanoseconds since 1970."""
+        """The position in the bag, nanoseconds since 1970."""
         self._steps = 0
         self._sought: int | None = None
         self._is_clocked = options.clocks_all or bool(options.clock_topics)
@@ -120,7 +120,7 @@ class Player:
             self._clock = node.create_publisher(type_, "/clock", CLOCK)
 
     def _check_types(self) -> None:
-        """Check that a topic under a new name is of the type that this has, in the graph and in the bag."""
+        """Check that a renamed topic has the same type in the bag and in the graph."""
         new_names, there = self._options.remaps, self._node.context.cache.topics(hidden=True)
         for name, topic in self._topics.items():
             if name not in new_names:
@@ -156,29 +156,29 @@ class Player:
 
     @property
     def _span(self) -> tuple[int, int | None]:
-        """The part of the bag to play: from one time up to another, nanoseconds since 1970."""
+        """Return the part of the bag to play: its start, and the time before which it ends, nanoseconds since 1970."""
         options, start_ns = self._options, self._bag.contents.start_ns + to_ns(self._options.start_offset)
-        ends = [] if options.until_ns is None else [options.until_ns + 1]  # ROS 2 plays what is at that very time
+        ends = [] if options.until_ns is None else [options.until_ns + 1]  # ROS 2 includes messages at that very time
         ends += [] if options.duration is None else [start_ns + to_ns(options.duration)]
         return start_ns, min(ends, default=None)
 
     @property
     def end_ns(self) -> int:
-        """Where the bag ends."""
+        """The time at which playback of the bag ends."""
         return self._bag.contents.end_ns
 
     @property
     def topics(self) -> list[str]:
-        """The names that are played to."""
+        """The names under which topics are played."""
         return [publisher.name for publisher in self._publishers.values()]
 
     async def run(self) -> None:
-        """Play to the end, once or for ever.
+        """Play to the end, once or in a loop.
 
         Raises:
-            BagError: The bag cannot be read on.
+            BagError: The bag cannot be read further.
         """
-        clock = asyncio.ensure_future(self._tell_time()) if self._options.clock_hz else None
+        clock = asyncio.ensure_future(self._publish_clock()) if self._options.clock_hz else None
         try:
             await self._node.clock.sleep(self._options.delay)
             while True:
@@ -194,15 +194,15 @@ class Player:
     # commands
 
     def step(self, count: int = 1) -> None:
-        """Send the next messages, if it is paused."""
+        """Send the next messages, if playback is paused."""
         if self.is_paused:
             self._steps += count
 
     async def burst(self, count: int) -> None:
-        """Send the first messages at once: so many, or for 0 all; returns when they are sent.
+        """Send the first messages at once, or all for 0; returns when they are sent.
 
         Raises:
-            BagError: The bag cannot be read on.
+            BagError: The bag cannot be read further.
         """
         await self._node.clock.sleep(self._options.delay)
         for number, record in enumerate(self._bag.records(self._topics, *self._span)):
@@ -214,7 +214,7 @@ class Player:
                 await asyncio.sleep(0)
 
     def seek(self, time_ns: int) -> None:
-        """Go on from another moment of the bag."""
+        """Continue at another time of the bag."""
         self._sought = time_ns
 
     # playing
@@ -239,7 +239,7 @@ class Player:
         count = 0
         for record in chain((first,), records):
             while self._sought is None:
-                if rate != self.rate or was_paused:  # from here on by another measure
+                if rate != self.rate or was_paused:  # the clock of playback starts anew here
                     began_ns, at_ns, rate, was_paused = clock.monotonic_ns(), self.now_ns, self.rate, False
                 if not self.is_paused:
                     self._steps = 0
@@ -271,7 +271,7 @@ class Player:
         self._publishers[record.topic.name].publish(record.data)
         self.played += 1
 
-    async def _tell_time(self) -> None:
+    async def _publish_clock(self) -> None:
         async for _ in self._node.clock.every(hz=self._options.clock_hz):
             self._publish_time()
 
@@ -283,7 +283,7 @@ class Player:
 
 
 def offered(topic: Topic) -> Qos:
-    """What a topic is played with: what fits all who listened to its publishers."""
+    """Return the profile to play a topic with: one compatible with all subscriptions of its recorded publishers."""
     if not topic.qos:
         return DEFAULT
     latched = all(qos.durability is Durability.TRANSIENT_LOCAL for qos in topic.qos)
@@ -296,13 +296,13 @@ def offered(topic: Topic) -> Qos:
 
 
 def _hash(topic: Topic) -> str:
-    """RIHS01 of a topic's type.
+    """Return RIHS01 of a topic's type.
 
     Raises:
-        BagError: The bag does not say, and the type is not known.
+        BagError: The bag does not give it, and the type is not known.
     """
     try:
-        learn(topic)  # so that others can ask this process for the definition
+        learn(topic)  # so that this process can return the definition to others
     except BagError:
         if not topic.hash:
             raise

@@ -1,4 +1,4 @@
-"""Which topics of a graph or of a bag are meant."""
+"""The choice of topics of a graph or of a bag."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from graphflow.names import is_hidden
 
 EVENTS = "/_service_event"
-"""The end of the topic on which a service with introspection tells of its calls."""
+"""The suffix of the topic on which service introspection publishes calls."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What was asked for: `all`, or by name, type or pattern, less what is excluded."""
+    """The requested topics: `all`, or by name, type or pattern, less the excluded ones."""
 
     all: bool = False
     topics: frozenset[str] = frozenset()
@@ -27,10 +27,10 @@ class Choice:
     exclude_regex: str = ""
     exclude_services: frozenset[str] = frozenset()
     hidden: bool = False
-    """Whether `all`, a type or a pattern may mean hidden topics."""
+    """Whether `all`, a type or a pattern may include hidden topics."""
 
     def wants(self, name: str, type_name: str) -> bool:
-        """Whether a topic is meant. What was named is meant though it matches what is excluded by pattern or type."""
+        """Return whether a topic is chosen. A topic chosen by name is not excluded by pattern or type."""
         if name.endswith(EVENTS):
             service = name.removesuffix(EVENTS)
             return service in self.services or (

@@ -1,4 +1,4 @@
-"""The messages of a bag as objects. Types that are not installed are made from what the bag says of them."""
+"""The messages of a bag as objects; types that are not installed are built from the definitions in the bag."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class BagMessage(NamedTuple):
     topic: str
     message: Any
     time_ns: int
-    """When it was received, nanoseconds since 1970."""
+    """Time of reception, nanoseconds since 1970."""
 
     def __getattr__(self, name: str) -> Any:
         text = f"'BagMessage' object has no attribute {name!r}"
@@ -38,7 +38,7 @@ _MEANT = {
     **dict.fromkeys(("time", "timestamp", "stamp", "t"), "time_ns"),
     **dict.fromkeys(("topic_name", "name", "channel"), "topic"),
 }
-"""Other words for its parts, as people try them."""
+"""Other names for its fields that users try."""
 
 
 def read(
@@ -48,32 +48,32 @@ def read(
     start_ns: int = 0,
     end_ns: int | None = None,
 ) -> Iterator[BagMessage]:
-    """The messages of a bag, in the order of their times.
+    """Read the messages of a bag, in the order of their times.
 
     Args:
         path: The bag: a folder, or a file: MCAP, `.db3` or ROS 1's `.bag`.
-        topics: Those that are wanted, or one of them; None for all.
-        start_ns: From this time on, nanoseconds since 1970.
-        end_ns: Up to this time, which does not belong to it.
+        topics: The topics to read, or one of them; None for all.
+        start_ns: Earliest time, nanoseconds since 1970.
+        end_ns: Time before which messages are read.
 
     Raises:
-        BagError: The bag cannot be read, has no such topic, or has a type that is not known and not defined in it.
+        BagError: The bag cannot be read, has no such topic, or has a type that is neither known nor defined in it.
         DecodeError: A message is not of its type.
     """
     bag = Bag(path)
     if topics is None:
-        return said(bag.records(None, start_ns, end_ns))
+        return messages(bag.records(None, start_ns, end_ns))
     named = frozenset(expand(name, "/", "bag") for name in ([topics] if isinstance(topics, str) else topics))
     if absent := remarks([bag], Choice(topics=named)):
         raise BagError(f"{path}: {'; '.join(absent)}")
-    return said(bag.records(named, start_ns, end_ns))
+    return messages(bag.records(named, start_ns, end_ns))
 
 
 def decoder(topic: Topic) -> Callable[[bytes], Any]:
-    """What makes messages of a topic's records.
+    """Return the function that decodes the records of a topic.
 
     Raises:
-        BagError: Its type is not known, and not defined in the bag, or it is not serialized as CDR.
+        BagError: Its type is neither known nor defined in the bag, or it is not serialized as CDR.
     """
     if topic.encoding != "cdr":
         raise BagError(f"{topic.name}: its messages are serialized as {topic.encoding!r}, not as CDR")
@@ -82,13 +82,13 @@ def decoder(topic: Topic) -> Callable[[bytes], Any]:
 
 
 def learn(topic: Topic) -> None:
-    """Make a topic's type known, from its definition in the bag, if it is not known here.
+    """Register a topic's type from its definition in the bag, unless it is known.
 
     Raises:
-        BagError: There is no definition that can be used, or another is known here.
+        BagError: The definition is missing or unusable, or contradicts a known one.
     """
     try:
-        is_whole = len(topic.type.split("/")) == 3  # else it is said how types are called
+        is_whole = len(topic.type.split("/")) == 3  # otherwise the error explains the form of type names
         found = registry.hash_of(topic.type if is_whole else registry.full_name(topic.type))
     except UnknownInterface as unknown:
         if not topic.definition:
@@ -102,7 +102,7 @@ def learn(topic: Topic) -> None:
         raise BagError(f"{topic.name}: it was recorded with another definition of {topic.type} than the one here")
 
 
-def said(records: Iterator[Record]) -> Iterator[BagMessage]:
+def messages(records: Iterator[Record]) -> Iterator[BagMessage]:
     """Records as messages."""
     decoders: dict[str, Callable[[bytes], Any]] = {}
     for record in records:

@@ -1,7 +1,7 @@
-"""A bag, written: a folder with `metadata.yaml` and one or more files, MCAP or `.db3`, as rosbag2 makes it.
+"""The writer of bags: a folder with `metadata.yaml` and one or more files, MCAP or `.db3`, as in rosbag2.
 
-What is on disk can be read at any time: chunks are closed every half second, and `metadata.yaml` follows, so that a
-recorder that is killed loses no more than that.
+The files can be read at any time: chunks are closed every half second, and `metadata.yaml` follows, so that a recorder
+that is killed loses no more than that.
 """
 
 from __future__ import annotations
@@ -30,27 +30,27 @@ from graphflow.errors import BagError
 logger = logging.getLogger("graphflow")
 
 FLUSH_EVERY = 0.5
-"""Seconds that a message may be on its way to the file."""
+"""Seconds until a message must be in the file."""
 SYNC_EVERY = 5.0
-"""Seconds that what is in the file may be on its way to the disk."""
+"""Seconds until data in the file must be on the disk."""
 CHUNK_SIZE = 1 << 20
-"""Bytes of messages that are packed together."""
+"""Size of a chunk in bytes."""
 RESERVE = 4 << 20
-"""Bytes that are kept free on the disk to finish the bag when it is full."""
+"""Bytes of disk space in reserve, to finish the bag when the disk is full."""
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 COMPRESSIONS = ("zstd", "lz4", "none")
 STORAGES = ("mcap", "sqlite3")
 
 
 class _Stream:
-    """A file to which a piece is written whole or not at all, so that it stays readable on a full disk."""
+    """A file whose writes are all or nothing, so that it stays readable on a full disk."""
 
     def __init__(self, path: Path, make_room: Callable[[], bool]) -> None:
         self._file = path.open("xb", buffering=0)
         self._end = 0
         self._make_room = make_room
         self.trouble: OSError | None = None
-        """Why no more should be written, though all that was has found room."""
+        """Reason to write no more, although all data so far found room."""
 
     def _put(self, data: memoryview) -> int:
         return self._file.write(data)
@@ -62,12 +62,12 @@ class _Stream:
                 try:
                     left = left[self._put(left) :]
                 except OSError as error:
-                    # What the library has handed over it has forgotten: it must find room now.
+                    # The library has forgotten the data it passed: they must find room now.
                     if error.errno not in _FULL or not self._make_room():
                         raise
                     self.trouble = error
         except OSError:
-            with contextlib.suppress(OSError):  # what is there of it is taken for the end of the file
+            with contextlib.suppress(OSError):  # a partial record would count as the end of the file
                 self._file.truncate(self._end)
                 self._file.seek(self._end)
             raise
@@ -78,7 +78,7 @@ class _Stream:
         return self._end
 
     def flush(self) -> None:
-        """Nothing is kept back."""
+        """Do nothing: there is no buffer."""
 
     def sync(self) -> None:
         os.fsync(self._file.fileno())
@@ -111,9 +111,9 @@ class _McapPart(Part):
     def sync(self) -> None:
         self._file.sync()
 
-    def finish(self, said: str) -> None:
+    def finish(self, text: str) -> None:
         self._writer.flush()
-        self._writer.add_metadata("rosbag2", {"serialized_metadata": said})
+        self._writer.add_metadata("rosbag2", {"serialized_metadata": text})
         self._writer.finish()
         self._file.sync()
         self._file.close()
@@ -134,20 +134,20 @@ class _McapPart(Part):
 
 
 class BagWriter:
-    """Writes a bag. A context manager.
+    """A bag to write, as a context manager.
 
     Args:
-        folder: Made here; there must be none of that name.
+        folder: Created; must not exist.
         storage: One of `STORAGES`.
         compression: One of `COMPRESSIONS`, of the chunks in an MCAP file.
-        max_size: Bytes after which a new file is begun; 0 for never.
-        max_seconds: Seconds of recording after which a new file is begun; 0 for never.
-        custom: What the user has to say about the bag, for its metadata.
-        repeats: Which topics' last messages every new file begins with.
-        monotonic_ns: The clock by which files are flushed.
+        max_size: Size in bytes after which a new file starts; 0 for none.
+        max_seconds: Seconds of recording after which a new file starts; 0 for none.
+        custom: The user's own metadata.
+        repeats: The topics whose last messages begin every new file.
+        monotonic_ns: The clock that schedules flushes.
 
     Raises:
-        BagError: The folder is there, or cannot be made.
+        BagError: The folder exists, or cannot be created.
     """
 
     def __init__(
@@ -172,7 +172,7 @@ class BagWriter:
         self._kept, self._is_new = LatchedMessages(repeats), False
         self._done: list[FileContents] = []
         self._is_finished = False
-        """Whether the last file is among those that are done."""
+        """Whether the last file is finished."""
         self._sizes = 0
         try:
             folder.mkdir(parents=True)
@@ -181,13 +181,13 @@ class BagWriter:
         except OSError as error:
             raise BagError(f"{folder}: {error.strerror}") from None
         self._flushed_ns = self._synced_ns = self._now_ns()
-        with _told(folder):
+        with _bag_errors(folder):
             self._reserve = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115 - it ends with the process
             self._reserve.write(bytes(RESERVE))
             self._reserve.flush()
         try:
             self._part = self._next()
-            with _told(folder):
+            with _bag_errors(folder):
                 self._write_metadata()
         except BagError:
             self._reserve.close()
@@ -201,26 +201,26 @@ class BagWriter:
 
     @property
     def contents(self) -> Contents:
-        """What has been written."""
+        """The contents written so far."""
         return together([file.contents for file in self._files()])
 
     @property
     def size(self) -> int:
-        """Bytes of all files so far."""
+        """The size of all files so far in bytes."""
         return self._sizes + (0 if self._is_finished else self._part.size)
 
     def declare(self, topic: Topic) -> None:
-        """Say that there is a topic, though it may never have a message."""
-        with _told(self.folder):
+        """Add a topic, which may never have a message."""
+        with _bag_errors(self.folder):
             self._part.declare(topic)
 
     def add(self, record: Record) -> None:
         """Write a message.
 
         Raises:
-            BagError: It cannot be written; what is in the bag can be read.
+            BagError: It cannot be written; the bag so far can be read.
         """
-        with _told(self.folder):
+        with _bag_errors(self.folder):
             part = self._part
             if (self._max_size and part.written >= self._max_size) or (
                 self._max_ns and part.written and record.log_ns - part.start_ns >= self._max_ns
@@ -230,14 +230,14 @@ class BagWriter:
                 self._is_new = False
                 for kept in self._kept.before(record.log_ns):
                     self._part.add(kept)
-                self._part.written = 0  # what is repeated is no reason for another file
+                self._part.written = 0  # repeated messages must not cause another file
             self._part.add(record)
             self._kept.put(record)
             self._part.check()
 
     def split(self) -> None:
-        """Go on in a new file."""
-        with _told(self.folder):
+        """Continue in a new file."""
+        with _bag_errors(self.folder):
             topics = list(self._part.topics.values())
             self._finish()
             self._part, self._is_finished, self._is_new = self._next(), False, True
@@ -246,9 +246,9 @@ class BagWriter:
                 self._part.declare(topic)
 
     def keep_up(self) -> None:
-        """Put what has been written on disk, where it is time for that. To be called now and then."""
+        """Flush and sync what is due. To be called regularly."""
         now_ns = self._now_ns()
-        with _told(self.folder):
+        with _bag_errors(self.folder):
             if now_ns - self._flushed_ns >= FLUSH_EVERY * 1e9:
                 self._flushed_ns = now_ns
                 self._part.flush()
@@ -262,16 +262,16 @@ class BagWriter:
         """Finish the bag.
 
         Raises:
-            BagError: The end cannot be written; what is in the bag can be read.
+            BagError: The end cannot be written; the bag so far can be read.
         """
-        with _told(self.folder):
+        with _bag_errors(self.folder):
             self._reserve.close()
             if not self._is_finished:
                 self._finish()
             self._write_metadata()
 
     def salvage(self) -> None:
-        """Finish the bag after an error, if that can be done; else leave it as it is."""
+        """Finish the bag after an error, if possible; else leave it as it is."""
         try:
             self.close()
         except BagError as error:
@@ -279,14 +279,14 @@ class BagWriter:
             self._part.abandon()
 
     def _next(self) -> Part:
-        with _told(self.folder):
+        with _bag_errors(self.folder):
             name = f"{self.folder.name}_{len(self._done)}"
             if self._storage == "sqlite3":
                 return Db3Part(self.folder / f"{name}.db3", self._make_room)
             return _McapPart(self.folder / f"{name}.mcap", self._compression, self._make_room)
 
     def _make_room(self) -> bool:
-        """Give back what was kept free on the disk; False if that has been done."""
+        """Release the reserved disk space; False if it was released before."""
         if self._reserve.closed:
             return False
         self._reserve.close()
@@ -312,8 +312,8 @@ class BagWriter:
 
 
 @contextlib.contextmanager
-def _told(folder: Path) -> Iterator[None]:
-    """Tells an error of the system as one of the bag."""
+def _bag_errors(folder: Path) -> Iterator[None]:
+    """Convert an OSError to a BagError."""
     try:
         yield
     except OSError as error:

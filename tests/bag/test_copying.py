@@ -45,8 +45,8 @@ def test_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(copying, "TOLD_EVERY", 15)
     bags = [Bag(write(tmp_path / "a")), Bag(write(tmp_path / "b"))]
     told: list[tuple[int, int | None]] = []
-    made(bags, tmp_path / "c", Choice(topics=frozenset({"/count"})), told=lambda *said: told.append(said))
-    made(bags, tmp_path / "d", end_ns=START + 1, told=lambda *said: told.append(said))
+    made(bags, tmp_path / "c", Choice(topics=frozenset({"/count"})), on_progress=lambda *said: told.append(said))
+    made(bags, tmp_path / "d", end_ns=START + 1, on_progress=lambda *said: told.append(said))
     assert told == [(0, 40), (15, 40), (30, 40), (0, None)]
 
 

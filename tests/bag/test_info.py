@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -77,6 +78,6 @@ def test_sizes(count: int, text: str) -> None:
 
 def test_for_programs(tmp_path: Path) -> None:
     """The same as data."""
-    data = info.as_json(Bag(write(tmp_path / "bag")))
+    data: Any = info.as_json(Bag(write(tmp_path / "bag")))
     assert (data["messages"], data["whole"], data["storage"]) == (41, True, "mcap")
     assert data["topics"][0]["name"] == "/map"

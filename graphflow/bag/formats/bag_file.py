@@ -1,4 +1,4 @@
-"""One file of a bag as it is being written, whatever its format."""
+"""A file of a bag during writing, of any format."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from graphflow.bag.contents import Contents, Record, Topic
 
 
 class Part(ABC):
-    """Counts what is written; a format says how."""
+    """The counts of a file; subclasses write their format."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._numbers: dict[str, int] = {}
-        """Of topics in the file."""
+        """The numbers of topics in the file."""
         self.topics: dict[str, Topic] = {}
         self.counts: dict[str, int] = {}
         self.start_ns = self.end_ns = 0
         self.written = 0
-        """Bytes of messages."""
+        """Size of the messages in bytes."""
 
     @property
     def contents(self) -> Contents:
@@ -28,10 +28,10 @@ class Part(ABC):
     @property
     @abstractmethod
     def size(self) -> int:
-        """Bytes of the file so far."""
+        """The size of the file so far in bytes."""
 
     def declare(self, topic: Topic) -> int:
-        """The number of a topic in the file."""
+        """Return the number of a topic in the file, which is added if it is new."""
         number = self._numbers.get(topic.name)
         if number is None:
             number = self._numbers[topic.name] = self._declare(topic)
@@ -39,7 +39,7 @@ class Part(ABC):
         return number
 
     def add(self, record: Record) -> None:
-        """Write a message; it may wait for `flush`."""
+        """Write a message; it may be buffered until `flush`."""
         name = record.topic.name
         self._add(self.declare(record.topic), record)
         self.start_ns = min(self.start_ns or record.log_ns, record.log_ns)
@@ -49,22 +49,22 @@ class Part(ABC):
 
     @abstractmethod
     def check(self) -> None:
-        """Raise the error of a disk that has become full, once what it concerned is written."""
+        """Raise the error of a full disk, once the data concerned are written."""
 
     @abstractmethod
     def flush(self) -> None:
-        """Put what has been written into the file."""
+        """Write buffered data into the file."""
 
     @abstractmethod
     def sync(self) -> None:
-        """Put what is in the file on the disk."""
+        """Write the file's data to the disk."""
 
     @abstractmethod
-    def finish(self, said: str) -> None:
+    def finish(self, text: str) -> None:
         """Close the file properly.
 
         Args:
-            said: The bag's metadata as far as it concerns this file.
+            text: The bag's metadata as far as it concerns this file.
         """
 
     @abstractmethod
@@ -73,8 +73,8 @@ class Part(ABC):
 
     @abstractmethod
     def _declare(self, topic: Topic) -> int:
-        """Write a topic that is new to the file; returns its number there."""
+        """Write a new topic; returns its number in the file."""
 
     @abstractmethod
     def _add(self, number: int, record: Record) -> None:
-        """Write a message of a topic by its number."""
+        """Write a message of a topic, by the topic's number."""

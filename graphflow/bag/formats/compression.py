@@ -1,9 +1,9 @@
-"""The compression of rosbag2 itself, beside that of MCAP chunks: of whole files, or of each message.
+"""Compression by rosbag2, besides that of MCAP chunks: of whole files or of each message.
 
-Nothing is believed of how large it becomes: memory and disk are bounded while it is decompressed.
+Sizes given in the data are not trusted: memory and disk space are bounded during decompression.
 
 Source: rosbag2_compression, `compression_mode` and `compression_format` of a bag's metadata; the frames of RFC 8878 and
-of LZ4, by which a message that is compressed can be told from CDR: its first byte is 0.
+of LZ4, which distinguish a compressed message from CDR, whose first byte is 0.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from graphflow.bag.contents import Contents, Record
 from graphflow.errors import BagError
 
 SUFFIXES = {".zstd": "zstd", ".zst": "zstd", ".lz4": "lz4"}
-"""Formats by the last part of a file's name."""
+"""Formats by suffix of a file's name."""
 MAGICS = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
-"""Formats by the first bytes of what is compressed."""
+"""Formats by the first bytes of compressed data."""
 _PIECE = 1 << 20
 _SHARE = 0.5
-"""How much of a disk's free space a decompressed file may take."""
+"""Largest part of a disk's free space that a decompressed file may take."""
 
 
 class Damaged(Exception):
-    """It cannot be decompressed."""
+    """The data cannot be decompressed."""
 
 
 class File(Protocol):
-    """One file of a bag."""
+    """One readable file of a bag."""
 
     path: Path
 
@@ -47,15 +47,15 @@ class File(Protocol):
 
 
 class PackedFile:
-    """Reads a file that is compressed as a whole. It is decompressed beside other temporary files while it is read.
+    """A file that is compressed as a whole. It is decompressed into a temporary file while it is read.
 
     Args:
-        path: Its name ends with one of `SUFFIXES`.
-        open_file: Opens it when it is decompressed.
-        is_kept: Whether what is decompressed stays until nobody has this object any more, so that it is done once.
+        path: The file; its name ends with one of `SUFFIXES`.
+        open_file: Opens the decompressed file.
+        is_kept: Whether the decompressed file exists as long as this object, so that it is decompressed once.
 
     Raises:
-        BagError: It cannot be decompressed, or is no bag then.
+        BagError: It cannot be decompressed, or is not a bag then.
     """
 
     def __init__(self, path: Path, open_file: Callable[[Path], File], *, is_kept: bool = False) -> None:
@@ -72,14 +72,14 @@ class PackedFile:
     def records(
         self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Record]:
-        """Messages in the order of their times. Arguments and errors as for `McapFile.records`."""
+        """Yield messages in the order of their times. Arguments and errors as for `McapFile.records`."""
         with _loose(self.path, self._open_file) if self._kept is None else _named(self.path, self._kept) as file:
             yield from file.records(names, start_ns, end_ns)
 
 
 @contextmanager
 def _loose(source: Path, open_file: Callable[[Path], File]) -> Iterator[File]:
-    """A file, decompressed for the length of the block."""
+    """Decompress a file for the duration of the block."""
     try:
         with tempfile.TemporaryDirectory(prefix="graphflow-bag-") as folder:
             path = Path(folder) / source.stem
@@ -94,7 +94,7 @@ def _loose(source: Path, open_file: Callable[[Path], File]) -> Iterator[File]:
 
 @contextmanager
 def _named(source: Path, file: File) -> Iterator[File]:
-    """A decompressed file, with errors that name the one that it was made from."""
+    """Name the compressed file in errors about the decompressed one."""
     try:
         yield file
     except BagError as error:
@@ -105,8 +105,8 @@ def decompress(source: Path, target: Path) -> None:
     """Decompress a file into a new one.
 
     Raises:
-        BagError: It is damaged, or would leave too little room on the disk.
-        OSError: One cannot be read, or the other not written.
+        BagError: It is damaged, or would leave too little space on the disk.
+        OSError: The source cannot be read, or the target cannot be written.
     """
     room = int(shutil.disk_usage(target.parent).free * _SHARE)
     with source.open("rb") as packed, target.open("xb") as loose:
@@ -125,17 +125,17 @@ def decompress(source: Path, target: Path) -> None:
 
 
 def unpacked(form: str, data: bytes | memoryview, bound: int) -> bytes:
-    """Decompress at most `bound` bytes, whatever the data says of itself, and one more if there are.
+    """Decompress at most `bound` bytes, whatever size the data give, and one more if there are more.
 
     Raises:
-        Damaged: It is not compressed by `form`, or that is not known.
+        Damaged: The data are not compressed by `form`, or `form` is not known.
     """
     import zstandard
 
     try:
         if form == "zstd":
             found = zstandard.ZstdDecompressor().stream_reader(bytes(data)).read(bound + 1)
-            size = zstandard.frame_content_size(data)  # less than 0 where the frame does not name it
+            size = zstandard.frame_content_size(data)  # negative if the frame does not give it
             if len(found) <= bound and (len(found) < size if size >= 0 else not _is_whole(data)):
                 raise Damaged("it ends early")
             return found
@@ -153,7 +153,7 @@ def unpacked(form: str, data: bytes | memoryview, bound: int) -> bytes:
 
 
 def _is_whole(data: bytes | memoryview) -> bool:
-    """Whether a Zstandard frame has its end, decompressed once more: its size is known to be bounded."""
+    """Return whether a Zstandard frame is complete, by decompressing it again: its size is known to be bounded."""
     import zstandard
 
     decompressor = zstandard.ZstdDecompressor().decompressobj()
@@ -162,10 +162,10 @@ def _is_whole(data: bytes | memoryview) -> bool:
 
 
 def loosened(records: Iterator[Record], path: Path, bound: int, *, is_packed: bool) -> Iterator[Record]:
-    """Records with the messages decompressed that are compressed.
+    """Decompress the compressed messages of records.
 
     Args:
-        is_packed: Whether all are; else it is told by their first bytes.
+        is_packed: Whether all are compressed; else their first bytes decide.
 
     Raises:
         BagError: One cannot be decompressed.
@@ -194,7 +194,7 @@ def _message(form: str | None, data: bytes, bound: int) -> bytes:
 
 @contextmanager
 def _stream(form: str, packed: BinaryIO) -> Iterator[Any]:
-    """A file as it is when decompressed."""
+    """Open a decompressing stream over a file."""
     import zstandard
 
     try:

@@ -1,4 +1,4 @@
-"""One `.db3` file of rosbag2's older storage, read.
+"""The reader of `.db3` files, rosbag2's older storage.
 
 Source: rosbag2_storage_sqlite3: tables `topics`, `messages`, `message_definitions`.
 """
@@ -19,10 +19,10 @@ _TOPICS_BOUND = 10_000
 
 
 class Db3File:
-    """Reads one file.
+    """One file.
 
     Raises:
-        BagError: There is no such file, or it is no bag.
+        BagError: There is no such file, or it is not a bag.
     """
 
     def __init__(self, path: Path) -> None:
@@ -39,7 +39,7 @@ class Db3File:
             raise BagError(f"{path}: {error.strerror}") from None
         except (sqlite3.Error, AttributeError, TypeError, ValueError) as error:
             raise BagError(f"{path}: {error}") from None
-        for rest in ("-wal", "-journal"):  # of messages that came last, and of a transaction that was cut off
+        for rest in ("-wal", "-journal"):  # the latest messages, and an interrupted transaction
             if path.with_name(path.name + rest).exists():
                 raise BagError(
                     f"{path}: it was not closed; let sqlite3 take in its {rest} file: sqlite3 {path} .tables"
@@ -59,7 +59,7 @@ class Db3File:
     def records(
         self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Record]:
-        """Messages in the order of their times. Arguments and errors as for `McapFile.records`."""
+        """Yield messages in the order of their times. Arguments and errors as for `McapFile.records`."""
         wanted = {i: t for i, t in self._topics.items() if names is None or t.name in names}
         query = (
             "SELECT topic_id, timestamp, data FROM messages WHERE timestamp >= ? AND timestamp < ? ORDER BY timestamp"
@@ -85,7 +85,7 @@ def _read_topics(base: sqlite3.Connection) -> dict[int, Topic]:
     hashes = "type_description_hash" if "type_description_hash" in columns else "''"
     offered = "offered_qos_profiles" if "offered_qos_profiles" in columns else "''"
     rows = base.execute(
-        f"SELECT id, name, type, serialization_format, {offered}, {hashes} FROM topics LIMIT ?",  # noqa: S608 - two of our own words
+        f"SELECT id, name, type, serialization_format, {offered}, {hashes} FROM topics LIMIT ?",  # noqa: S608 - two of our own texts
         (_TOPICS_BOUND,),
     ).fetchall()
     texts = _definitions(base)

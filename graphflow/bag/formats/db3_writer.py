@@ -1,7 +1,7 @@
-"""A `.db3` file as it is being written, for those whose tools read nothing else.
+"""The writer of `.db3` files, for users whose tools read nothing else.
 
-Messages wait in memory until `flush`, and are written in one short transaction, so that a file that is never closed has
-whole messages, and can be read.
+Messages are buffered until `flush` and written in one short transaction, so that a file that is never closed has whole
+messages, and can be read.
 
 Source: rosbag2_storage_sqlite3, version 4 of its schema.
 """
@@ -19,7 +19,7 @@ from graphflow.bag.formats.bag_file import Part
 from graphflow.wire.profile import wire_profile
 
 PIECE = 1 << 20
-"""Bytes of messages that are written together."""
+"""Size in bytes of the messages in one transaction."""
 SCHEMA = """\
 CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
 CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);
@@ -35,10 +35,10 @@ _VERSION = 4
 
 
 class Db3Part(Part):
-    """Writes a file.
+    """A file during writing.
 
     Args:
-        make_room: Gives back what was kept free on the disk; False if that has been done.
+        make_room: Releases the reserved disk space; False if it was released before.
     """
 
     def __init__(self, path: Path, make_room: Callable[[], bool]) -> None:
@@ -50,7 +50,7 @@ class Db3Part(Part):
         self._bytes = 0
         self._types: set[str] = set()
         os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-        # One thread after the other uses it: that of the recorder after the one that made it.
+        # Used by one thread after the other: the recorder's after the one that created it.
         self._base = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
         self._base.executescript(SCHEMA)
         self._wait("INSERT INTO schema VALUES (?, ?)", _VERSION, wire_profile())
@@ -77,10 +77,10 @@ class Db3Part(Part):
         self._bytes = 0
 
     def sync(self) -> None:
-        """Each transaction has been put on the disk by SQLite."""
+        """Do nothing: SQLite syncs each transaction."""
 
-    def finish(self, said: str) -> None:
-        self._wait("INSERT INTO metadata(metadata_version, metadata) VALUES (?, ?)", metadata.VERSION, said)
+    def finish(self, text: str) -> None:
+        self._wait("INSERT INTO metadata(metadata_version, metadata) VALUES (?, ?)", metadata.VERSION, text)
         self.flush()
         self._base.close()
 
@@ -117,7 +117,7 @@ class Db3Part(Part):
             for statement, values in self._waiting:
                 self._base.execute(statement, values)
             self._base.execute("COMMIT")
-        except BaseException:  # cancellation included: no transaction is left open
+        except BaseException:  # cancellation included: no transaction may stay open
             if self._base.in_transaction:
                 self._base.execute("ROLLBACK")
             raise

@@ -1,4 +1,4 @@
-"""The definition of a message type as bags have it: its text, then those of the types in it, each after a line of `=`.
+"""Type definitions in bags: the text of a type, then those of its nested types, each after a line of `=`.
 
 Source: MCAP's registry of schema encodings, `ros2msg`.
 """
@@ -19,11 +19,11 @@ RULE = "=" * 80
 
 
 def joined(name: str, sources: Mapping[str, str]) -> str:
-    """One text of many.
+    """Join the texts of a type and its nested types.
 
     Args:
         name: `package/msg/Name`.
-        sources: Texts of definition files by type, that of `name` among them.
+        sources: Texts of definition files by type, `name` included.
     """
     others = [
         f"{RULE}\nMSG: {_short(other)}\n{_ended(text)}" for other, text in sorted(sources.items()) if other != name
@@ -32,7 +32,7 @@ def joined(name: str, sources: Mapping[str, str]) -> str:
 
 
 def parted(name: str, text: str) -> dict[str, str]:
-    """The texts of a type and of those in it, by type.
+    """Split a definition into the texts of a type and its nested types, by type.
 
     Raises:
         InterfaceError: It is not in this form.
@@ -41,16 +41,16 @@ def parted(name: str, text: str) -> dict[str, str]:
     found = {name: first}
     for other in others:
         head, _, body = other.partition("\n")
-        word, _, short = head.partition(" ")
+        marker, _, short = head.partition(" ")
         parts = short.strip().split("/")
-        if word != "MSG:" or len(parts) not in (2, 3):
+        if marker != "MSG:" or len(parts) not in (2, 3):
             raise InterfaceError(f"the definition of {name} has a part that begins {head[:40]!r}")
         found[f"{parts[0]}/msg/{parts[-1]}"] = body
     return found
 
 
 def known(name: str) -> str:
-    """The definition of a message type that is known here, in one text; that of a request, too.
+    """Return the definition of a message type that is known here, a service's request included.
 
     Raises:
         InterfaceError: It is not known here.
@@ -62,7 +62,7 @@ def known(name: str) -> str:
 
 
 async def asked(node: Node, entity: Entity) -> str:
-    """The definition of a topic's type: the one here if it is the same, else its publishers are asked.
+    """Return the definition of a topic's type: the local one if it is the same, else its publishers are queried.
 
     Args:
         entity: A publisher of the topic.
@@ -71,7 +71,7 @@ async def asked(node: Node, entity: Entity) -> str:
         The text; empty for a part of a service or action, such as its events: it follows from a type that has a file.
 
     Raises:
-        InterfaceError: Nobody gives a definition that has the hash.
+        InterfaceError: No process returns a definition with that hash.
     """
     if "_" in entity.type.rpartition("/")[2] and "/msg/" not in entity.type:
         return ""
@@ -89,7 +89,7 @@ async def asked(node: Node, entity: Entity) -> str:
 
 
 def _written(message: Message) -> str:
-    """The text of a part of a service, which has no file of its own."""
+    """Return the text of a part of a service, which has no file of its own."""
     constants = [f"{c.type} {c.name}={c.value}\n" for c in message.constants]
     fields = [f"{_short(str(field.type))} {field.name}\n" for field in message.fields]
     return "".join([*constants, *fields])

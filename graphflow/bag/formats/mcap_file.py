@@ -1,6 +1,6 @@
-"""One MCAP file, read: by its index if it was closed properly, else record by record as far as it goes.
+"""The reader of MCAP files: by the index if a file was closed properly, else record by record as far as possible.
 
-A file is not believed: what it says of sizes is bounded before memory is taken for it.
+Files are not trusted: sizes in them are checked before memory is allocated.
 
 Source: the MCAP specification, "Records".
 """
@@ -20,7 +20,7 @@ from graphflow.errors import BagError
 
 MAGIC = b"\x89MCAP0\r\n"
 RECORD_BOUND = 1 << 30
-"""Bytes that a record may have, and a chunk when it is unpacked."""
+"""Largest size in bytes of a record, and of a decompressed chunk."""
 DEFINITION_BOUND = 1_000_000
 CHANNELS_BOUND = 10_000
 _HEAD = struct.Struct("<BQ")
@@ -31,31 +31,31 @@ SCHEMA, CHANNEL, MESSAGE, CHUNK, STATISTICS, CHUNK_INDEX, DATA_END, FOOTER = 3, 
 
 
 _OF_SUMMARY = {SCHEMA, CHANNEL, STATISTICS, CHUNK_INDEX, *(0x0A, 0x0D, 0x0E)}
-"""Records that may be in a summary; the last are the indexes of attachments, metadata, and of the summary itself."""
+"""Opcodes allowed in a summary; the last are the indexes of attachments, metadata, and of the summary itself."""
 
 
 class _Broken(Exception):
-    """The file ends here, or goes on with what is no record."""
+    """The file ends here, or continues with data that are not a record."""
 
 
 class _Block(NamedTuple):
-    """A chunk, or a message outside of any."""
+    """A chunk, or a message outside of chunks."""
 
     start_ns: int
     end_ns: int
     offset: int
-    """Where its record begins."""
+    """Offset of its record."""
 
 
 _Waiting = tuple[int, tuple[int, int], int, int, int, bytes]
-"""A message that waits for its turn: its time, its place in the file, channel, number, time of sending, data."""
+"""A message in the merge: its time, its place in the file, channel, sequence number, time of sending, data."""
 
 
 class McapFile:
-    """Reads one file.
+    """One file.
 
     Raises:
-        BagError: There is no such file, or it is no MCAP.
+        BagError: There is no such file, or it is not MCAP.
     """
 
     def __init__(self, path: Path) -> None:
@@ -92,15 +92,15 @@ class McapFile:
     def records(
         self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Record]:
-        """Messages in the order of their times.
+        """Yield messages in the order of their times.
 
         Args:
             names: Topics; None for all.
-            start_ns: From this time on.
-            end_ns: Up to this time, which does not belong to it.
+            start_ns: Earliest time, nanoseconds since 1970.
+            end_ns: Time before which messages are read.
 
         Raises:
-            BagError: A chunk cannot be unpacked.
+            BagError: A chunk cannot be decompressed.
         """
         wanted = {i: t for i, t in self._channels.items() if names is None or t.name in names}
         end = (1 << 63) if end_ns is None else end_ns
@@ -112,7 +112,7 @@ class McapFile:
                     yield _record(heapq.heappop(waiting), wanted)
                 for number, (channel, sequence, log_ns, publish_ns, data) in enumerate(self._messages(file, block)):
                     if channel in wanted and start_ns <= log_ns < end:
-                        place = block.offset, number  # keeps those of one time in the order of the file
+                        place = block.offset, number  # keeps the file's order among messages of one time
                         heapq.heappush(waiting, (log_ns, place, channel, sequence, publish_ns, data))
         while waiting:
             yield _record(heapq.heappop(waiting), wanted)
@@ -120,7 +120,7 @@ class McapFile:
     # the index
 
     def _read_index(self, file: BinaryIO) -> bool:
-        """Read the summary at the end; False if there is none that is complete."""
+        """Read the summary at the end; False if there is no complete one."""
         from mcap.exceptions import McapError
         from mcap.reader import SeekingReader
 
@@ -133,7 +133,7 @@ class McapFile:
         numbers = None if summary is None else summary.statistics
         if summary is None or numbers is None or len(summary.channels) != numbers.channel_count:
             return False
-        if numbers.message_count and not summary.chunk_indexes:  # without chunks: there is no index of messages
+        if numbers.message_count and not summary.chunk_indexes:  # without chunks there is no index of messages
             return False
         for schema in summary.schemas.values():
             self._schemas[schema.id] = (schema.name, schema.encoding, schema.data)
@@ -149,7 +149,7 @@ class McapFile:
         return True
 
     def _check_summary(self, file: BinaryIO) -> None:
-        """Refuse a summary with anything in it but an index: a chunk there would be unpacked whatever its size."""
+        """Check that a summary has nothing but an index: a chunk there would be decompressed whatever its size."""
         end = file.seek(0, 2) - len(MAGIC) - _HEAD.size - _FOOTER.size
         file.seek(max(end, 0))
         kind, _ = self._head(file)
@@ -175,7 +175,7 @@ class McapFile:
     # record by record
 
     def _read_through(self, file: BinaryIO) -> None:
-        """Read all records, as far as they can be read."""
+        """Read all records, as far as possible."""
         self._schemas.clear()
         self._channels.clear()
         file.seek(len(MAGIC))
@@ -250,7 +250,7 @@ class McapFile:
         return kind, size
 
     def _messages(self, file: BinaryIO, block: _Block) -> Iterator[tuple[int, int, int, int, bytes]]:
-        """Channel, number, times and data of each message of a block."""
+        """Yield channel, sequence number, times and data of each message of a block."""
         try:
             file.seek(block.offset)
             kind, size = self._head(file)
@@ -267,7 +267,7 @@ class McapFile:
             raise BagError(f"{self.path}: the chunk at byte {block.offset:,} is damaged {error}".rstrip()) from None
 
     def _unpacked(self, file: BinaryIO) -> bytes:
-        """The records of the chunk that begins here."""
+        """Read and decompress the chunk at the file's position."""
         kind, size = self._head(file)
         body = _exactly(file, size)
         if kind != CHUNK:
@@ -295,7 +295,7 @@ def _record(waiting: _Waiting, channels: dict[int, Topic]) -> Record:
 
 
 def _parts(data: bytes) -> Iterator[tuple[int, memoryview]]:
-    """Kind and body of each record of an unpacked chunk."""
+    """Yield opcode and body of each record of a decompressed chunk."""
     view, at, end = memoryview(data), 0, len(data)
     while at < end:
         kind, size = _HEAD.unpack_from(view, at)

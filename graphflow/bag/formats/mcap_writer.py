@@ -1,7 +1,7 @@
-"""An MCAP file, written: messages are copied once, into a chunk that is used again, and compressed for speed.
+"""The writer of MCAP files: messages are copied once, into a reused chunk, and compressed for speed.
 
-mcap's own writer copies a message four times and compresses by Zstandard's level 3, which took most of a recorder's
-time; level 1, that of rosbag2's preset `zstd_fast`, is four times as fast and packs as well where data is noise.
+mcap's own writer copies a message four times and compresses with Zstandard's level 3, which took most of a recorder's
+time; level 1, that of rosbag2's preset `zstd_fast`, is four times as fast and compresses noise as well.
 
 Source: the MCAP specification, "Records"; the rare ones are written by mcap's own classes.
 """
@@ -31,7 +31,7 @@ from mcap.records import (
 
 MAGIC = b"\x89MCAP0\r\n"
 LEVEL = 1
-"""Of Zstandard."""
+"""Level of Zstandard."""
 _HEAD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<BQHIQQ")
 _ENTRY = struct.Struct("<QQ")
@@ -39,7 +39,7 @@ _INDEX = struct.Struct("<BQHI")
 
 
 class Stream(Protocol):
-    """Where it goes: each piece whole or not at all."""
+    """The target of a writer: each write is all or nothing."""
 
     def write(self, data: bytes | memoryview) -> int: ...
 
@@ -47,10 +47,10 @@ class Stream(Protocol):
 
 
 class McapWriter:
-    """Writes a file.
+    """A file during writing.
 
     Args:
-        chunk_size: Bytes of messages after which a chunk ends.
+        chunk_size: Size in bytes of messages after which a chunk ends.
         compression: `zstd`, `lz4`, or nothing.
     """
 
@@ -58,13 +58,13 @@ class McapWriter:
         self._stream, self._chunk_size, self._compression = stream, chunk_size, compression
         self._compress = _compressor(compression)
         self._head = struct.Struct(f"<BQQQQII{len(compression)}sQ")
-        """Of a chunk's record."""
+        """The header of a chunk's record."""
         self._chunk = self._room()
-        """The head, and the records behind it."""
+        """The chunk's header with its records."""
         self._end = self._head.size
-        """Where the next record goes."""
+        """Offset of the next record in the chunk."""
         self._index: dict[int, list[tuple[int, int]]] = {}
-        """Times and places of the chunk's messages, by channel."""
+        """Times and offsets of the chunk's messages, by channel."""
         self._start_ns = self._end_ns = 0
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
@@ -89,7 +89,7 @@ class McapWriter:
         return number
 
     def add_message(self, channel: int, log_ns: int, data: bytes, publish_ns: int, sequence: int) -> None:
-        """Write a message into the chunk, and that into the file if it is full."""
+        """Write a message into the chunk, and a full chunk into the file."""
         at, length = self._end, len(data)
         end = at + _MESSAGE.size + length
         if end > len(self._chunk):
@@ -110,13 +110,13 @@ class McapWriter:
             self.flush()
 
     def add_metadata(self, name: str, about: Mapping[str, str]) -> None:
-        """Write a record of metadata."""
+        """Write a metadata record."""
         data = _record(Metadata(name=name, metadata=dict(about)))
         self._metadata.append(MetadataIndex(offset=self._stream.tell(), length=len(data), name=name))
         self._stream.write(data)
 
     def flush(self) -> None:
-        """Write the chunk as it is, if it has messages."""
+        """Write the chunk to the file, if it has messages."""
         if not self._index:
             return
         index, self._index, end, self._end = self._index, {}, self._end, self._head.size
@@ -129,7 +129,7 @@ class McapWriter:
             self._head.pack_into(whole, 0, *head, len(form), form, len(packed))
             with whole[: self._head.size] as begin, whole[:end] as record:
                 self._stream.write(record if packed is raw else b"".join((begin, packed)))
-        if len(self._chunk) > 2 * self._chunk_size:  # of one large message, and not for ever
+        if len(self._chunk) > 2 * self._chunk_size:  # one large message must not keep its buffer for ever
             self._chunk = self._room()
         start = self._stream.tell()
         offsets, tables, at = dict[int, int](), [], start
@@ -156,7 +156,7 @@ class McapWriter:
         self._stream.write(b"".join(tables))
 
     def finish(self) -> None:
-        """Write the end: the index of all."""
+        """Write the end of the file: its index."""
         self.flush()
         self._stream.write(_record(DataEnd(data_section_crc=0)))
         start = self._stream.tell()
@@ -196,7 +196,7 @@ class McapWriter:
         )
 
     def _put(self, data: bytes) -> None:
-        """Put a record into the chunk."""
+        """Append a record to the chunk."""
         end = self._end + len(data)
         if end > len(self._chunk):
             self._chunk.extend(bytes(end - len(self._chunk)))

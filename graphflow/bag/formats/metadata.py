@@ -1,6 +1,6 @@
-"""`metadata.yaml`, in which rosbag2 says what is in a bag, and QoS profiles as it writes them.
+"""`metadata.yaml`, rosbag2's description of a bag, and QoS profiles in its format.
 
-Source: rosbag2_storage, version 9 of its metadata; older ones have numbers in place of words.
+Source: rosbag2_storage, version 9 of its metadata; older ones have numbers in place of names.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from graphflow.wire.profile import wire_profile
 FILE = "metadata.yaml"
 VERSION = 9
 BOUND = 10_000_000
-"""Bytes that the file may have."""
+"""Largest size of the file in bytes."""
 ENUMS: dict[str, type[IntEnum]] = {
     "history": History,
     "reliability": Reliability,
@@ -32,24 +32,24 @@ DURATIONS = {"deadline": "deadline_ns", "lifespan": "lifespan_ns", "liveliness_l
 _MAX_PROFILES = 100
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DUMPER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-"""Those of LibYAML are ten times as fast: a large bag has a large file, which is written again and again."""
+"""LibYAML's are ten times as fast: a large bag has a large file, which is written again and again."""
 
 
 class FileContents(NamedTuple):
-    """One file of a bag."""
+    """The contents of one file of a bag."""
 
     name: str
     contents: Contents
 
 
 def written(files: list[FileContents], whole: Contents, custom: Mapping[str, str], storage: str = "mcap") -> str:
-    """The text of the file.
+    """Return the text of the file.
 
     Args:
-        custom: What the user has to say about the bag.
+        custom: The user's own metadata.
     """
 
-    def times(contents: Contents) -> dict[str, Any]:
+    def times(contents: Contents) -> dict[str, object]:
         return {
             "duration": {"nanoseconds": contents.end_ns - contents.start_ns},
             "starting_time": {"nanoseconds_since_epoch": contents.start_ns},
@@ -84,15 +84,15 @@ def written(files: list[FileContents], whole: Contents, custom: Mapping[str, str
     return _dumped({"rosbag2_bagfile_information": information})
 
 
-def read(folder: Path) -> dict[str, Any]:
-    """What the file says; empty without one.
+def read(folder: Path) -> dict[str, object]:
+    """Read the metadata of a bag; empty if there is no file.
 
     Raises:
         BagError: It cannot be read.
     """
     path = folder / FILE
     try:
-        data = loaded(found_bytes(path, BOUND))
+        data: Any = loaded(found_bytes(path, BOUND))
         return dict(data["rosbag2_bagfile_information"])
     except FileNotFoundError:
         return {}
@@ -103,8 +103,8 @@ def read(folder: Path) -> dict[str, Any]:
         raise BagError(f"{path}: it is no bag's metadata: {first}") from None
 
 
-def plain(qos: Qos) -> dict[str, Any]:
-    """A profile as rosbag2 writes it."""
+def plain(qos: Qos) -> dict[str, object]:
+    """Convert a profile to rosbag2's format."""
 
     def span(ns: int) -> dict[str, int]:
         return {"sec": ns // 10**9, "nsec": ns % 10**9}
@@ -114,56 +114,60 @@ def plain(qos: Qos) -> dict[str, Any]:
         "depth": qos.depth,
         "reliability": qos.reliability.name.lower(),
         "durability": qos.durability.name.lower(),
-        **{word: span(getattr(qos, name)) for word, name in list(DURATIONS.items())[:2]},
+        **{key: span(getattr(qos, name)) for key, name in list(DURATIONS.items())[:2]},
         "liveliness": qos.liveliness.name.lower(),
         "liveliness_lease_duration": span(qos.lease_ns),
         "avoid_ros_namespace_conventions": False,
     }
 
 
-def profiles(said: object) -> tuple[Qos, ...]:
-    """Profiles as a bag has them: as a list, or as the text of one; what cannot be read is left out."""
-    if isinstance(said, str):
+def profiles(value: object) -> tuple[Qos, ...]:
+    """Read the profiles of a bag: a list, or the YAML text of one; unreadable ones are left out."""
+    if isinstance(value, str):
         try:
-            said = loaded(said[:BOUND])
+            value = loaded(value[:BOUND])
         except (yaml.YAMLError, RecursionError, ValueError):
             return ()
-    rows = said if isinstance(said, list) else []
+    rows = value if isinstance(value, list) else []
     return tuple(_profile(row) for row in rows[:_MAX_PROFILES] if isinstance(row, Mapping))
 
 
-def _profile(row: Mapping[Any, Any]) -> Qos:
-    given: dict[str, Any] = {}
+def _profile(row: Mapping[str, object]) -> Qos:
+    policies: dict[str, Any] = {}
     for key, enum in ENUMS.items():
-        said = row.get(key, "")
-        word = str(said).upper() if isinstance(said, (str, int)) else ""
-        if word in enum.__members__ and word != "BEST_AVAILABLE":
-            given[key] = enum[word]
-        elif word.isdecimal() and len(word) < 9 and int(word) in {m.value for m in enum if m.name != "BEST_AVAILABLE"}:
-            given[key] = enum(int(word))
+        value = row.get(key, "")
+        policy = str(value).upper() if isinstance(value, (str, int)) else ""
+        if policy in enum.__members__ and policy != "BEST_AVAILABLE":
+            policies[key] = enum[policy]
+        elif (
+            policy.isdecimal()
+            and len(policy) < 9
+            and int(policy) in {m.value for m in enum if m.name != "BEST_AVAILABLE"}
+        ):
+            policies[key] = enum(int(policy))
     depth = row.get("depth")
     if isinstance(depth, int) and 0 < depth < 2**31:
-        given["depth"] = depth
+        policies["depth"] = depth
     for key, name in DURATIONS.items():
-        given[name] = _span(row.get(key))
-    return Qos(**given)
+        policies[name] = _span(row.get(key))
+    return Qos(**policies)
 
 
-def _span(said: object) -> int:
-    if isinstance(said, Mapping):
-        sec, nsec = said.get("sec"), said.get("nsec")
+def _span(value: object) -> int:
+    if isinstance(value, Mapping):
+        sec, nsec = value.get("sec"), value.get("nsec")
         if isinstance(sec, int) and isinstance(nsec, int) and 0 <= sec * 10**9 + nsec < INFINITE_NS:
             return sec * 10**9 + nsec
     return INFINITE_NS
 
 
 def as_text(offered: Iterable[Qos]) -> str:
-    """Profiles as MCAP files have them in their channels."""
+    """Format profiles as for the channels of MCAP files."""
     return _dumped([plain(qos) for qos in offered])
 
 
-def loaded(text: str | bytes) -> Any:
-    """What a text of YAML says; one with aliases is refused: a few of them can stand for more than any memory holds."""
+def loaded(text: str | bytes) -> object:
+    """Parse YAML; aliases are refused, since a few of them can expand beyond any memory."""
     if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, _LOADER)):
         raise ValueError("it has aliases")
     return yaml.load(text, _LOADER)  # noqa: S506 - a safe one

@@ -1,7 +1,7 @@
-"""One `.bag` file of ROS 1, read: its messages become CDR, of the types that ROS 2 has in their place.
+"""The reader of ROS 1's `.bag` files: messages are converted to CDR, of the corresponding ROS 2 types.
 
-A type that is known here is taken as it is here, with the fields of the same names; any other one as the bag defines
-it, with names as ROS 2 allows them.
+A type that is known here is used as it is known, with the fields of the same names; any other one as the bag defines
+it, with names that ROS 2 allows.
 
 Source: the ROS 1 bag format 2.0. Only this module knows `rosbags`, which comes with the extra `ros1`.
 """
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 MAGIC = b"#ROSBAG V"
 CHUNK_BOUND = 1 << 30
-"""Bytes that a chunk may have when it is decompressed."""
+"""Largest size of a decompressed chunk in bytes."""
 LATCHED = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
 _NO_INDEX = "it has no whole index, as when its recording did not end; ROS 1 writes one: rosbag reindex"
 _TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
@@ -42,17 +42,17 @@ _FIELD = re.compile(r"[A-Za-z]\w*\Z", re.ASCII)
 
 
 class Ros1File:
-    """Reads one file.
+    """One file.
 
     Raises:
-        BagError: There is no such file, it is no bag, or `rosbags` is not installed.
+        BagError: There is no such file, it is not a bag, or `rosbags` is not installed.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._topics: dict[int, Topic] = {}
         self._converters: dict[str, Callable[[bytes], bytes]] = {}
-        """By type in the bag."""
+        """Converters by type in the bag."""
         with self._opened() as reader:
             counts, converted = dict[str, int](), dict[str, tuple[str, str, str]]()
             for connection in reader.connections:
@@ -71,7 +71,7 @@ class Ros1File:
     def records(
         self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Record]:
-        """Messages in the order of their times. Arguments and errors as for `McapFile.records`."""
+        """Yield messages in the order of their times. Arguments and errors as for `McapFile.records`."""
         with self._opened() as reader:
             wanted = [c for c in reader.connections if names is None or self._topics[c.id].name in names]
             for connection, when, data in reader.messages(wanted, start_ns, end_ns) if wanted else ():
@@ -84,8 +84,8 @@ class Ros1File:
             from rosbags.rosbag1 import Reader, ReaderError
             from rosbags.serde import SerdeError
         except ModuleNotFoundError:
-            words = f"ROS 1 bags need the extra `ros1`: pip install {requirement('ros1')}"
-            raise BagError(f"{self.path}: {words}") from None
+            text = f"ROS 1 bags need the extra `ros1`: pip install {requirement('ros1')}"
+            raise BagError(f"{self.path}: {text}") from None
         try:
             with Reader(self.path) as reader:
                 for place, chunk in reader.chunks.items():
@@ -102,7 +102,7 @@ class Ros1File:
             raise BagError(f"{self.path}: {error.strerror or 'it is damaged'}") from None
 
     def _convert(self, connection: Connection) -> tuple[str, str, str]:
-        """Prepare a type of the bag; its name, hash and definition here."""
+        """Prepare a type of the bag; returns its name, hash and definition here."""
         from rosbags.convert.converter import is_same_wireformat, migrate_bytes
         from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
@@ -128,10 +128,10 @@ class Ros1File:
 
 
 def _check_names(types: Mapping[str, Any]) -> None:
-    """Check what a bag calls its types and their fields: rosbags makes a Python module of it, and executes that.
+    """Check the names of types and fields in a bag: rosbags generates and executes a Python module with them.
 
     Raises:
-        InterfaceError: A name is none.
+        InterfaceError: A name is not legal.
     """
     for one, (constants, fields) in types.items():
         if not _TYPE.match(one):
@@ -142,7 +142,7 @@ def _check_names(types: Mapping[str, Any]) -> None:
 
 
 def _sources(types: Mapping[str, Any], name: str) -> dict[str, str]:
-    """The definitions of a type and of those in it, by their names here."""
+    """Return the definitions of a type and of its nested types, by their names here."""
     found: dict[str, str] = {}
     for one, (constants, fields) in types.items():
         new = _name(one)
@@ -169,19 +169,19 @@ def _is_known(name: str) -> bool:
 
 
 def _name(there: str) -> str:
-    """The name here of a type in a bag."""
+    """Convert the name of a type in a bag to its name here."""
     package, _, short = _RENAMED.get(there, there).rpartition("/")
     return f"{package}/{short[:1].upper()}{short[1:].replace('_', '')}"
 
 
 def _field_name(there: str) -> str:
-    """A field's name in lower case, with single underscores."""
+    """Convert a field's name to lower case with single underscores."""
     parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", there).lower().split("_")
     return "_".join(part for part in parts if part)
 
 
 def _type(desc: Any) -> str:
-    """The type of a field as definitions write it."""
+    """Format the type of a field as definitions do."""
     from rosbags.interfaces import Nodetype
 
     kind, about = desc
@@ -199,7 +199,7 @@ def _constant(name: str, type_: str, value: object) -> str:
 
 
 def _bounded(decompressor: Callable[[bytes], bytes]) -> Callable[[bytes], bytes]:
-    """A decompressor of rosbags' with a bound on its result."""
+    """Bound the result of a decompressor of rosbags."""
     from lz4.frame import decompress as of_lz4
 
     if decompressor is bz2.decompress:

@@ -1,4 +1,4 @@
-"""The last messages of topics that are repeated at the beginning of every file and of every snapshot.
+"""Repeated messages: the last ones of some topics begin every file and every snapshot.
 
 Source: rosbag2, `--repeat-transient-local` and `--repeat-all-transient-local`.
 """
@@ -15,15 +15,15 @@ from graphflow.qos import Durability
 
 @dataclass(frozen=True)
 class Repeats:
-    """How many messages of which topics are repeated."""
+    """The number of repeated messages by topic."""
 
     topics: Mapping[str, int] = field(default_factory=dict)
-    """Numbers by full name."""
+    """Numbers by full name of the topic."""
     latched: int = 0
-    """Of each other topic that a publisher offers with transient-local durability."""
+    """The number for every other topic that a publisher offers as transient local."""
 
     def count(self, topic: Topic) -> int:
-        """How many messages of a topic."""
+        """Return the number of messages to repeat for a topic."""
         if topic.name in self.topics:
             return self.topics[topic.name]
         return self.latched if any(qos.durability is Durability.TRANSIENT_LOCAL for qos in topic.qos) else 0
@@ -33,25 +33,25 @@ NO_REPEATS = Repeats()
 
 
 class LatchedMessages:
-    """Keeps the last messages of such topics."""
+    """The last messages of the repeated topics."""
 
     def __init__(self, repeats: Repeats) -> None:
         self._repeats = repeats
         self._last: dict[str, deque[Record]] = {}
 
     def put(self, record: Record) -> None:
-        """Keep a message, if it is of such a topic."""
+        """Store a message, if its topic is repeated."""
         last = self._last.get(record.topic.name)
         if last is None:
             last = self._last[record.topic.name] = deque(maxlen=self._repeats.count(record.topic))
         last.append(record)
 
     def before(self, first_ns: int, following: Iterable[Record] = ()) -> Iterator[Record]:
-        """The messages to write before others, as if they had come with the first of them.
+        """Return the messages to write before others, with the time of the first of them.
 
         Args:
-            first_ns: When the first of the others came.
-            following: The others; those of such topics among them count, too.
+            first_ns: Time of the first of the others.
+            following: The others; they count towards the numbers, too.
         """
         missing = {name: last.maxlen or 0 for name, last in self._last.items()}
         for record in following:

@@ -1,7 +1,7 @@
-"""Records topics of a running graph: serialized messages go from the network into the files as they are.
+"""The recorder of topics: serialized messages go from the network into the files unchanged.
 
-The loop takes messages in; a thread packs and writes them. Between the two is a cache of limited size: when the disk
-cannot keep up messages are dropped and counted, and nothing else waits.
+The loop takes messages in; a thread compresses and writes them. Between the two is a cache of bounded size: if the disk
+is too slow, messages are dropped and counted, and nothing else waits.
 """
 
 from __future__ import annotations
@@ -30,33 +30,33 @@ from graphflow.wire.liveliness import Entity, Kind
 logger = logging.getLogger("graphflow")
 
 CACHE = 100 << 20
-"""Bytes that may wait to be written."""
+"""Default size of the cache in bytes."""
 WRITE_EVERY = 0.05
-"""Seconds that a message may wait for others to be written with it: the thread that writes is not woken for each."""
+"""Seconds in which messages are collected, so that the writing thread does not wake up for each."""
 LOOK_EVERY = 0.1
-"""Seconds between two looks for new topics."""
+"""Seconds between two searches for new topics."""
 HEARD = replace(BEST_AVAILABLE, depth=1000)
 OVERHEAD = 256
-"""Bytes that a message takes beside its own."""
+"""Overhead of a message in the cache, in bytes."""
 SENDERS_BOUND = 10_000
-"""Publishers whose sequence numbers are followed."""
+"""Largest number of publishers whose sequence numbers are followed."""
 
 
 class Recorder:
-    """Records from a node's graph into a bag.
+    """The recording of a node's graph into a bag.
 
     Args:
-        node: It runs.
-        writer: Where to. The recorder closes it.
-        choice: What is recorded.
-        cache: Bytes that may wait to be written.
+        node: A node that runs.
+        writer: The bag. The recorder closes it.
+        choice: The topics to record.
+        cache: Size of the cache in bytes.
         discovery: Whether topics that appear later are recorded, too.
-        qos: Profiles by topic, to listen with in place of one that fits.
-        unpublished: Whether topics are in the bag that are only listened to.
-        leaves: Whether topics are recorded that nobody else listens to.
-        rates: Messages a second that are recorded at most, by topic.
-        snapshot: Whether nothing is written before `take_snapshot`; the cache holds the last messages until then.
-        told: Called with a line on each topic.
+        qos: Subscription profiles by topic, in place of compatible ones.
+        unpublished: Whether topics that only have subscriptions are in the bag.
+        leaves: Whether topics without other subscriptions are recorded.
+        rates: Largest number of messages per second, by topic.
+        snapshot: Whether nothing is written before `take_snapshot`; the cache has the last messages until then.
+        on_topic: Called with a line on each topic.
     """
 
     def __init__(
@@ -72,47 +72,47 @@ class Recorder:
         leaves: bool = True,
         rates: Mapping[str, float] | None = None,
         snapshot: bool = False,
-        told: Callable[[str], object] = logger.info,
+        on_topic: Callable[[str], object] = logger.info,
     ) -> None:
         self._node, self._writer, self._choice = node, writer, choice
-        self._cache, self._is_discovering, self._is_snapshot, self._tell = cache, discovery, snapshot, told
+        self._cache, self._is_discovering, self._is_snapshot, self._on_topic = cache, discovery, snapshot, on_topic
         self._qos = qos or {}
         self._gates = {name: RateLimit(rate) for name, rate in (rates or {}).items()}
         self._kinds = (Kind.PUBLISHER, Kind.SUBSCRIPTION) if unpublished else (Kind.PUBLISHER,)
         self._records_leaves = leaves
         self.is_paused = False
-        """Whether what comes is left out."""
+        """Whether incoming messages are ignored."""
         self.recorded = self.dropped = self.lost = 0
-        """Messages taken in; those that found the cache full; gaps in the numbers of publishers."""
+        """Counts: messages taken in, messages dropped by a full cache, gaps in publishers' sequence numbers."""
         self.failed: asyncio.Future[BagError] = asyncio.get_running_loop().create_future()
-        """Has why nothing can be written any more."""
+        """The reason why nothing can be written any more."""
         self._loop = asyncio.get_running_loop()
         self._subscriptions: dict[str, RawSubscription] = {}
         self._topics: dict[str, Topic] = {}
         self._left_out: set[tuple[str, str]] = set()
         """Other types of topics that are recorded."""
-        self._held: dict[str, list[tuple[bytes, int, MessageInfo]]] = {}
-        """Messages of topics whose definitions have not come yet."""
-        self._held_bytes = 0
+        self._undefined: dict[str, list[tuple[bytes, int, MessageInfo]]] = {}
+        """Messages of topics whose definitions are still being fetched."""
+        self._undefined_bytes = 0
         self._has_waited = False
         self._last: dict[tuple[str, bytes], int] = {}
         self._new: list[Topic] = []
         """Topics that are not in the bag yet."""
         self._queue: deque[Record] = deque()
         self._kept = LatchedMessages(writer.repeats)
-        """Messages that a snapshot begins with although the cache has them no more."""
+        """Messages that begin a snapshot, although they have left the cache."""
         self._waiting = 0
-        """Bytes in the queue."""
+        """Size of the queue in bytes."""
         self._work = threading.Condition()
         self._is_ending = self._is_writing_snapshot = False
         self._split_after: int | None = None
-        """How many of those in the queue are to be in the old file, where a new one is asked for."""
+        """Number of queued messages that belong to the old file, if a split is requested."""
         self._tasks: set[asyncio.Task[None]] = set()
         self._thread = threading.Thread(target=self._write, name="graphflow-recorder", daemon=True)
 
     @property
     def topics(self) -> int:
-        """How many topics are recorded."""
+        """The number of recorded topics."""
         return len(self._subscriptions)
 
     @property
@@ -123,11 +123,11 @@ class Recorder:
 
     @property
     def size(self) -> int:
-        """Bytes of the bag so far."""
+        """Size of the bag so far in bytes."""
         return self._writer.size
 
     async def run(self) -> None:
-        """Record until cancelled, or until nothing can be written; then finish the bag.
+        """Record until cancelled or until writing fails, then finish the bag.
 
         Raises:
             BagError: The bag could not be written to its end.
@@ -150,7 +150,7 @@ class Recorder:
         finally:
             stop()
             await self._end()
-            await asyncio.sleep(0)  # the thread's last word is on its way
+            await asyncio.sleep(0)  # the thread's last callback is on its way
             if self.failed.done():
                 raise self.failed.result()
 
@@ -161,7 +161,7 @@ class Recorder:
         for task in self._tasks:
             task.cancel()
         try:
-            for name in list(self._held):
+            for name in list(self._undefined):
                 self._release(name, self._topic(name, ""))
         finally:
             with self._work:
@@ -172,13 +172,13 @@ class Recorder:
     # commands
 
     def split(self) -> None:
-        """Go on in a new file; what has come before is in the old one."""
+        """Continue in a new file; messages so far go to the old one."""
         with self._work:
             self._split_after = len(self._queue)
             self._work.notify()
 
     def take_snapshot(self) -> bool:
-        """Write what the cache holds; False where everything is written anyway."""
+        """Write the cache; False if everything is written anyway."""
         with self._work:
             self._is_writing_snapshot = self._is_snapshot
             self._work.notify()
@@ -195,9 +195,9 @@ class Recorder:
             return
         if not self._choice.wants(entity.name, entity.type):
             return
-        if entity.zid == self._node.context.session.zid:  # what the recorder itself says
+        if entity.zid == self._node.context.session.zid:  # the recorder's own topic
             return
-        if not self._records_leaves and not self._is_heard(entity.name):
+        if not self._records_leaves and not self._has_subscription(entity.name):
             return
 
         def arrived(payload: bytes, info: MessageInfo) -> None:
@@ -207,26 +207,26 @@ class Recorder:
             self._subscriptions[entity.name] = raw.subscribe(
                 self._node, entity.type, entity.name, arrived, self._qos.get(entity.name, HEARD), type_hash=entity.hash
             )
-        except (GraphflowError, ValueError) as error:  # whoever announced it may call its type anything
+        except (GraphflowError, ValueError) as error:  # another process may announce any type
             if (entity.name, entity.type) not in self._left_out:
                 self._left_out.add((entity.name, entity.type))
                 logger.warning("%s cannot be recorded: %s", printable(entity.name), printable(str(error)))
             return
-        self._held[entity.name] = []
-        self._tell(f"Subscribed to topic '{entity.name}'")
+        self._undefined[entity.name] = []
+        self._on_topic(f"Subscribed to topic '{entity.name}'")
         task = asyncio.ensure_future(self._define(entity))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    def _is_heard(self, name: str) -> bool:
+    def _has_subscription(self, name: str) -> bool:
         own = self._node.context.session.zid
         return any(e.zid != own for e in self._node.context.cache.endpoints(Kind.SUBSCRIPTION, name))
 
     async def _define(self, entity: Entity) -> None:
-        """Find the definition of a topic's type, and let its messages go on."""
+        """Fetch the definition of a topic's type, and release its messages."""
         try:
             definition = await asked(self._node, entity)
-        except Exception as error:  # whatever another process has answered
+        except Exception as error:  # another process may answer anything
             definition, why = "", printable(str(error))
             logger.warning("%s is recorded without the definition of %s: %s", entity.name, entity.type, why)
         self._release(entity.name, self._topic(entity.name, definition))
@@ -245,29 +245,29 @@ class Recorder:
             return
         now_ns = self._node.clock.time_ns()
         if now_ns <= 0:
-            self._say_that_it_waits()
+            self._report_wait()
             return
         self._follow(name, info)
         gate = self._gates.get(name)
         if gate is not None and not gate.passes(now_ns):
             return
-        held = self._held.get(name)
-        if held is None:
+        waiting = self._undefined.get(name)
+        if waiting is None:
             self._take(Record(self._topics[name], now_ns, _sent(info, now_ns), info.sequence, payload))
-        elif self._held_bytes + len(payload) + OVERHEAD <= self._cache:
-            self._held_bytes += len(payload) + OVERHEAD
-            held.append((payload, now_ns, info))
+        elif self._undefined_bytes + len(payload) + OVERHEAD <= self._cache:
+            self._undefined_bytes += len(payload) + OVERHEAD
+            waiting.append((payload, now_ns, info))
         else:
             self.dropped += 1
 
-    def _say_that_it_waits(self) -> None:
-        """Tell once that nothing is recorded before simulated time has begun."""
+    def _report_wait(self) -> None:
+        """Report, once, that nothing is recorded before simulated time has begun."""
         if not self._has_waited:
             self._has_waited = True
-            self._tell("Waiting for the first message on /clock; nothing is recorded before it")
+            self._on_topic("Waiting for the first message on /clock; nothing is recorded before it")
 
     def _follow(self, name: str, info: MessageInfo) -> None:
-        """Count what the numbers of a publisher leave out."""
+        """Count the gaps in a publisher's sequence numbers."""
         key = (name, info.gid)
         last = self._last.get(key)
         if last is None and len(self._last) >= SENDERS_BOUND:
@@ -277,12 +277,12 @@ class Recorder:
         self._last[key] = info.sequence
 
     def _release(self, name: str, topic: Topic) -> None:
-        """Let the messages of a topic go on that waited for its definition."""
+        """Release the messages of a topic that waited for its definition."""
         self._topics[name] = topic
         with self._work:
             self._new.append(topic)
-        for payload, now_ns, info in self._held.pop(name, []):
-            self._held_bytes -= len(payload) + OVERHEAD
+        for payload, now_ns, info in self._undefined.pop(name, []):
+            self._undefined_bytes -= len(payload) + OVERHEAD
             self._take(Record(topic, now_ns, _sent(info, now_ns), info.sequence, payload))
 
     def _take(self, record: Record) -> None:
@@ -310,19 +310,19 @@ class Recorder:
             while self._write_some():
                 pass
             self._writer.close()
-        except Exception as error:  # nobody else would hear of it
-            told = error if isinstance(error, BagError) else BagError(f"{self._writer.folder}: {error!r}")
+        except Exception as error:  # any error: the thread has no caller
+            failure = error if isinstance(error, BagError) else BagError(f"{self._writer.folder}: {error!r}")
             try:
                 self._writer.salvage()
             finally:
-                self._loop.call_soon_threadsafe(self._fail, told)
+                self._loop.call_soon_threadsafe(self._fail, failure)
 
     def _fail(self, error: BagError) -> None:
         if not self.failed.done():
             self.failed.set_result(error)
 
     def _write_some(self) -> bool:
-        """Write what waits; False when that was the last."""
+        """Write queued messages; False after the last."""
         with self._work:
             if not self._is_ending:
                 self._work.wait(WRITE_EVERY)
@@ -351,5 +351,5 @@ class Recorder:
 
 
 def _sent(info: MessageInfo, now_ns: int) -> int:
-    """When a message was sent; now, where its sender says nothing that can be."""
+    """Return the time of sending; now, if the sender's is impossible."""
     return info.source_ns if 0 < info.source_ns < 1 << 63 else now_ns

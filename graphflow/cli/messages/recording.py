@@ -141,7 +141,7 @@ async def _record(
         leaves=not options.ignore_leaf_topics,
         rates=rates,
         snapshot=options.snapshot_mode,
-        told=lambda text: _report(node, text),
+        on_topic=lambda text: _report(node, text),
     )
     recorder.is_paused = options.start_paused
     _serve(node, recorder)

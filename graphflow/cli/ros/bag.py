@@ -263,7 +263,7 @@ def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json
     from graphflow.bag.missing import check_messages, remarks
     from graphflow.bag.reader import Bag
     from graphflow.bag.topic_choice import Choice
-    from graphflow.bag.typed import said as messages
+    from graphflow.bag.typed import messages
     from graphflow.introspect.messages import echo as texts
 
     use_project()
@@ -423,7 +423,7 @@ def _copy_bags(paths: tuple[Path, ...], word: str, options: dict[str, Any], choi
     with BagWriter(folder, **packed, max_size=size_limit, max_seconds=seconds) as writer:
         try:
             show = _progress(folder)
-            copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns, told=show)
+            copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns, on_progress=show)
         finally:
             output.progress("")
     output.data(f"{folder}: {copied.message_count:,} messages of {topics_of(len(copied.topics))}, {size(writer.size)}")

@@ -48,7 +48,7 @@ class Session:
 
     async def start(self, choice: Choice = ALL, **options: Any) -> Recorder:
         await self.graph.start(self.node)
-        self.recorder = Recorder(self.node, BagWriter(self.folder), choice, told=self.told.append, **options)
+        self.recorder = Recorder(self.node, BagWriter(self.folder), choice, on_topic=self.told.append, **options)
         self.task = asyncio.create_task(self.recorder.run())
         await self.graph.settle()
         return self.recorder
@@ -288,7 +288,7 @@ async def test_what_every_snapshot_begins_with(graph: Graph, tmp_path: Path) -> 
     (await speaker(graph, "/map", latched)).publish(String(data="map"))
     publisher = await speaker(graph, qos=1000)
     writer = BagWriter(tmp_path / "bag", repeats=Repeats(latched=1))
-    recorder = Recorder(node, writer, ALL, snapshot=True, cache=4000, told=lambda _: None)
+    recorder = Recorder(node, writer, ALL, snapshot=True, cache=4000, on_topic=lambda _: None)
     task = asyncio.create_task(recorder.run())
     await graph.settle()
     deadline = time.monotonic() + 20.0
@@ -450,7 +450,7 @@ async def test_another_definition_of_a_type_that_is_known(
     await graph.start(node)
     raw.advertise(node, "std_msgs/msg/String", "/t", Qos(), type_hash="RIHS01_ab")
     recorder = await session.start()
-    await session.until(lambda: recorder.topics == 1 and not recorder._held)
+    await session.until(lambda: recorder.topics == 1 and not recorder._undefined)
     topic = (await session.end()).contents.topics["/t"]
     assert (topic.hash, topic.definition) == ("RIHS01_ab", "")
     assert "its definition here is another" in caplog.text
