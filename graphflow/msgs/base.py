@@ -1,4 +1,4 @@
-"""What all message, service and action classes have in common."""
+"""The base classes of messages, services and actions."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from graphflow.wire.schema import Message as Schema
 
 
 def lent_or_missing(self: Message, name: str) -> object:
-    """`__getattr__` of messages with arrays: a field that was lent to receivers (see `wire.lending`) gets a copy.
+    """Copy a field that was lent to receivers (see `wire.cdr.lending`): `__getattr__` of messages with arrays.
 
-    Other classes have none: on Python 3.11 it would make the reading of each field seven times slower.
+    Other classes have no `__getattr__`: on Python 3.11 it makes each access to a field seven times slower.
 
     Raises:
         AttributeError: There is no such field.
@@ -30,39 +30,39 @@ def lent_or_missing(self: Message, name: str) -> object:
 
 
 def copy_of_arrays(self: Message) -> Message:
-    """`__copy__` of messages with arrays: it has those that were lent, too."""
+    """Copy a message with its lent arrays: `__copy__` of messages with arrays."""
     copy: Message = unchecked(*self.__reduce__()[1])
     return copy
 
 
 class Message(Struct, eq=False):
-    """A ROS 2 message. Classes are made from definitions; see `graphflow.msgs`.
+    """A ROS 2 message. Classes are built from definitions; see `graphflow.msgs`.
 
     The constructor takes fields by keyword, checks them, and widens: integers for floats, sequences for arrays,
     mappings or objects with the same fields for nested messages. Assignment does not check; a value that does not
     fit is reported, by its field's path, when the message is encoded.
 
-    A field may have any lower-case name, so what every message has besides its fields is kept to a few
-    names that no definition is known to use.
+    A field may have any lower-case name, so a message has few other attributes, under names that no known definition
+    uses.
     """
 
     SCHEMA: ClassVar[Schema]
     NESTED: ClassVar[Mapping[str, type[Message]]]
-    """Classes of the message types that the fields hold, by name."""
+    """Classes of nested message types, by name."""
     CODEC: ClassVar[Callable[[], Codec]]
-    """Finds the compiled codec."""
+    """Returns the compiled codec."""
 
     def to_bytes(self) -> bytes:
-        """The message as CDR with its 4-byte header.
+        """Encode the message as CDR with its 4-byte header.
 
         Raises:
-            EncodeError: A field holds a value its type cannot carry; the text begins with the field's path.
+            EncodeError: A field has a value that its type cannot carry; the text begins with the field's path.
         """
         return type(self).CODEC().encode(self)
 
     @classmethod
     def from_bytes(cls, payload: bytes) -> Self:
-        """Read a message from CDR. Its arrays are read-only views of `payload`.
+        """Decode a message from CDR. Its arrays are read-only views of `payload`.
 
         Raises:
             DecodeError: `payload` is not a message of this type.
@@ -72,7 +72,7 @@ class Message(Struct, eq=False):
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Field names and types as ROS 2 prints them."""
+        """Return field names and types as ROS 2 prints them."""
         return {f.name: str(f.type).replace("/msg/", "/") for f in cls.SCHEMA.fields}
 
     def __eq__(self, other: object) -> bool:
@@ -80,30 +80,30 @@ class Message(Struct, eq=False):
             return NotImplemented
         return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in self.SCHEMA.fields)
 
-    __hash__ = None  # type: ignore[assignment]  # messages can change
+    __hash__ = None  # type: ignore[assignment]  # messages are mutable
 
     def __repr__(self) -> str:
         values = ", ".join(f"{f.name}={_text(getattr(self, f.name))}" for f in self.SCHEMA.fields)
         return f"{self.SCHEMA.name.replace('/', '.')}({values})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Not through the constructor: a received message can break a bound, and is copied as it is.
+        # Not through the constructor: a received message can break a bound, and is copied unchanged.
         return unchecked, (type(self), *(getattr(self, f.name) for f in self.SCHEMA.fields))
 
 
 def name_of(cls: type[Message]) -> str:
-    """How a message class is written: `Fibonacci.Goal` for a part of an action."""
+    """Return the written name of a message class: `Fibonacci.Goal` for a part of an action."""
     return ".".join(cls.__name__.rsplit("_", 1))
 
 
 def made_as(cls: type[Message]) -> str:
-    """How a message is made: `Fibonacci.Feedback(sequence=...)`."""
+    """Return the expression that creates a message: `Fibonacci.Feedback(sequence=...)`."""
     first = f"{cls.SCHEMA.fields[0].name}=..." if cls.SCHEMA.fields else ""
     return f"{name_of(cls)}({first})"
 
 
 def no_field(cls: type[Message], name: str) -> str:
-    """What to say of a field that a message does not have."""
+    """Return the error text for a field that a message does not have."""
     fields = {f.name: f"{f.type} {f.name}" for f in cls.SCHEMA.fields}
     hint = did_you_mean(name, fields) or f"; its fields: {', '.join(fields.values()) or 'none'}"
     return f"{name_of(cls)} has no field {name!r}{hint}"
@@ -135,18 +135,18 @@ class Service(Generic[Request, Response]):
     Event: ClassVar[type[Message]]
 
     def __new__(cls, *_: object, **__: object) -> Self:
-        """Raise TypeError: a service has messages and is none."""
+        """Raise TypeError: a service type has no instances."""
         raise TypeError(
             f"{cls.__name__} is a service; make {cls.__name__}.Request(...) or {cls.__name__}.Response(...)"
         )
 
 
 class ServerGoalHandle(ABC, Generic[Goal, Result, Feedback]):
-    """A goal as the handler of an action gets it.
+    """A goal for the handler of an action.
 
     Attributes:
-        request: What the client asked for.
-        partial: The result so far: what the client gets if the goal is cancelled or aborted.
+        request: The client's goal message.
+        partial: The result so far, which the client gets if the goal is cancelled or aborted.
     """
 
     request: Goal
@@ -155,21 +155,21 @@ class ServerGoalHandle(ABC, Generic[Goal, Result, Feedback]):
     @property
     @abstractmethod
     def goal_id(self) -> bytes:
-        """The goal's id: 16 bytes, made by the client."""
+        """The goal's id: 16 bytes, chosen by the client."""
 
     @property
     @abstractmethod
     def is_preempted(self) -> bool:
-        """Whether the goal must end because a newer one has come."""
+        """Whether the goal must end because a newer one has arrived."""
 
     @property
     @abstractmethod
     def is_cancel_requested(self) -> bool:
-        """Whether the goal must end; for handlers in threads. On the loop `CancelledError` says so."""
+        """Whether the goal must end; for handlers in threads. On the loop, `CancelledError` is raised instead."""
 
     @abstractmethod
     def feedback(self, feedback: Feedback) -> None:
-        """Tell the client how the goal is progressing. Never waits."""
+        """Send the client the progress of the goal. Never waits."""
 
 
 class Action(Generic[Goal, Result, Feedback]):
@@ -178,5 +178,5 @@ class Action(Generic[Goal, Result, Feedback]):
     NAME: ClassVar[str]
 
     def __new__(cls, *_: object, **__: object) -> Self:
-        """Raise TypeError: an action has messages and is none."""
+        """Raise TypeError: an action type has no instances."""
         raise TypeError(f"{cls.__name__} is an action; make {cls.__name__}.Goal(...), .Result(...) or .Feedback(...)")

@@ -1,7 +1,7 @@
-"""Makes Python classes from schemas.
+"""The builder of Python classes from schemas.
 
-A message is a struct of msgspec's, made in C. What checks a new one is written for its fields, so that the usual case
-(floats where floats belong) costs one type test per field; everything else goes through `values.convert`.
+A message is a struct of msgspec, created in C. Its check is generated for its fields, so that the usual case (floats
+where floats belong) costs one type test per field; all other values go through `values.convert`.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
     from graphflow.wire.cdr.codec import Codec
 
 Classes = Callable[[str], type]
-"""Finds the class of `package/kind/Name`."""
+"""Returns the class of `package/kind/Name`."""
 
 ARITHMETIC = {"builtin_interfaces/msg/Time": (TimeFields,), "builtin_interfaces/msg/Duration": (DurationFields,)}
-"""Message types that can be added, subtracted and compared."""
+"""Message types with arithmetic and comparison."""
 
 
 def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]) -> type[base.Message]:
-    """The class of one message type.
+    """Build the class of a message type.
 
     Args:
-        classes: Finds the classes of nested types.
-        codec: Finds the codec of the type, when it is first needed.
+        classes: Returns the classes of nested types.
+        codec: Returns the codec of the type, when it is first needed.
     """
     package, kind, name = message.name.split("/")
     nested: Nested = {f.type.base: classes(f.type.base) for f in message.fields if not f.type.is_primitive}
@@ -68,7 +68,7 @@ def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]
 
 
 def service_class(service: schema.Service, classes: Classes) -> type[base.Service[Any, Any]]:
-    """The class that holds a service's message classes."""
+    """Build the class with a service's message classes."""
     package, kind, name = service.name.split("/")
     return type(
         name,
@@ -84,7 +84,7 @@ def service_class(service: schema.Service, classes: Classes) -> type[base.Servic
 
 
 def action_class(action: schema.Action, classes: Classes) -> type[base.Action[Any, Any, Any]]:
-    """The class that holds an action's message classes."""
+    """Build the class with an action's message classes."""
     package, kind, name = action.name.split("/")
     parts = {"Goal": action.goal, "Result": action.result, "Feedback": action.feedback}
     return type(
@@ -94,14 +94,14 @@ def action_class(action: schema.Action, classes: Classes) -> type[base.Action[An
             "__module__": f"graphflow.msgs.{package}.{kind}",
             "NAME": action.name,
             "Handle": base.ServerGoalHandle,
-            **{word: classes(part.name) for word, part in parts.items()},
+            **{name: classes(part.name) for name, part in parts.items()},
         },
     )
 
 
 def _check(message: Message, nested: Nested) -> Callable[[base.Message], None]:
-    """Writes `__post_init__`, which checks and converts what the constructor was given."""
-    # No field can have a name in capitals, so none hides what the function refers to.
+    """Generate `__post_init__`, which checks and converts the constructor's arguments."""
+    # Names in capitals: no field can have one that hides a name of the function.
     names: dict[str, Any] = {"CONVERT": convert, "CONVERT_ALL": _convert_all, "ABSENT": _ABSENT}
     tests, lines, single = [], [], []
     for i, field in enumerate(message.fields):
@@ -123,7 +123,7 @@ def _check(message: Message, nested: Nested) -> Callable[[base.Message], None]:
 
 
 def _fits(type_: FieldType, value: str) -> str:
-    """An expression that is true for the usual values of a type, and for none that needs to be converted."""
+    """Return an expression that is true for the usual values of a type, and false for all that need conversion."""
     match type_.base:
         case "bool":
             return f"{value}.__class__ is bool"
@@ -154,14 +154,14 @@ class _Absent:
 _ABSENT = _Absent()
 
 
-def _default(field: Field, nested: Nested) -> Any:
-    """The default of a field, as msgspec takes it. That of an array is made by `__post_init__`."""
+def _default(field: Field, nested: Nested) -> object:
+    """Return the default of a field for msgspec; that of an array is created by `__post_init__`."""
     if field.type.array:
         return _ABSENT
     if not field.type.is_primitive:
         cls: Any = nested[field.type.base]
         is_flat = all(f.type.is_primitive and not f.type.array for f in cls.SCHEMA.fields)
-        # A copy is as new as a new one where all values are constants, and needs no check.
+        # If all defaults are constants, a copy equals a new message, and needs no check.
         return struct_field(default_factory=cls().__copy__ if is_flat else cls)
     if field.default is not None:
         return field.default
@@ -170,13 +170,13 @@ def _default(field: Field, nested: Nested) -> Any:
     return {"string": "", "wstring": "", "bool": False}.get(field.type.base, 0.0)
 
 
-def _array_factory(field: Field, nested: Nested) -> Callable[[], Any]:
-    """Makes the default of an array."""
+def _array_factory(field: Field, nested: Nested) -> Callable[[], object]:
+    """Return the factory of an array's default."""
     type_ = field.type
     if type_.base in schema.NUMERIC:
         default, count = field.default, type_.size if type_.array == "fixed" else 0
 
-        def make_array() -> Any:
+        def make_array() -> object:
             from graphflow.wire.cdr.arrays import as_array, zeros
 
             return zeros(type_.base, count) if default is None else as_array(default, type_.base).copy()

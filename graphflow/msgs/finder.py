@@ -1,4 +1,4 @@
-"""Lets `import` see interface packages: `graphflow.msgs.<package>` and its `msg`, `srv` and `action` modules."""
+"""Import of interface packages: `graphflow.msgs.<package>` with its `msg`, `srv` and `action` modules."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class _InterfaceFinder:
         if not fullname.startswith(_ROOT):
             return None
         package, *rest = fullname.removeprefix(_ROOT).split(".")
-        if (registry.BUNDLED / f"{package}.py").is_file():  # a module of ours
+        if (registry.BUNDLED / f"{package}.py").is_file():  # a module of graphflow.msgs
             return None
         if not registry.package_folders(package) and not (
             _add_those_of_the_script() and registry.package_folders(package)
@@ -33,7 +33,7 @@ class _InterfaceFinder:
             hint = registry.no_kinds(package) or did_you_mean(package, registry.packages()) + own
             raise ModuleNotFoundError(f"there is no interface package {package!r}{hint}", name=fullname)
         if len(rest) == 2 and rest[0] in registry.KINDS and not rest[1].startswith("_"):
-            # `from package.msg import Nam` looks for a submodule when there is no such attribute: say which exist.
+            # `from package.msg import Nam` looks for a submodule after the attribute: list the existing names.
             known = registry.names_in(package, rest[0])
             if rest[1] in known:
                 return None
@@ -64,7 +64,7 @@ class _InterfaceFinder:
             try:
                 cls = registry.interface_class(f"{package}/{kind}/{name}")
             except UnknownInterface as error:
-                if name in registry.names_in(package, kind):  # what is unknown is the type of one of its fields
+                if name in registry.names_in(package, kind):  # otherwise the unknown name is that of a field's type
                     text = f"{package}/{kind}/{name} has a field of a type that is not there: {error}"
                     raise UnknownInterface(text) from None
                 raise AttributeError(str(error)) from None
@@ -77,7 +77,7 @@ class _InterfaceFinder:
 
 
 def _add_those_of_the_script() -> bool:
-    """Make the interfaces known of the project whose file is run, as in `python nodes/talker.py`."""
+    """Add the interfaces of the project whose file is run, as in `python nodes/talker.py`."""
     file = getattr(sys.modules.get("__main__"), "__file__", None)
     for folder in Path(file).resolve().parents if file else ():
         if (folder / "interfaces").is_dir() and any((folder / mark).exists() for mark in ("pyproject.toml", "nodes")):
@@ -87,6 +87,6 @@ def _add_those_of_the_script() -> bool:
 
 
 def install() -> None:
-    """Add the finder once."""
+    """Add the finder to `sys.meta_path`, once."""
     if not any(isinstance(f, _InterfaceFinder) for f in sys.meta_path):
         sys.meta_path.insert(0, _InterfaceFinder())

@@ -1,11 +1,10 @@
-"""Corrections of a value that does not fit its field: `'2'` for a number, a number for a list."""
+"""Corrections of values that do not fit their field: `'2'` for a number, a number for a list."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
 from math import floor, isfinite
-from typing import Any
 
 from graphflow.msgs import base
 from graphflow.times import Duration, Time
@@ -16,30 +15,31 @@ from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
 _TRUE, _FALSE = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
 _SPANS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 _RECENT = 1e8
-"""Seconds since 1970, from which on a number is a time of day as `time.time()` gives it."""
+"""Seconds since 1970 from which on a number is read as a time of day, as from `time.time()`."""
 _SHOWN = 60
-"""Characters that a suggestion may have."""
+"""Longest suggestion, in characters."""
 
 
-def instead(type_: FieldType, value: Any, fields: Sequence[Field] = ()) -> str:
-    """The end of a sentence on a value that does not fit: what to write, as in `; write 2.0`.
+def instead(type_: FieldType, value: object, fields: Sequence[Field] = ()) -> str:
+    """Return advice on a value that does not fit, as in `; write 2.0`.
 
     Args:
-        fields: Those of the message type that the field holds.
+        fields: The fields of the message type, if the field has one.
 
     Returns:
-        The empty text where nothing suggests itself.
+        The advice; empty if there is none.
     """
     text = _array(type_, value) if type_.array else _one(type_, value, fields)
     return f"; write {text}" if text is not None and len(text) <= _SHOWN else ""
 
 
-def _one(type_: FieldType, value: Any, fields: Sequence[Field]) -> str | None:
-    if type_.base in _SPANS and type(value) in (int, float) and isfinite(value):
-        return _span(type_, value)
-    if not type_.is_primitive and fields and type(value) in (int, float) and fields[0].type.base == "float64":
+def _one(type_: FieldType, value: object, fields: Sequence[Field]) -> str | None:
+    number = _number(value)
+    if type_.base in _SPANS and number is not None and isfinite(number):
+        return _span(type_, number)
+    if not type_.is_primitive and fields and number is not None and fields[0].type.base == "float64":
         name = type_.base.rpartition("/")[2]
-        return f"{{{fields[0].name}: {float(value)}}}, in Python {name}({fields[0].name}={float(value)})"
+        return f"{{{fields[0].name}: {float(number)}}}, in Python {name}({fields[0].name}={float(number)})"
     if not type_.is_primitive:
         return _mapping(value, fields)
     if type(value) is list:
@@ -47,16 +47,21 @@ def _one(type_: FieldType, value: Any, fields: Sequence[Field]) -> str | None:
     return _scalar(type_, value)
 
 
+def _number(value: object) -> float | None:
+    """Return a number of Python's own types; None for anything else, bools and NumPy's scalars included."""
+    return value if isinstance(value, (int, float)) and type(value) in (int, float) else None
+
+
 def _span(type_: FieldType, seconds: float) -> str:
-    """A number of seconds as a time or a duration."""
+    """Format a number of seconds as a time or a duration."""
     if type_.base == _SPANS[0] and seconds >= _RECENT:
         return "self.clock.now(), in a node"
     sec = floor(seconds)
     return f"{{sec: {sec}, nanosec: {round((seconds - sec) * 1e9)}}}"
 
 
-def _array(type_: FieldType, value: Any) -> str | None:
-    """A value, or the values of a list, as a list."""
+def _array(type_: FieldType, value: object) -> str | None:
+    """Format a value, or the values of a list, as a list."""
     if type_.base in schema.STRINGS and isinstance(value, str):
         return f"[{value!r}]"
     if type_.base not in schema.NUMERIC:
@@ -65,21 +70,21 @@ def _array(type_: FieldType, value: Any) -> str | None:
     return None if None in items else f"[{', '.join(map(str, items))}]"
 
 
-def _scalar(type_: FieldType, value: Any) -> str | None:
-    """A value as a primitive type is written; None where that would be a guess."""
+def _scalar(type_: FieldType, value: object) -> str | None:
+    """Format a value as its primitive type requires; None where that would be a guess."""
     if type_.base in schema.STRINGS:
         return repr(str(value)) if type(value) in (int, float) else None
     if type_.base == "bool":
-        word = str(value).lower() if type(value) in (int, str) else ""
-        return "true (in Python True)" if word in _TRUE else "false (in Python False)" if word in _FALSE else None
+        text = str(value).lower() if type(value) in (int, str) else ""
+        return "true (in Python True)" if text in _TRUE else "false (in Python False)" if text in _FALSE else None
     if isinstance(value, (Time, Duration)):
         return ".nanoseconds behind it" if type_.base in INTEGER_RANGES else ".seconds behind it"
-    if type(value) not in (int, float, bool, str):
-        return None
+    if not isinstance(value, (int, float, str)) or type(value) not in (int, float, bool, str):
+        return None  # a subclass of them, such as NumPy's float64, may print as anything
     try:
-        number = float(plain(value) if type(value) is str else value)
+        number = float(plain(value) if isinstance(value, str) else value)
         whole = int(number)
-    except (ValueError, OverflowError):  # text, or no finite number
+    except (ValueError, OverflowError):  # not a number, or not finite
         return None
     if type_.base not in INTEGER_RANGES:
         return str(number)
@@ -88,8 +93,8 @@ def _scalar(type_: FieldType, value: Any) -> str | None:
     return str(whole) if whole == number and fits else None
 
 
-def _mapping(value: Any, fields: Sequence[Field]) -> str | None:
-    """The numbers of a list by the names of the fields; of anything else, the fields with zeros."""
+def _mapping(value: object, fields: Sequence[Field]) -> str | None:
+    """Assign the numbers of a list to the names of the fields; for any other value, give the fields with zeros."""
     if not fields or isinstance(value, Mapping):
         return None
     numbers = value if type(value) is list and len(value) == len(fields) else [0] * len(fields)
@@ -98,11 +103,11 @@ def _mapping(value: Any, fields: Sequence[Field]) -> str | None:
     return None if any(text is None for _, text in items) else f"{{{', '.join(f'{name}: {t}' for name, t in items)}}}"
 
 
-def named(cls: type[base.Message], data: Any) -> str | None:
-    """Values by the names of the fields that they are probably meant for, in their order; None if their number differs.
+def named(cls: type[base.Message], data: object) -> str | None:
+    """Assign values to the fields that they are probably meant for, in order; None if their number differs.
 
     Args:
-        data: A value, a list of values, or a text with a word for each field.
+        data: A value, a list of values, or a text with a part for each field.
     """
     fields = cls.SCHEMA.fields
     values = data if isinstance(data, list) else data.split() if isinstance(data, str) and len(fields) > 1 else [data]
@@ -118,8 +123,8 @@ def named(cls: type[base.Message], data: Any) -> str | None:
     return f"{{{', '.join(parts)}}}"
 
 
-def _flow(value: Any) -> str | None:
-    """A value as YAML has it on one line."""
+def _flow(value: object) -> str | None:
+    """Format a value as YAML on one line."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Finds interface definitions by name and keeps what has been made from them: schemas, hashes, classes, codecs."""
+"""The registry of interfaces: finds definitions by name and caches schemas, hashes, classes and codecs."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from graphflow.wire.typehash import referenced, type_hash
 KINDS = ("msg", "srv", "action")
 CALLED = {"msg": "a message", "srv": "a service", "action": "an action"}
 HAVING_SHOWN = 4
-"""Types of the same name that are named."""
+"""Number of types of the same name that an error lists."""
 BUNDLED = Path(__file__).parent
 _SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
-"""Kilted moved turtlesim's interfaces to a package of their own: different names on the wire, the same text."""
+"""Kilted moved turtlesim's interfaces to a package of their own: different names on the wire, the same definitions."""
 
 _roots: list[Path] = []
 _packages: dict[str, Path] = {}
 """Folders of single packages."""
 _later: list[Callable[[], Mapping[str, Path]]] = []
-"""What finds folders of more packages, and takes a while."""
-_given: dict[str, str] = {}
-"""Definitions from elsewhere, by name."""
+"""Slow searches for the folders of more packages."""
+_foreign: dict[str, str] = {}
+"""Definitions from other processes and bags, by name."""
 
 
 def add_root(folder: Path) -> None:
@@ -47,17 +47,17 @@ def add_root(folder: Path) -> None:
 
 
 def add_package(name: str, folder: Path) -> None:
-    """Make the definitions in a folder known as those of a package."""
+    """Register the definitions in a folder as those of a package."""
     _packages.setdefault(name, folder)
 
 
 def add_later(find: Callable[[], Mapping[str, Path]]) -> None:
-    """Ask `find` for the folders of more packages once one is wanted that is not known."""
+    """Register a slow search for packages, which runs when an unknown one is needed."""
     _later.append(find)
 
 
-def _look_further() -> bool:
-    """Take what there is to be found; whether anybody was asked."""
+def _search_more() -> bool:
+    """Run the registered searches; returns whether there were any."""
     asked = bool(_later)
     while _later:
         for name, folder in _later.pop()().items():
@@ -66,15 +66,15 @@ def _look_further() -> bool:
 
 
 def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:
-    """Make a type known from definitions of somebody else. What is known here stands.
+    """Register a type from foreign definitions. Known types take precedence.
 
     Args:
         name: `package/kind/Name`.
         digest: The hash that it must have; empty for any.
-        sources: The texts of its definition file and of the others', by type.
+        sources: The definition texts of the type and of its nested types, by type.
 
     Raises:
-        InterfaceError: They are wrong, too large, of another hash, or do not go with what is known here.
+        InterfaceError: They are wrong, too large, of another hash, or contradict known types.
     """
     new = {}
     for needed in verified(name, digest, sources):
@@ -82,24 +82,24 @@ def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:
             definition(needed)
         except UnknownInterface:
             new[needed] = sources[needed]
-    _given.update(new)
+    _foreign.update(new)
     if digest and hash_of(name) != digest:
         for needed in new:
-            del _given[needed]
-        for memory in (interface, _part, message_schema, hash_of):  # no class or codec has been made of them
+            del _foreign[needed]
+        for memory in (interface, _part, message_schema, hash_of):  # no class or codec has been built from them
             memory.cache_clear()
         raise InterfaceError(f"{name}: types in it have other definitions here")
 
 
 def definition(name: str) -> str:
-    """The text that defines `package/kind/Name`.
+    """Return the text that defines `package/kind/Name`.
 
     Raises:
-        UnknownInterface: There is none; the text names the nearest.
+        UnknownInterface: There is no definition; the text names the nearest.
         InterfaceError: It cannot be read.
     """
-    if name in _given:
-        return _given[name]
+    if name in _foreign:
+        return _foreign[name]
     path = definition_file(name)
     try:
         return found_text(path)
@@ -110,9 +110,9 @@ def definition(name: str) -> str:
 
 
 def roots() -> Iterator[Path]:
-    """Folders of packages: the bundled ones, those added, and every `interfaces/` where Python looks for modules.
+    """Yield the folders of packages: the bundled ones, registered ones, and every `interfaces/` on sys.path.
 
-    What a wire profile defines differently is in a folder of its name.
+    Definitions that differ in a wire profile are in a folder of its name.
     """
     overlay = BUNDLED / wire_profile()
     if overlay.is_dir():
@@ -126,7 +126,7 @@ def roots() -> Iterator[Path]:
 
 
 def package_folders(package: str) -> list[Path]:
-    """The folders with definitions of `package`; empty when there is no such package."""
+    """Return the folders with definitions of `package`; empty if there is no such package."""
     name = _SAME_DEFINITIONS.get(package, package)
     if not name.isidentifier():
         return []
@@ -134,12 +134,12 @@ def package_folders(package: str) -> list[Path]:
     if name in _packages:
         folders.append(_packages[name])
     found = [f for f in folders if any((f / kind).is_dir() for kind in KINDS)]
-    return package_folders(package) if not found and _look_further() else found
+    return package_folders(package) if not found and _search_more() else found
 
 
 def packages() -> list[str]:
-    """The names of all packages that can be found."""
-    _look_further()
+    """Return the names of all packages that can be found."""
+    _search_more()
     found = {f.name for root in roots() for f in root.iterdir() if f.is_dir() and package_folders(f.name)}
     found |= {name for name in _packages if package_folders(name)}
     found |= {alias for alias, name in _SAME_DEFINITIONS.items() if name in found}
@@ -147,26 +147,26 @@ def packages() -> list[str]:
 
 
 def names_in(package: str, kind: str) -> list[str]:
-    """The names of a package's interfaces of one kind."""
+    """Return the names of a package's interfaces of one kind."""
     return sorted({f.stem for folder in package_folders(package) for f in (folder / kind).rglob(f"*.{kind}")})
 
 
 def full_name(text: str) -> str:
-    """`package/kind/Name` for `package/Name`, `package/kind/Name` or Python's `package.kind.Name`.
+    """Return `package/kind/Name` for `package/Name`, `package/kind/Name` or Python's `package.kind.Name`.
 
     Raises:
         UnknownInterface: There is no such interface, or the short form fits several kinds.
     """
     if _is_file(text) or text.partition("/")[0] in KINDS:
-        raise UnknownInterface(f"{text!r} is not an interface name; {_meant(text)}")
+        raise UnknownInterface(f"{text!r} is not an interface name; {_suggestion(text)}")
     parts = text.replace(".", "/").split("/")
     if len(parts) == 3 and parts[0]:
         definition("/".join(parts))
         return "/".join(parts)
     if len(parts) != 2 or not parts[0]:
-        raise UnknownInterface(f"{text!r} is not an interface name; {_meant(text)}")
+        raise UnknownInterface(f"{text!r} is not an interface name; {_suggestion(text)}")
     package, name = parts
-    found = [kind for kind in KINDS if name in names_in(package, kind) or f"{package}/{kind}/{name}" in _given]
+    found = [kind for kind in KINDS if name in names_in(package, kind) or f"{package}/{kind}/{name}" in _foreign]
     if not found:
         raise UnknownInterface(_unknown(package, "", name, [n for k in KINDS for n in names_in(package, k)]))
     if len(found) > 1:
@@ -175,19 +175,19 @@ def full_name(text: str) -> str:
 
 
 def having(name: str) -> list[str]:
-    """The types of that name in all packages, a few of them; `Twist` is `geometry_msgs/msg/Twist`."""
+    """Return a few of the types with a name, in all packages; `Twist` is `geometry_msgs/msg/Twist`."""
     found = (f"{package}/{kind}/{name}" for package in packages() for kind in KINDS if name in names_in(package, kind))
     return [one for one in found if one.partition("/")[0] not in _SAME_DEFINITIONS][:HAVING_SHOWN]
 
 
 def _is_file(text: str) -> bool:
-    """Whether a text ends as the file of a definition does, and is no module of Python's such as `std_msgs.msg`."""
+    """Return whether a text ends like the file of a definition, and is not a Python module such as `std_msgs.msg`."""
     stem, _, ending = text.rpartition(".")
     return ending in KINDS and stem != "" and not package_folders(stem)
 
 
-def _meant(text: str) -> str:
-    """How the type is written that a text may be meant as, that is none: a name alone, or that of a file."""
+def _suggestion(text: str) -> str:
+    """Return the type that a wrong text may mean: a name without package, or that of a file."""
     stem, kind = text.rpartition(".")[::2] if _is_file(text) else (text, "")
     *above, name = ["", *(part for part in stem.split("/") if part not in KINDS)]
     if not name.isidentifier():
@@ -221,7 +221,7 @@ def _unknown(package: str, kind: str, name: str, known: list[str]) -> str:
 
 
 def no_kinds(package: str) -> str:
-    """What a package's folder lacks, be it definitions or the package's name; empty if there is none."""
+    """Describe what a package's folder lacks, definitions or the package's name; empty if nothing."""
     if package in _packages:
         file = next((f for kind in KINDS for f in sorted(_packages[package].glob(f"*/*.{kind}"))), None)
         return f"; {file} must be {_packages[package] / file.suffix[1:] / file.name}" if file is not None else ""
@@ -237,9 +237,9 @@ def no_kinds(package: str) -> str:
 
 
 def misplaced(package: str, name: str) -> str:
-    """What has to become of a file that seems to be meant, but lies elsewhere or is called otherwise; else empty.
+    """Describe the move or renaming of a file that seems to be meant but lies elsewhere; else empty.
 
-    A file that is where and called as it must be is not meant to be renamed: then it is the name that is wrong.
+    A file with a legal place and name is not to be renamed: then the requested name is wrong.
     """
     folders = [root / package for root in roots()] + ([_packages[package]] if package in _packages else [])
     for folder in folders:
@@ -255,7 +255,7 @@ def misplaced(package: str, name: str) -> str:
 
 
 def why_different(name: str) -> str:
-    """What may have happened where a node has another definition than the one here; for the end of a sentence."""
+    """Advise on a node whose definition differs from the one here."""
     try:
         file = definition_file(name)
     except UnknownInterface:
@@ -266,19 +266,19 @@ def why_different(name: str) -> str:
 
 
 def camel(name: str) -> str:
-    """The name of an interface for one that has underscores or small letters: `SetGoal` for `set_goal`."""
+    """Convert a name with underscores or small letters to that of an interface: `SetGoal` for `set_goal`."""
     return "".join(part[:1].upper() + part[1:] for part in re.split("[_-]", name))
 
 
 IN_CAMEL = ": names of interfaces are in camel case"
-"""Why the file of an interface has to be renamed."""
+"""The reason to rename the file of an interface."""
 
 
 def definition_file(name: str) -> Path:
-    """The file that defines `package/kind/Name`.
+    """Return the file that defines `package/kind/Name`.
 
     Raises:
-        UnknownInterface: No file does; the text names the nearest.
+        UnknownInterface: There is no such file; the text names the nearest.
     """
     package, kind, base = name.split("/")
     if kind in KINDS and base.isidentifier():
@@ -286,7 +286,7 @@ def definition_file(name: str) -> Path:
             path = folder / kind / f"{base}.{kind}"
             if path.is_file():
                 return path
-            deeper = next((folder / kind).rglob(path.name), None)  # folders below are no part of the name
+            deeper = next((folder / kind).rglob(path.name), None)  # subfolders are no part of the name
             if deeper is not None:
                 return deeper
     raise UnknownInterface(_unknown(package, kind, base, names_in(package, kind)))
@@ -294,7 +294,7 @@ def definition_file(name: str) -> Path:
 
 @cache
 def interface(name: str) -> Interface:
-    """The schema of `package/kind/Name`.
+    """Return the schema of `package/kind/Name`.
 
     Raises:
         UnknownInterface: There is no such definition.
@@ -304,17 +304,17 @@ def interface(name: str) -> Interface:
     try:
         return idl.parse(name, text)
     except InterfaceError as error:
-        place = "" if name in _given else f"{definition_file(name)}: "
+        place = "" if name in _foreign else f"{definition_file(name)}: "
         raise InterfaceError(f"{place}{error}") from None
 
 
 @cache
 def message_schema(name: str) -> Message:
-    """The schema of a message, including those derived from services and actions (`.../srv/Spawn_Request`).
+    """Return the schema of a message, or of one derived from a service or action (`.../srv/Spawn_Request`).
 
     Raises:
-        UnknownInterface, InterfaceError: As for `interface`; also when a type in it is wrong, contains itself, or is
-            too deep in it.
+        UnknownInterface, InterfaceError: As for `interface`; also if a nested type is wrong, contains itself, or is
+            nested too deep.
     """
     extent(name, _part)
     return _part(name)
@@ -336,13 +336,13 @@ def _part(name: str) -> Message:
 
 
 def _owner(name: str) -> str:
-    """The interface whose file defines a type: of `package/srv/Spawn_Request`, the service."""
+    """Return the interface whose file defines a type: the service, for `package/srv/Spawn_Request`."""
     package, kind, base = name.split("/")
     return name if kind == "msg" else f"{package}/{kind}/{base.partition('_')[0]}"
 
 
 def service_schema(name: str) -> Service:
-    """The schema of a service, including the two of an action (`.../action/Fibonacci_SendGoal`)."""
+    """Return the schema of a service, or of one of an action's two (`.../action/Fibonacci_SendGoal`)."""
     owner = interface(_owner(name))
     if isinstance(owner, Service):
         return owner
@@ -355,9 +355,9 @@ def service_schema(name: str) -> Service:
 
 @cache
 def has_number_lists(name: str) -> bool:
-    """Whether a message type has arrays of numbers without a fixed size, as images and clouds have: it may be large.
+    """Return whether a message type has number arrays without a fixed size, as images and clouds have: it may be large.
 
-    Arrays in the elements of lists do not count: those are many and small, as in parameters.
+    Arrays in the elements of lists do not count: they are many and small, as in parameters.
     """
     types = [field.type for field in message_schema(name).fields if field.type.base not in STRINGS]
     return any(
@@ -369,7 +369,7 @@ def has_number_lists(name: str) -> bool:
 
 
 def whole_schema(name: str) -> Message:
-    """The type that stands for `name` in keys and tokens: a message itself, a service or action as a whole.
+    """Return the type of `name` for keys and tokens: a message itself, a service or action as a whole.
 
     Raises:
         UnknownInterface, InterfaceError: As for `interface`.
@@ -388,13 +388,13 @@ def whole_schema(name: str) -> Message:
 
 @cache
 def hash_of(name: str) -> str:
-    """RIHS01 of a message, or of a service or action as a whole."""
+    """Return RIHS01 of a message, or of a service or action as a whole."""
     return type_hash(whole_schema(name), message_schema)
 
 
 @cache
 def interface_class(name: str) -> type:
-    """The Python class of `package/kind/Name`, or of a derived message; the one that the wire profile uses.
+    """Return the Python class of `package/kind/Name`, or of a derived message, as the wire profile defines it.
 
     Raises:
         UnknownInterface, InterfaceError: As for `interface`.
@@ -415,43 +415,43 @@ def interface_class(name: str) -> type:
 
 @cache
 def codec(name: str) -> Codec:
-    """The codec of a message."""
+    """Return the codec of a message."""
     return Codec(message_schema(name), _types_for(name, "numpy"))
 
 
 @cache
 def plain_codec(name: str) -> Codec:
-    """The codec of a message that decodes numeric arrays into lists: slower for long ones, but numpy is not loaded."""
+    """Return a codec that decodes numeric arrays into lists: slower for long ones, but without numpy."""
     return Codec(message_schema(name), _types_for(name, "list"))
 
 
 def _types_for(name: str, style: Style) -> Types:
-    """How a message is encoded and decoded: of a type from elsewhere, and of an answer with one, it may have less."""
+    """Return the types for the codec of a message: a foreign type, or a response with one, has tighter bounds."""
     owner = _owner(name)
     types = Types(message_schema, interface_class, checked, style)
-    return types._replace(values=VALUES_BOUND) if owner in _given or owner == DESCRIBING else types
+    return types._replace(values=VALUES_BOUND) if owner in _foreign or owner == DESCRIBING else types
 
 
 def has_numeric_arrays(name: str) -> bool:
-    """Whether a message type, or a part of a service or action, holds arrays of numbers, for which numpy is loaded."""
+    """Return whether a message type, or a part of a service or action, has number arrays, for which numpy is loaded."""
     whole = whole_schema(name)
     schemas = [whole, *referenced(whole, message_schema).values()]
     return any(field.type.array and field.type.base in FORMATS for schema in schemas for field in schema.fields)
 
 
 def forget() -> None:
-    """Re-read every definition from here on; classes already made stay as they are. For editors and tests."""
+    """Re-read every definition from now on; existing classes stay. For editors and tests."""
     for memory in (interface, _part, message_schema, hash_of, interface_class, codec, plain_codec):
         memory.cache_clear()
 
 
 def prototype(name: str) -> Any:
-    """What is filled in to use `package/kind/Name`: a message, a service's request, or an action's goal."""
+    """Create the message that users of an interface fill in: itself, a service's request, or an action's goal."""
     found = interface(name)
     part = found.request if isinstance(found, Service) else found.goal if isinstance(found, Action) else found
     return example(part.name)
 
 
 def example(name: str) -> Any:
-    """A message with every field at its default."""
+    """Create a message with all fields at their defaults."""
     return interface_class(name)()

@@ -1,8 +1,8 @@
-"""What editors and type checkers see of interfaces: `python -m graphflow.msgs.stubs` writes it for the bundled ones,
+"""Stubs of interfaces for editors and type checkers: `python -m graphflow.msgs.stubs` writes the bundled ones,
 `graphflow interface stubs` for a project's own.
 
-The classes are made at run time, so a checker cannot read them. A stub says what an instance holds, and, wider, what
-its constructor takes: `base.Message` has the rules, `build.convert` keeps them.
+The classes are built at run time, so a checker cannot read them. A stub gives the types of an instance's fields and
+the wider ones of the constructor's parameters: `base.Message` has the rules, `build.convert` follows them.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ _BUNDLED_HEADER = "# Written by `python -m graphflow.msgs.stubs`; do not edit.\n
 _PROJECT_HEADER = "# Written by `graphflow interface stubs`; do not edit.\n"
 _LINE_LENGTH = 120
 _TIMES = {f"builtin_interfaces/msg/{name}": f"times.{name}" for name in ("Time", "Duration")}
-"""Message types that have a counterpart in `graphflow.times`, with the same fields."""
+"""Message types with a counterpart in `graphflow.times` that has the same fields."""
 _ARRAYS_FOR = {"bool": "np.bool_", "int": "np.integer", "float": "np.floating | np.integer"}
-"""The scalar types of numpy arrays that convert to an array field whose elements are such Python values."""
+"""NumPy's scalar types that convert to an array field, by the Python type of its elements."""
 
 
 def stub(package: str, kind: str, header: str = _BUNDLED_HEADER) -> str:
-    """The stub of `graphflow.msgs.<package>.<kind>`; for a bundled package, of its bundled definitions only."""
+    """Return the stub of `graphflow.msgs.<package>.<kind>`; for a bundled package, of its bundled definitions only."""
     folder = registry.package_folders(package)[0] / kind
     names = sorted(file.stem for file in folder.rglob(f"*.{kind}"))
     body = "\n\n".join(text for name in names for text in _classes(f"{package}/{kind}/{name}"))
@@ -34,22 +34,22 @@ def stub(package: str, kind: str, header: str = _BUNDLED_HEADER) -> str:
 
 
 def bundled_stubs() -> dict[Path, str]:
-    """The text of every stub of the bundled packages, by file."""
+    """Return the text of every stub of the bundled packages, by file."""
     return _stubs(registry.BUNDLED, registry.BUNDLED, _BUNDLED_HEADER)
 
 
 def project_stubs(interfaces: Path, typings: Path) -> dict[Path, str]:
-    """The text of every stub of a project's own packages, by file.
+    """Return the text of every stub of a project's own packages, by file.
 
     Args:
-        interfaces: The folder of their definitions; known to the registry.
-        typings: A folder where checkers look for stubs.
+        interfaces: The folder of their definitions, which the registry knows.
+        typings: A folder that checkers search for stubs.
     """
     return _stubs(interfaces, typings / "graphflow" / "msgs", _PROJECT_HEADER)
 
 
 def _stubs(root: Path, out: Path, header: str) -> dict[Path, str]:
-    """Stubs of the packages whose definitions are found in `root` before any other place."""
+    """Return stubs of the packages whose definitions are first found in `root`."""
     files = {}
     for package in registry.packages():
         definitions = registry.package_folders(package)[0]
@@ -63,11 +63,11 @@ def _stubs(root: Path, out: Path, header: str) -> dict[Path, str]:
 
 
 def _imports(body: str) -> str:
-    """The imports that `body` needs, in the linter's order. Nested types are qualified by their package's name."""
+    """Return the imports that `body` needs, in the linter's order. Nested types are qualified by their package."""
     words = set(re.findall(r"\w+", body))
     qualifiers = set(re.findall(r"\b(\w+)\.[A-Z]", body)) - {"np", "npt", "times", "base"}
     ours = [f"from graphflow.msgs.{package} import msg as {package}" for package in qualifiers]
-    # As a module: an interface may be called Service itself.
+    # As a module: an interface may be called Service.
     ours += ["from graphflow.msgs import base"]
     ours += ["from graphflow import times"] if "times." in body else []
     numpy = ["import numpy as np", "import numpy.typing as npt"] if "npt." in body else []
@@ -101,7 +101,7 @@ def _service_messages(service: Service) -> list[str]:
 
 
 def _holder(name: str, base: str, parts: tuple[str, ...], more: tuple[str, ...] = ()) -> str:
-    """A service or action. Without `TypeAlias` a checker takes its parts for variables and refuses them as types."""
+    """Return the class of a service or action. `TypeAlias` keeps checkers from reading its parts as variables."""
     aliases = [f"    {part}: TypeAlias = {name}_{part}" for part in (*parts, *more)]
     arguments = [f"{name}_{part}" for part in parts]
     head = f"class {name}(base.{base}[{', '.join(arguments)}]):"
@@ -113,7 +113,7 @@ def _holder(name: str, base: str, parts: tuple[str, ...], more: tuple[str, ...] 
 def _message(message: Message) -> str:
     module, _, name = message.name.rpartition("/")
     constants = (f"{c.name}: ClassVar[{_constant(c.value)}]" for c in message.constants)
-    attributes = (f"{f.name}: {_held(f.type, module)}" for f in message.fields)
+    attributes = (f"{f.name}: {_field_type(f.type, module)}" for f in message.fields)
     methods = [_constructor(message.fields, module)]
     if message.name in VIEWS:
         methods.append("def to_numpy(self) -> npt.NDArray[Any]: ...")
@@ -122,22 +122,22 @@ def _message(message: Message) -> str:
 
 
 def _constant(value: bool | float | str) -> str:
-    """The type of a constant. There are no literal types of floats."""
+    """Return the type of a constant. There are no literal types of floats."""
     if isinstance(value, float):
         return "float"
     return f"Literal[{json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)}]"
 
 
 def _constructor(fields: tuple[Field, ...], module: str) -> str:
-    parameters = [f"{field.name}: {_taken(field.type, module)} = ..." for field in fields]
+    parameters = [f"{field.name}: {_parameter_type(field.type, module)} = ..." for field in fields]
     line = f"def __init__(self{', *, ' if fields else ''}{', '.join(parameters)}) -> None: ..."
     if len(line) + 4 <= _LINE_LENGTH:
         return line
     return "\n        ".join(["def __init__(", "self,", "*,", *(f"{p}," for p in parameters)]) + "\n    ) -> None: ..."
 
 
-def _held(type_: FieldType, module: str) -> str:
-    """The type of a field's value, written in the stub of `module` (`package/kind`)."""
+def _field_type(type_: FieldType, module: str) -> str:
+    """Return the type of a field's value, as written in the stub of `module` (`package/kind`)."""
     if not type_.array:
         return _element(type_.base, module)
     if type_.base in NUMERIC:
@@ -146,8 +146,8 @@ def _held(type_: FieldType, module: str) -> str:
     return f"list[{_element(type_.base, module)}]"
 
 
-def _taken(type_: FieldType, module: str) -> str:
-    """The type of the constructor's parameter for a field. `Sequence[int]` covers bytes."""
+def _parameter_type(type_: FieldType, module: str) -> str:
+    """Return the type of the constructor's parameter for a field. `Sequence[int]` covers bytes."""
     element = _element(type_.base, module)
     if type_.array and type_.base in NUMERIC:
         return f"Sequence[{element}] | npt.NDArray[{_ARRAYS_FOR[element]}]"

@@ -1,8 +1,8 @@
-"""Values put in messages: checked against the field's type, and converted where nothing is lost."""
+"""Conversion of values for the fields of messages: checked against the field's type, and converted without loss."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from graphflow.errors import EncodeError
@@ -14,11 +14,11 @@ from graphflow.wire.cdr.unchecked import unchecked
 from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
 
 Nested = Mapping[str, type[base.Message]]
-"""Classes of the message types that a message's fields hold, by name."""
+"""Classes of nested message types, by name."""
 
 
-def convert(field: Field, value: Any, owner: base.Message) -> Any:
-    """`value` as the field's type takes it.
+def convert(field: Field, value: object, owner: base.Message) -> Any:
+    """Convert `value` to the field's type.
 
     Raises:
         EncodeError: `value` does not fit; the text begins with `Type.field`.
@@ -30,12 +30,16 @@ def convert(field: Field, value: Any, owner: base.Message) -> Any:
         raise EncodeError(f"{path}: {wrong.reason}") from None
 
 
+_FLOAT32_END = 3.4028235677973366e38
+"""Smallest number that rounds to infinity as a float32."""
+
+
 class _Wrong(Exception):
     def __init__(self, reason: str, path: str = "") -> None:
         self.reason, self.path = reason, path
 
 
-def _value(type_: FieldType, value: Any, nested: Nested) -> Any:
+def _value(type_: FieldType, value: object, nested: Nested) -> Any:
     if type_.array:
         return _array(type_, value, nested)
     if type_.is_primitive:
@@ -43,7 +47,7 @@ def _value(type_: FieldType, value: Any, nested: Nested) -> Any:
     return _nested(type_, nested[type_.base], value)
 
 
-def _nested(type_: FieldType, cls: type[base.Message], value: Any) -> Any:
+def _nested(type_: FieldType, cls: type[base.Message], value: object) -> object:
     if value.__class__ is cls:
         return value
     fields = [f.name for f in cls.SCHEMA.fields]
@@ -51,13 +55,13 @@ def _nested(type_: FieldType, cls: type[base.Message], value: Any) -> Any:
         for key in value:
             if key not in fields:
                 raise _Wrong(f"{cls.SCHEMA.name} has no field {key!r}{did_you_mean(str(key), fields)}")
-        given = dict(value)
+        values = dict(value)
     elif fields and not isinstance(value, base.Message) and all(hasattr(value, f) for f in fields):
-        given = {f: getattr(value, f) for f in fields}
+        values = {f: getattr(value, f) for f in fields}
     else:
         raise _Wrong(f"expected {cls.SCHEMA.name}, got {value!r}{instead(type_, value, cls.SCHEMA.fields)}")
     try:
-        return cls(**given)
+        return cls(**values)
     except EncodeError as error:
         path, _, reason = str(error).partition(": ")
         raise _Wrong(reason, path.removeprefix(cls.__name__)) from None
@@ -74,7 +78,7 @@ def _array(type_: FieldType, value: Any, nested: Nested) -> Any:
             array = as_array(value, type_.base)
         except (ValueError, TypeError) as error:
             if isinstance(value, (list, tuple)):
-                _items(element, value, nested)  # which says what does not fit
+                _items(element, value, nested)  # raises with the element that does not fit
             raise _Wrong(f"{error}{instead(type_, value)}") from None
         _check_count(type_, array.size)
         return array
@@ -82,7 +86,7 @@ def _array(type_: FieldType, value: Any, nested: Nested) -> Any:
     return _items(element, value, nested)
 
 
-def _items(element: FieldType, value: Any, nested: Nested) -> list[Any]:
+def _items(element: FieldType, value: Iterable[object], nested: Nested) -> list[object]:
     items = []
     for i, item in enumerate(value):
         try:
@@ -99,46 +103,51 @@ def _check_count(type_: FieldType, count: int) -> None:
         raise _Wrong(f"expected at most {type_.size} elements ({type_}), got {count}")
 
 
-def _scalar(type_: FieldType, value: Any) -> Any:
+def _scalar(type_: FieldType, value: Any) -> object:
     name = type_.base
     if name in schema.STRINGS:
-        if not isinstance(value, str):
-            raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
-        try:
-            length = schema.string_length(name, value)
-        except UnicodeEncodeError:
-            raise _Wrong(f"{value!r} is not valid Unicode") from None
-        if type_.string_bound and length > type_.string_bound:
-            unit = "bytes of UTF-8" if name == "string" else "UTF-16 code units"
-            raise _Wrong(f"expected at most {type_.string_bound} {unit} ({type_}), got {length}")
-        return value
+        return _string(type_, value)
     if name in ("byte", "char") and isinstance(value, bytes) and len(value) == 1:
         return value[0]
     kind = _kind(value)
-    if name == "bool":
-        if kind != "bool":
-            raise _Wrong(f"expected bool, got {value!r}{instead(type_, value)}")
+    if name == "bool" and kind == "bool":
         return bool(value)
-    if name in INTEGER_RANGES:
-        if kind != "int":
-            raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
+    if name in INTEGER_RANGES and kind == "int":
         low, high = INTEGER_RANGES[name]
         if not low <= value <= high:
             raise _Wrong(f"{value} does not fit {name}: {low} to {high}")
         return int(value)
-    if kind not in ("int", "float"):
+    if name in ("float32", "float64") and kind in ("int", "float"):
+        return _float(name, value)
+    raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
+
+
+def _string(type_: FieldType, value: object) -> str:
+    name = type_.base
+    if not isinstance(value, str):
         raise _Wrong(f"expected {name}, got {value!r}{instead(type_, value)}")
+    try:
+        length = schema.string_length(name, value)
+    except UnicodeEncodeError:
+        raise _Wrong(f"{value!r} is not valid Unicode") from None
+    if type_.string_bound and length > type_.string_bound:
+        unit = "bytes of UTF-8" if name == "string" else "UTF-16 code units"
+        raise _Wrong(f"expected at most {type_.string_bound} {unit} ({type_}), got {length}")
+    return value
+
+
+def _float(name: str, value: float) -> float:
     try:
         number = float(value)
     except OverflowError:
         raise _Wrong(f"{value} is too large for {name}") from None
-    if name == "float32" and 3.4028235677973366e38 <= abs(number) != float("inf"):
+    if name == "float32" and _FLOAT32_END <= abs(number) != float("inf"):
         raise _Wrong(f"{value!r} is too large for float32")
     return number
 
 
-def _kind(value: Any) -> str:
-    """`bool`, `int`, `float` or something else, numpy's scalars included."""
+def _kind(value: object) -> str:
+    """Return `bool`, `int`, `float` or another type, by which NumPy's scalars count, too."""
     if isinstance(value, bool):
         return "bool"
     if isinstance(value, int):
@@ -149,8 +158,8 @@ def _kind(value: Any) -> str:
     return {"b": "bool", "i": "int", "u": "int", "f": "float"}.get(kind, "other")
 
 
-def from_plain(cls: type[base.Message], data: Any) -> base.Message:
-    """A message from plain values, as read from YAML: a mapping of field names, or nothing for all defaults.
+def from_plain(cls: type[base.Message], data: object) -> base.Message:
+    """Create a message from plain values, as in YAML: a mapping of field names, or None for all defaults.
 
     Raises:
         EncodeError: A field does not exist or its value does not fit; the text names the field.
@@ -171,10 +180,10 @@ def from_plain(cls: type[base.Message], data: Any) -> base.Message:
 
 
 def checked(message: base.Message) -> base.Message:
-    """A copy with every value, nested ones included, checked and converted.
+    """Return a copy with all values, nested ones included, checked and converted.
 
     Raises:
-        EncodeError: The first wrong value, by its path.
+        EncodeError: A value is wrong; the text gives the path of the first.
     """
     if not isinstance(message, base.Message):
         raise EncodeError(f"expected a message, got {message!r}")

@@ -1,4 +1,4 @@
-"""Images, point clouds, scans and maps as numpy arrays: views of the message's own bytes, nothing is copied.
+"""Images, point clouds, scans and maps as numpy arrays: views of the message's own bytes, without copies.
 
 Source: sensor_msgs/image_encodings.hpp; sensor_msgs/msg/PointCloud2 and PointField.
 """
@@ -15,15 +15,18 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from graphflow.msgs.nav_msgs.msg import OccupancyGrid
+    from graphflow.msgs.sensor_msgs.msg import Image, LaserScan, PointCloud2
+
 _ENCODINGS = {
     **{f"{order}{bits}": (len(order), f"u{bits // 8}") for order in ("rgb", "bgr", "rgba", "bgra") for bits in (8, 16)},
     **{f"mono{bits}": (1, f"u{bits // 8}") for bits in (8, 16)},
     **{f"bayer_{p}{bits}": (1, f"u{bits // 8}") for p in ("rggb", "bggr", "gbrg", "grbg") for bits in (8, 16)},
     **dict.fromkeys(("yuv422", "yuv422_yuy2", "uyvy", "yuyv"), (2, "u1")),
 }
-"""Channels and element type by encoding."""
+"""Number of channels and element type by encoding."""
 _OPENCV = re.compile(r"(8|16|32|64)([USF])C([1-9]\d*)?\Z")
-"""OpenCV's names, such as 32FC1."""
+"""OpenCV's names of encodings, such as 32FC1."""
 _OPENCV_KINDS = {"U": "u", "S": "i", "F": "f"}
 _POINT_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8", 9: "i8", 10: "u8", 11: "?"}
 """Element type by PointField.datatype."""
@@ -39,15 +42,15 @@ def _elements(encoding: str) -> tuple[int, str]:
     return int(channels or 1), f"{_OPENCV_KINDS[kind]}{int(bits) // 8}"
 
 
-def image(message: Any) -> NDArray[Any]:
-    """The pixels of a sensor_msgs/msg/Image.
+def image(message: Image) -> NDArray[Any]:
+    """Return the pixels of a sensor_msgs/msg/Image.
 
     Returns:
         Array of shape (height, width), or (height, width, channels) if there are several, in the encoding's element
         type and the order of its channels. A view of `data`, read-only if the message was received.
 
     Raises:
-        DecodeError: The encoding is not known, or `data` is shorter than height and step say.
+        DecodeError: The encoding is not known, or `data` is shorter than height and step imply.
     """
     import numpy as np
 
@@ -61,12 +64,12 @@ def image(message: Any) -> NDArray[Any]:
     return _view("Image", message.data, dtype, shape, strides)
 
 
-def point_cloud(message: Any) -> NDArray[Any]:
-    """The points of a sensor_msgs/msg/PointCloud2.
+def point_cloud(message: PointCloud2) -> NDArray[Any]:
+    """Return the points of a sensor_msgs/msg/PointCloud2.
 
     Returns:
-        Structured array with a field for each of the message's, of shape (width,), or (height, width) for an organised
-        cloud: `points["x"]`. A view of `data`.
+        Structured array with the message's fields, of shape (width,), or (height, width) for an organised cloud:
+        `points["x"]`. A view of `data`.
 
     Raises:
         DecodeError: A field has an unknown type or lies outside the point, or `data` is too short.
@@ -94,17 +97,17 @@ def point_cloud(message: Any) -> NDArray[Any]:
     return points[0] if message.height == 1 else points
 
 
-def scan(message: Any) -> NDArray[np.float32]:
-    """The ranges of a sensor_msgs/msg/LaserScan in metres: array of shape (number of rays,), the message's own."""
+def scan(message: LaserScan) -> NDArray[np.float32]:
+    """Return the ranges of a sensor_msgs/msg/LaserScan in metres: the message's own array, of shape (rays,)."""
     ranges: NDArray[np.float32] = message.ranges
     return ranges
 
 
-def grid(message: Any) -> NDArray[np.int8]:
-    """The cells of a nav_msgs/msg/OccupancyGrid: array of shape (height, width), row 0 at the origin; a view.
+def grid(message: OccupancyGrid) -> NDArray[np.int8]:
+    """Return the cells of a nav_msgs/msg/OccupancyGrid: array of shape (height, width), row 0 at the origin; a view.
 
     Raises:
-        DecodeError: `data` has fewer cells than width and height say.
+        DecodeError: `data` has fewer cells than width and height imply.
     """
     import numpy as np
 
@@ -113,7 +116,7 @@ def grid(message: Any) -> NDArray[np.int8]:
 
 
 def _view(what: str, data: Any, dtype: np.dtype[Any], shape: tuple[int, ...], strides: tuple[int, ...]) -> NDArray[Any]:
-    """An array over `data`, which must be long enough for its last element."""
+    """Return an array over `data`, which must be long enough for its last element."""
     import numpy as np
 
     if 0 in shape:
@@ -132,4 +135,4 @@ VIEWS: dict[str, Callable[[Any], Any]] = {
     "sensor_msgs/msg/LaserScan": scan,
     "nav_msgs/msg/OccupancyGrid": grid,
 }
-"""The function behind `to_numpy`, by message type."""
+"""Functions behind `to_numpy`, by message type."""

@@ -243,7 +243,7 @@ def test_forget_reads_anew(save: Save, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_adopting(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not known becomes known, and no more than is needed; what is known stands."""
-    monkeypatch.setattr(registry, "_given", {})
+    monkeypatch.setattr(registry, "_foreign", {})
     sources = {
         "adopted_msgs/msg/A": "B b\nstd_msgs/String s",
         "adopted_msgs/msg/B": "int32 x",
@@ -251,14 +251,14 @@ def test_adopting(monkeypatch: pytest.MonkeyPatch) -> None:
         "adopted_msgs/msg/Planted": "int32 y",
     }
     registry.adopt("adopted_msgs/msg/A", "", sources)
-    assert set(registry._given) == {"adopted_msgs/msg/A", "adopted_msgs/msg/B"}
+    assert set(registry._foreign) == {"adopted_msgs/msg/A", "adopted_msgs/msg/B"}
     assert registry.interface_class("adopted_msgs/msg/A")().b.x == 0
     assert registry.definition("adopted_msgs/msg/B") == "int32 x"
 
 
 def test_what_does_not_go_with_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leaves nothing behind, so that it is not taken for known later."""
-    monkeypatch.setattr(registry, "_given", {})
+    monkeypatch.setattr(registry, "_foreign", {})
     sources = {"clashing_msgs/msg/A": "std_msgs/String s", "std_msgs/msg/String": "string data\nint32 more"}
     whole = verified("clashing_msgs/msg/A", "", sources)
     messages = {name: message for name, message in whole.items() if isinstance(message, Message)}
@@ -266,7 +266,7 @@ def test_what_does_not_go_with_what_is_known(monkeypatch: pytest.MonkeyPatch) ->
     for _ in range(2):
         with pytest.raises(InterfaceError, match="types in it have other definitions here"):
             registry.adopt("clashing_msgs/msg/A", digest, sources)
-        assert registry._given == {}
+        assert registry._foreign == {}
         with pytest.raises(UnknownInterface):
             registry.full_name("clashing_msgs/msg/A")
 
