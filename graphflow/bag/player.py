@@ -73,6 +73,26 @@ class PlayOptions:
     """Whether every message triggers it."""
 
 
+@dataclass(slots=True)
+class _Pace:
+    """The relation of bag time to the clock, since playback began or was last paused or changed its rate."""
+
+    began_ns: int
+    """Time on the monotonic clock."""
+    at_ns: int
+    """Time in the bag at that moment."""
+    rate: float
+    was_paused: bool = False
+
+    def bag_time(self, now_ns: int) -> int:
+        """Return the time in the bag.
+
+        Args:
+            now_ns: Nanoseconds on the monotonic clock.
+        """
+        return self.at_ns + round((now_ns - self.began_ns) * self.rate)
+
+
 class Player:
     """The playback of a bag through a node.
 
@@ -235,27 +255,26 @@ class Player:
         if first is None:
             return
         self.now_ns = max(start_ns, self._bag.contents.start_ns)
-        began_ns, at_ns, rate, was_paused = clock.monotonic_ns(), self.now_ns, self.rate, False
+        pace = _Pace(clock.monotonic_ns(), self.now_ns, self.rate)
         count = 0
         for record in chain((first,), records):
             while self._sought is None:
-                if rate != self.rate or was_paused:  # the clock of playback starts anew here
-                    began_ns, at_ns, rate, was_paused = clock.monotonic_ns(), self.now_ns, self.rate, False
-                if not self.is_paused:
-                    self._steps = 0
+                if pace.rate != self.rate or pace.was_paused:
+                    pace = _Pace(clock.monotonic_ns(), self.now_ns, self.rate)
                 if self.is_paused:
                     if self._steps:
                         self._steps -= 1
                         break
-                    was_paused = True
+                    pace.was_paused = True
                     await clock.sleep(STEP_NS / 1e9)
                     continue
-                passed_ns = round((clock.monotonic_ns() - began_ns) * rate)
-                ahead_ns = record.log_ns - at_ns - passed_ns
+                self._steps = 0
+                now_ns = pace.bag_time(clock.monotonic_ns())
+                ahead_ns = record.log_ns - now_ns
                 if ahead_ns <= 0:
                     break
-                self.now_ns = at_ns + passed_ns
-                await clock.sleep(min(round(ahead_ns / rate), STEP_NS) / 1e9)
+                self.now_ns = now_ns
+                await clock.sleep(min(round(ahead_ns / pace.rate), STEP_NS) / 1e9)
                 count = 0
             if self._sought is not None:
                 return

@@ -58,11 +58,11 @@ def add_later(find: Callable[[], Mapping[str, Path]]) -> None:
 
 def _search_more() -> bool:
     """Run the registered searches; returns whether there were any."""
-    asked = bool(_later)
+    has_searches = bool(_later)
     while _later:
         for name, folder in _later.pop()().items():
             add_package(name, folder)
-    return asked
+    return has_searches
 
 
 def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:

@@ -110,14 +110,14 @@ def wait_started(on_wait: Callable[[Start], object], file: Path | None = None) -
     Raises:
         SupervisorError: One has no control socket within `PATIENCE` (exit 4).
     """
-    begun = [start for start in starting() if file is None or start.file == str(file.resolve())]
-    for start in begun:
+    pending = [start for start in starting() if file is None or start.file == str(file.resolve())]
+    for start in pending:
         on_wait(start)
-    deadline, pids = time.monotonic() + PATIENCE, {start.pid for start in begun}
+    deadline, pids = time.monotonic() + PATIENCE, {start.pid for start in pending}
     while left := [start for start in starting() if start.pid in pids]:
         if time.monotonic() > deadline:
             slow = min(left)
             text = f"{slow}, is not up after {PATIENCE:g} s; to break that off: kill {slow.pid}"
             raise SupervisorError(text, exit_code=4)
         time.sleep(0.01)
-    return bool(begun)
+    return bool(pending)

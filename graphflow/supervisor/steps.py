@@ -136,7 +136,7 @@ class StepRunner:
         if not await self._until(lambda: bool(found()), step.timeout):
             known = [*cache.nodes(hidden=False), *cache.topics(), *cache.services()]
             raise ServiceUnavailable(
-                f"nobody publishes or offers {step.target} after {step.timeout:g} s{did_you_mean(step.target, known)}"
+                f"no node publishes or offers {step.target} after {step.timeout:g} s{did_you_mean(step.target, known)}"
             )
         return f"the {found()} is there"
 

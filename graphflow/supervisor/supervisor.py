@@ -364,12 +364,12 @@ class Supervisor:
             self.clients.broadcast({"event": "left", "node": node.name, "process": process.name})
 
     def _process_ended(self, process: Process, was: State) -> None:
-        asked = process.stop_requested or was in (State.STOPPING, State.PENDING, State.WAITING)
-        early = was is State.STARTING and not asked
+        requested = process.stop_requested or was in (State.STOPPING, State.PENDING, State.WAITING)
+        early = was is State.STARTING and not requested
         if early and not process.error:
             process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
-        failed = not asked and (early or (process.exit is not None and process.exit.failed))
-        follows = None if asked or self._stopping else self._follows(process)
+        failed = not requested and (early or (process.exit is not None and process.exit.failed))
+        follows = None if requested or self._stopping else self._follows(process)
         if isinstance(follows, GiveUp):
             process.given_up = follows.why
         process.failed |= failed
@@ -382,12 +382,12 @@ class Supervisor:
             return
         if failed:
             self.exit_code = 1
-        if not asked and not self._stopping:
+        if not requested and not self._stopping:
             self._judge_end(process, was)
         if self._stopping:
             self._stop_next_layer()
         else:
-            self._meet(process.name, "exited", *(() if failed or asked else ("done",)))
+            self._meet(process.name, "exited", *(() if failed or requested else ("done",)))
         self._end_if_all_have()
 
     def _follows(self, process: Process) -> Again | GiveUp | None:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
-from graphflow.bag.formats.definitions import asked
+from graphflow.bag.formats.definitions import fetch
 from graphflow.errors import UsageFault, printable
 from graphflow.names import is_hidden
 from graphflow.qos import BEST_AVAILABLE
@@ -82,7 +82,7 @@ class Topics:
 
     async def _show(self, key: Key, entity: Entity) -> None:
         try:
-            definition = await asked(self._node, entity)
+            definition = await fetch(self._node, entity)
         except Exception as error:  # the type comes from another process and may be malformed in any way
             self._rejected.add(key)
             logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))

@@ -184,6 +184,11 @@ def _member(package: str, line: str) -> Field | Constant:
         raise InterfaceError(f"{line!r}: leave out the semicolon")
     if "/" in name and (turned := _turned(type_text.lower(), rest, package)):
         raise InterfaceError(f"field name {name!r}: the type comes first: {turned}")
+    _check_field_name(name)
+    return Field(name, type_, _literal(type_, more[0]) if more else None)
+
+
+def _check_field_name(name: str) -> None:
     if not _FIELD_NAME.match(name):
         rule = "lower-case letters, digits and single _, beginning with a letter, not ending with _"
         near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z\d])(?=[A-Z])|-", "_", name).lower()).strip("_")
@@ -191,7 +196,6 @@ def _member(package: str, line: str) -> Field | Constant:
         raise InterfaceError(f"field name {name!r}: {rule}{hint}")
     if iskeyword(name):
         raise InterfaceError(f"field name {name!r}: it is a Python keyword, so no attribute can have that name")
-    return Field(name, type_, _literal(type_, more[0]) if more else None)
 
 
 def _turned(name: str, rest: str, package: str) -> str:

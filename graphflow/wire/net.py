@@ -61,15 +61,15 @@ def _matches(pattern: str, name: str) -> bool:
     """Return whether a name matches a pattern, in time O(pattern * name), since any process may announce patterns."""
     parts, names = pattern.split("/")[1:], name.split("/")[1:]
     at = there = 0
-    star, begun = -1, 0  # the last `**`, and the end of its match so far: backtracking only to the last one suffices
+    star, matched = -1, 0  # the last `**`, and the end of its match so far: backtracking only to the last one suffices
     while there < len(names):
         if at < len(parts) and parts[at] == "**":
-            star, begun, at = at, there, at + 1
+            star, matched, at = at, there, at + 1
         elif at < len(parts) and parts[at] in ("*", names[there]):
             at, there = at + 1, there + 1
         elif star >= 0:
-            begun += 1
-            at, there = star + 1, begun
+            matched += 1
+            at, there = star + 1, matched
         else:
             return False
     return all(part == "**" for part in parts[at:])

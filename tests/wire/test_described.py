@@ -52,7 +52,9 @@ def test_services_and_actions(name: str) -> None:
 
 def test_a_type_without_fields() -> None:
     """Is described by one that is hidden."""
-    assert definition_of("std_msgs/msg/Empty", [DescribedField("structure_needs_at_least_one_member", 3, 0, 0, "")]) == ""
+    assert (
+        definition_of("std_msgs/msg/Empty", [DescribedField("structure_needs_at_least_one_member", 3, 0, 0, "")]) == ""
+    )
 
 
 @pytest.mark.parametrize("number", [-1, 0, 12, 14, 19, 20, 23, 48, 96, 192, 255])

@@ -61,7 +61,7 @@ def known(name: str) -> str:
     return joined(name, sources)
 
 
-async def asked(node: Node, entity: Entity) -> str:
+async def fetch(node: Node, entity: Entity) -> str:
     """Return the definition of a topic's type: the local one if it is the same, else its publishers are queried.
 
     Args:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from graphflow.bag.contents import Record, Topic
-from graphflow.bag.formats.definitions import asked
+from graphflow.bag.formats.definitions import fetch
 from graphflow.bag.recording.latched import LatchedMessages
 from graphflow.bag.recording.rate_limit import RateLimit
 from graphflow.bag.topic_choice import EVENTS, Choice
@@ -225,7 +225,7 @@ class Recorder:
     async def _define(self, entity: Entity) -> None:
         """Fetch the definition of a topic's type, and release its messages."""
         try:
-            definition = await asked(self._node, entity)
+            definition = await fetch(self._node, entity)
         except Exception as error:  # another process may answer anything
             definition, why = "", printable(str(error))
             logger.warning("%s is recorded without the definition of %s: %s", entity.name, entity.type, why)

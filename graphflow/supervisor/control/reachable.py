@@ -45,6 +45,6 @@ async def keep_reachable(
             if not is_there:
                 directory.write(run)
         except (OSError, SupervisorError) as error:
-            supervisor.begin_stop(now=False, reason=f"its {what} was taken away: {error}")
+            supervisor.begin_stop(now=False, reason=f"its {what} was removed: {error}")
             return
-        supervisor.note(f"the {what} was taken away, and was made again")
+        supervisor.note(f"the {what} was removed, and has been restored")

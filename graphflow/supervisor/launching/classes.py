@@ -54,7 +54,7 @@ def import_class(class_path: str) -> type[Node]:
 
     Raises:
         NoModule: There is no such module; the text names the nearest, or the folder that is searched.
-        GraphflowError: The module has no such class, or importing it failed; the text says where.
+        GraphflowError: The module has no such class, or importing it failed; the text gives the place.
     """
     module_name, _, class_name = class_path.partition(":")
     module = import_module_of(module_name, class_name)
@@ -75,7 +75,7 @@ def import_module_of(name: str, class_name: str = "") -> ModuleType:
 
     Raises:
         NoModule: There is no such module; the text names the nearest, or the folder that is searched.
-        GraphflowError: Importing it failed; the text says where.
+        GraphflowError: Importing it failed; the text gives the place.
     """
     bundled = f"graphflow.{name}" if name.startswith("nodes.") else ""
     try:

@@ -434,7 +434,7 @@ def sweep(group: int) -> None:
     """End the processes that a worker has left in its process group."""
     try:
         os.killpg(group, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):  # nobody is in it, or nobody of this user's
+    except (ProcessLookupError, PermissionError):  # it is empty, or all its processes belong to other users
         return
 
 

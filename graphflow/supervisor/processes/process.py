@@ -88,7 +88,7 @@ class Process:
             SupervisorError: The node is a foreign program.
         """
         if self.is_program:
-            raise SupervisorError(f"{node} is a program: its own code says what runs in threads")
+            raise SupervisorError(f"{node} is a program: its own code decides what runs in threads")
         at = next(i for i, planned in enumerate(self.nodes) if planned.name == node)
         self.nodes[at] = self.nodes[at].with_threads(handlers)
         self.blocks_loop = True

@@ -401,7 +401,7 @@ async def test_what_waits_for_a_definition_is_bounded(
         await gate.wait()
         return ""
 
-    monkeypatch.setattr(recorder_module, "asked", slowly)
+    monkeypatch.setattr(recorder_module, "fetch", slowly)
     one = await speaker(graph)
     recorder = await session.start(cache=3000)
     for _ in range(20):

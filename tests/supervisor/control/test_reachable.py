@@ -21,7 +21,7 @@ def test_a_run_directory_that_is_taken_away(machine: Machine, project: Path) -> 
     up = machine.start("up", write(project, GOOD), cwd=project)
     up.wait_for("Stop with Ctrl-C")
     shutil.rmtree(machine.run_directory / "graphflow")
-    up.wait_for("the run directory was taken away, and was made again")
+    up.wait_for("the run directory was removed, and has been restored")
     assert rows(machine)["/a"]["state"] == "ready"
     machine.look("down")
     assert up.wait() == 0
@@ -38,4 +38,4 @@ def test_a_socket_that_is_removed(machine: Machine, project: Path) -> None:
     assert "/a ended" in text
     assert "killed" not in text
     assert up.wait() == 0
-    assert "the control socket was taken away, and was made again" in up.text
+    assert "the control socket was removed, and has been restored" in up.text

@@ -96,7 +96,7 @@ def test_handlers_that_are_put_in_threads() -> None:
     planned = both.put_in_threads("/b", ["go"])
     assert both.nodes == [A, planned]
     assert planned.concurrency["blocking"].change == GroupChange(("tick", "go"), thread=True)
-    with pytest.raises(SupervisorError, match="its own code says what runs in threads"):
+    with pytest.raises(SupervisorError, match="its own code decides what runs in threads"):
         Process("/p", [PROGRAM], "p.log").put_in_threads("/p", ["tick"])
 
 
