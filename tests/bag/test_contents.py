@@ -1,4 +1,4 @@
-"""What several files have in them together."""
+"""The contents of several files as one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told of a bag, in ROS 2's words."""
+"""The information on a bag, in ROS 2's terms."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def utc(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("utc")
 def test_the_words(tmp_path: Path) -> None:
-    """Those of `ros2 bag info`, services apart from topics."""
+    """The lines of `ros2 bag info`, with services apart from topics."""
     folder = write(tmp_path / "bag")
     told = list(info.lines(Bag(folder)))
     assert told[1] == "Files:             bag_0.mcap"

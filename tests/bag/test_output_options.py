@@ -33,7 +33,7 @@ def written(folder: Path, row: str) -> Path:
     ],
 )
 def test_which_topics(tmp_path: Path, row: str, choice: Choice) -> None:
-    """Those that are named; all where nothing is."""
+    """The topics that are named, or all if none is."""
     [found] = read(written(tmp_path, row))
     assert (found.folder, found.choice, found.remarks) == (Path("new"), choice, [])
 
@@ -114,7 +114,7 @@ def test_a_file_that_is_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_file_or_a_folder(tmp_path: Path) -> None:
-    """What is a file, or would be called so, is one of options."""
+    """A file, or a path with a suffix of one, has options."""
     (tmp_path / "options").touch()
     (tmp_path / "old.yaml").mkdir()
     named = {name: is_options(tmp_path / name) for name in ("options", "old.yaml", "new", "new.yaml", "new.yml")}

@@ -13,7 +13,7 @@ from graphflow.qos import Durability, History, Qos, Reliability
 
 
 def test_a_file_as_ros_has_it(tmp_path: Path) -> None:
-    """What is left open is as by default."""
+    """Policies that are left out are the defaults."""
     file = tmp_path / "qos.yaml"
     file.write_text(
         """

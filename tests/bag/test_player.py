@@ -100,7 +100,7 @@ async def test_a_part_of_it(graph: Graph, tmp_path: Path) -> None:
 
 
 async def test_up_to_a_time(graph: Graph, tmp_path: Path) -> None:
-    """What is at that very time is played, and nothing after it."""
+    """Messages at that very time are played, later ones are not."""
     show = Show(graph, tmp_path / "bag")
     await show.begin(until_ns=START + 500_000_000, choice=Choice(topics=frozenset({"/chatter"})))
     await graph.clock.advance(3.0)
@@ -289,7 +289,7 @@ async def test_a_type_that_is_nowhere_installed(graph: Graph, tmp_path: Path) ->
     ],
 )
 def test_with_what_it_is_played(said: tuple[Qos, ...], qos: Qos) -> None:
-    """What fits all who listened before; promises about time are not made again."""
+    """The profile suits all recorded subscriptions; deadlines and lifespans are not offered."""
     assert offered(topic_of("/a", Int32)._replace(qos=said)) == qos
 
 

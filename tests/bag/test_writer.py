@@ -199,7 +199,7 @@ def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: int)
 
 
 def test_a_disk_that_stays_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What was written before can be read."""
+    """Earlier messages can be read."""
     Full(monkeypatch, 20_000, 0)
     monkeypatch.setattr(module, "CHUNK_SIZE", 3000)
     writer = BagWriter(tmp_path / "bag", compression="none")

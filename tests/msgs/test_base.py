@@ -1,4 +1,4 @@
-"""What every message can do."""
+"""The methods of every message."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ def test_the_interfaces_of_a_script(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("name", ["nothing_like_it", "std_msgs.idl", "std_msgs.msg.String"])
 def test_other_modules_are_not_found(name: str) -> None:
-    """What is no package and no kind is a ModuleNotFoundError."""
+    """A name that is neither a package nor a kind is a ModuleNotFoundError."""
     with pytest.raises(ModuleNotFoundError):
         module(name)
 

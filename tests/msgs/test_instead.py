@@ -1,4 +1,4 @@
-"""What to write in place of a value that does not fit."""
+"""Advice on values that do not fit."""
 
 from __future__ import annotations
 

@@ -242,7 +242,7 @@ def test_forget_reads_anew(save: Save, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_adopting(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is not known becomes known, and no more than is needed; what is known stands."""
+    """An unknown type becomes known, with its nested types only; known types take precedence."""
     monkeypatch.setattr(registry, "_foreign", {})
     sources = {
         "adopted_msgs/msg/A": "B b\nstd_msgs/String s",

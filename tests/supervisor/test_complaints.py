@@ -1,4 +1,4 @@
-"""What users of ROS 2's launch have long complained of, and what happens here instead."""
+"""Long-standing complaints about ROS 2's launch, and the behaviour here."""
 
 from __future__ import annotations
 

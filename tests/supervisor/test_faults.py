@@ -37,7 +37,7 @@ ORPHANS = 2.0
 
 
 def family_of(supervisor: int) -> dict[str, int]:
-    """Who has which part in a graph; a node only if there is one yet."""
+    """Return the processes of a graph by their part; a node only if there is one yet."""
     found = psutil.Process(supervisor)
     [preload] = found.children()
     parts = {"supervisor": supervisor, "guardian": found.ppid(), "preload": preload.pid}

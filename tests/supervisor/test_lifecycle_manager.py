@@ -42,7 +42,7 @@ def planned(name: str, state: str) -> PlannedNode:
 
 @asynccontextmanager
 async def bringing(graph: Graph, name: str, state: str) -> AsyncIterator[list[Any]]:
-    """What is heard while a node is brought to a state; the supervisor is a process of its own."""
+    """The events while a node is brought to a state; the supervisor is a process of its own."""
     await graph.start(supervisor := Node("_supervisor"))
     heard: list[Any] = []
     steps = StepRunner(supervisor.context, {})

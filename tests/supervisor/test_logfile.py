@@ -74,7 +74,7 @@ def test_a_full_disk_costs_lines_and_not_the_program(capfd: pytest.CaptureFixtur
 
 
 def test_who_follows_a_log_misses_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """What was not read yet when the file was put aside is read there."""
+    """Lines that were not read before the rotation are read from the old file."""
     path = tmp_path / "a.log"
     reader = LogReader([path], width=1)
     path.write_text("1\n2\n")

@@ -1,4 +1,4 @@
-"""What follows when processes end: new starts, together or alone, giving up, the end of the graph."""
+"""The consequences of a process's end: restarts, together or alone, giving up, the end of the graph."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Workers:
         self.on_event: Callable[[ProcessEvent], None] = lambda event: None
         self.unready: set[str] = set()
         self.stubborn: set[str] = set()
-        """Those that do not end when they are asked to."""
+        """Processes that ignore a request to end."""
         self._pid = 1000
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None: ...
@@ -216,7 +216,7 @@ async def test_who_is_started_again_with_it(tmp_path: Path, strategy: str, again
 
 
 async def test_after_an_end(tmp_path: Path) -> None:
-    """What comes after the end of another does not keep the graph from being up."""
+    """A process that waits for the end of another does not keep the graph from being up."""
     text = (
         "nodes: {a: {command: [x]}, b: {class: x:Y, after: {a: done}}, c: {class: x:Y, after: {d: exited}}, "
         "d: {class: x:Y}, e: {class: x:Y, after: b}}"
@@ -269,7 +269,7 @@ async def test_nothing_is_started_again_while_the_graph_stops(tmp_path: Path) ->
 
 @pytest.mark.parametrize("how", ["waiting", "restarting"])
 async def test_nothing_is_started_while_others_take_long_to_stop(tmp_path: Path, how: str) -> None:
-    """What is about to be started again is stopped first, though what comes after it has not ended yet."""
+    """A process that waits for its restart is stopped first, though its dependents have not ended yet."""
     text = "nodes: {a: {class: x:Y, restart: {policy: always, delay: 0.01}}, b: {class: x:Y, after: a}}"
     async with graph(text, tmp_path) as stage:
         await stage.until(a="ready", b="ready")

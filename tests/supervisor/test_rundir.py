@@ -1,4 +1,4 @@
-"""Where a running graph leaves its traces, and how it is found by them."""
+"""The files of a running graph, and finding the graph by them."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_folders_of_runs_are_private(folders: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_a_folder_that_cannot_be_made(folders: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is in the way is named, with the variable that leads elsewhere."""
+    """The error names the obstacle, and the variable that avoids it."""
     (folders / "file").touch()
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(folders / "file"))
     with pytest.raises(SupervisorError, match="Not a directory; set XDG_RUNTIME_DIR to a folder you can write to"):
@@ -175,7 +175,7 @@ def test_a_claim_before_the_run_file() -> None:
 
 
 def test_a_claim_where_nothing_can_be_written(folders: Path) -> None:
-    """What is in the way is named."""
+    """The error names the obstacle."""
     runtime_root()
     (folders / "run/graphflow/7").touch()
     with pytest.raises(SupervisorError, match="7/chase: Not a directory"):
@@ -228,7 +228,7 @@ def test_a_socket_in_a_long_path_goes_elsewhere(folders: Path, monkeypatch: pyte
 
 
 def test_without_proc_psutil_tells(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where there is no /proc, the time comes from elsewhere, under the same rules."""
+    """Without /proc, the time comes from psutil, under the same rules."""
     monkeypatch.setattr(rundir, "Path", lambda path: Path("/nowhere" + path))
     assert start_time(os.getpid()) is not None
     assert start_time(2**22 + 1) is None

@@ -78,7 +78,7 @@ def test_a_start_that_was_killed() -> None:
 
 
 def test_starts_are_waited_for(here: Path) -> None:
-    """Those that are meant, until they are done; without one there is nothing to wait for."""
+    """The chosen graphs are waited for; without one the wait ends at once."""
     told: list[Start] = []
     assert not wait_started(told.append)
     announced = begun(None)

@@ -52,7 +52,7 @@ def test_a_failed_step_stops_the_graph(machine: Machine, project: Path, call: st
 
 @pytest.mark.real
 def test_a_message_is_said_when_it_is_due(machine: Machine, project: Path) -> None:
-    """Where the graph was started, in its order, also of what comes after the end of a program."""
+    """In the folder of the start and in order, also after the end of a program."""
     text = (
         "nodes:\n  short: {command: [sh, -c, exit 0]}\n  /long: {command: [sleep, '60']}\n"
         "steps:\n  last: {log: it has ended, after: {short: exited}}\n  first: {log: it begins}\n"
@@ -114,7 +114,7 @@ def step(call: str = "/add", timeout: float = 10.0, **request: Any) -> PlannedSt
 
 @asynccontextmanager
 async def runner(graph: Graph, types: dict[str, str]) -> AsyncIterator[StepRunner]:
-    """What makes the calls, in a process of its own."""
+    """A runner of steps, in a process of its own."""
     await graph.start(supervisor := Node("_supervisor"))
     made = StepRunner(supervisor.context, types)
     yield made
@@ -257,7 +257,7 @@ async def test_a_goal_to_its_end(graph: Graph, types: dict[str, str]) -> None:
     ],
 )
 async def test_a_target_of_another_kind(graph: Graph, do: StepKind, target: str, end: str) -> None:
-    """What it is instead is told, with the key for it."""
+    """The error gives the kind of the target, with the key for it."""
     await graph.start(Robot())
     async with runner(graph, {}) as steps:
         running = asyncio.ensure_future(steps.run(deed(do, target, timeout=1.0)))

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.real
 @slow
 @pytest.mark.parametrize("victim", some(["supervisor", "preload", "terminal"], "supervisor"))
 def test_kill_minus_9_leaves_nothing_behind(machine: Machine, project: Path, victim: str) -> None:
-    """Whoever of them dies: no node is left running, and the graph can be started again."""
+    """After the death of any of them no node is left running, and the graph can be started again."""
     file = write(project, GOOD)
     up = machine.start("up", file, cwd=project)
     up.wait_for("Stop with Ctrl-C")

@@ -23,7 +23,7 @@ def test_reads_the_recorded_bytes() -> None:
 
 @pytest.mark.parametrize("sequence", [0, 1, 2**63 - 1, -1])
 def test_carries_every_sequence_number(sequence: int) -> None:
-    """What is packed comes back, whatever the sequence number."""
+    """Packing and unpacking give the same values, whatever the sequence number."""
     assert attachment.unpack(attachment.pack(sequence, -5, bytes(range(16)))) == (sequence, -5, bytes(range(16)))
 
 

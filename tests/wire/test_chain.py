@@ -50,7 +50,7 @@ def test_a_chain_has_a_longest() -> None:
     ],
 )
 def test_bytes_that_are_no_chain(wrong: bytes) -> None:
-    """What another program puts there has no hops, and nothing is put behind it."""
+    """Bytes of another program have no hops, and no hop is appended."""
     assert hops(wrong) == []
     assert extended(wrong, FIRST) == b""
 

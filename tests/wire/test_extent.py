@@ -1,4 +1,4 @@
-"""How large types are, and those that have no end."""
+"""The extent of types, and types of unbounded size."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def _ns(stamp: Time) -> int:
 
 
 def test_an_id_across_two_entries_is_none() -> None:
-    """What looks like an id where none can be is passed over."""
+    """A match of an id where no entry begins is skipped."""
     states = GoalStates()
     for i in range(1, 4):
         states.add(bytes([i]) * 16, 0)

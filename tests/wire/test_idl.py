@@ -51,7 +51,7 @@ def test_white_space_and_comments_are_free(line: str) -> None:
 
 
 def test_a_service_has_two_sections() -> None:
-    """What stands above the dashes is the request, below is the response; either may be empty."""
+    """The request is above the dashes, the response below; either may be empty."""
     assert idl.parse("pkg/srv/Get", "---\nbool ok") == Service(
         "pkg/srv/Get",
         Message("pkg/srv/Get_Request"),

@@ -64,5 +64,5 @@ def test_type_names_convert_both_ways(ros: str, dds: str) -> None:
 
 @pytest.mark.parametrize("name", ["", "plain", "pkg::msg::Name_", "pkg::msg::dds_::Name"])
 def test_foreign_type_names_stay(name: str) -> None:
-    """What is not in the DDS spelling is passed on as it is."""
+    """A name that is not in the DDS form is returned unchanged."""
     assert ros_type(name) == name

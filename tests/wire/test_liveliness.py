@@ -218,7 +218,7 @@ def test_watch_key_is_of_one_domain() -> None:
 
 @pytest.mark.parametrize(("profile", "chunk"), CHUNKS)
 def test_qos_chunk_is_written(profile: Qos, chunk: str) -> None:
-    """What equals rmw_zenoh's defaults is left empty, seconds and nanoseconds each for themselves."""
+    """Values that equal rmw_zenoh's defaults are empty, seconds and nanoseconds each for themselves."""
     assert qos_chunk(profile) == chunk
 
 

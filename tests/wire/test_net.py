@@ -1,4 +1,4 @@
-"""What a link tells of its net profile."""
+"""The tokens of links, which describe their net profiles."""
 
 from __future__ import annotations
 

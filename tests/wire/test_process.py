@@ -1,4 +1,4 @@
-"""How a process of graphflow shows itself in a domain."""
+"""The tokens of graphflow processes in a domain."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_process_is_named_with_its_host_where_that_is_another() -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
 def test_stopped_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those that have Zenoh and the same rendezvous are told, with their commands."""
+    """Stopped processes that have loaded Zenoh and use the same rendezvous are listed, with their commands."""
     library = tmp_path / "libzenoh.so"
     library.write_bytes(bytes(4096))
     opened = f"f = open({os.fspath(library)!r}, 'r+b'); m = mmap.mmap(f.fileno(), 0)"
@@ -92,7 +92,7 @@ def test_what_a_process_was_started_as() -> None:
 
 @pytest.mark.parametrize("state", ["T", "t"])
 def test_a_stopped_process_can_be_helped(monkeypatch: pytest.MonkeyPatch, state: str) -> None:
-    """What lets it go on is said; of another machine's processes nothing is known."""
+    """The advice tells how to continue it; of another machine's processes nothing is known."""
     monkeypatch.setattr(process, "_state", lambda pid: state)
 
     assert HERE.why_silent == f"it is stopped: kill -CONT {os.getpid()}"

@@ -39,7 +39,7 @@ def old(path: Path) -> Path:
 
 
 def test_an_old_one(tmp_path: Path) -> None:
-    """What it does not say is empty."""
+    """Columns that an old schema lacks are empty."""
     file = Db3File(old(tmp_path / "a.db3"))
     assert [(r.log_ns - START, r.data) for r in file.records()] == [(1, b"one"), (2, b"two")]
     assert file.contents.counts == {"/a": 2, "/b": 0}

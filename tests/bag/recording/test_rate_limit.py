@@ -1,4 +1,4 @@
-"""How often a topic is recorded."""
+"""A limit on the rate at which a topic is recorded."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def test_rates(came: int, rate: float) -> None:
 
 
 def test_pauses() -> None:
-    """What was not used in a pause is not made up for."""
+    """Messages that a pause left unused are not made up for."""
     gate = RateLimit(1.0)
     passed = [t for t in (0, 1, 2, 60, 61, 62, 80) if gate.passes(t * SECOND // 10 if t < 60 else t * SECOND)]
     assert passed == [0, 60, 61, 62, 80]

@@ -171,7 +171,7 @@ async def test_a_type_nobody_knows(graph: Graph, session: Session, caplog: pytes
 
 
 async def test_pausing(graph: Graph, session: Session) -> None:
-    """What comes meanwhile is left out, and is not lost."""
+    """Messages during a pause are left out, and do not count as lost."""
     publisher = await speaker(graph)
     recorder = await session.start()
     for is_paused in (False, True, False):
@@ -313,7 +313,7 @@ async def test_what_every_snapshot_begins_with(graph: Graph, tmp_path: Path) -> 
 
 
 async def test_splitting(graph: Graph, session: Session) -> None:
-    """What comes after it is in a new file, and what came before in the old one, written already or not."""
+    """Later messages are in a new file, earlier ones in the old one, written already or not."""
     publisher = await speaker(graph)
     recorder = await session.start()
     with recorder._work:  # so that nothing is written yet
@@ -457,7 +457,7 @@ async def test_another_definition_of_a_type_that_is_known(
 
 
 async def test_topics_by_who_is_there(graph: Graph, session: Session) -> None:
-    """Those that are only listened to, too; or none that nobody listens to."""
+    """Topics with subscriptions only are included, or topics without subscriptions left out."""
     node = Node("listener")
     await graph.start(node)
     node.create_subscription(String, "/wanted", lambda _: None)

@@ -23,7 +23,7 @@ pytestmark = [
 
 
 class Listener:
-    """What was heard, and whether the other end is lost."""
+    """Collects events, and the loss of the other end."""
 
     def __init__(self) -> None:
         self.events = asyncio.Queue[dict[str, Any]]()

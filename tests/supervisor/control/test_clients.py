@@ -1,4 +1,4 @@
-"""Those who follow a graph: what they are told, and what is kept for those who come later."""
+"""The clients of a graph: their events, and the events and layout kept for later ones."""
 
 from __future__ import annotations
 

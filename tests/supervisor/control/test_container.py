@@ -113,7 +113,7 @@ async def test_what_cannot_be_loaded(graph: Graph, plugin: str, fields: dict[str
 
 @pytest.mark.parametrize(("number", "told"), [(7, "there is no node 7"), (1, "/first offers this service")])
 async def test_what_cannot_be_unloaded(graph: Graph, number: int, told: str) -> None:
-    """What is not there, and what answers."""
+    """Each missing thing is named in the response."""
     stage = Stage(graph)
     await graph.settle()
     answer = await stage.unload(number)

@@ -17,6 +17,6 @@ def test_a_tag_belongs_to_one_type() -> None:
 
 
 def test_a_row_has_the_keys_of_its_type() -> None:
-    """Those that `ps` prints."""
+    """`ps` prints them."""
     (row,) = Process("/a", [node("/a")], "log").rows()
     assert row.keys() == get_type_hints(NodeRow).keys()

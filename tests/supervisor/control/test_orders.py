@@ -1,4 +1,4 @@
-"""What a worker does when it is told to."""
+"""A worker carries out its orders."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def ask(address: str) -> list[dict[str, Any]]:
 
 
 def say(address: str, line: bytes) -> bytes:
-    """What a stranger on the machine gets for a line."""
+    """Return the answer to a line from a stranger on the machine."""
     with socket.create_connection(("127.0.0.1", int(address.split("/")[1])), 5.0) as connection:
         connection.sendall(line)
         return connection.recv(4096)
@@ -92,7 +92,7 @@ async def test_a_request_is_answered(portable: bool, tmp_path: Path) -> None:
 async def test_without_the_token_nothing_is_done(
     token: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whoever reaches the port but cannot read the run file gets no word, and stops nothing."""
+    """A process that reaches the port but cannot read the run file gets no answer, and stops nothing."""
     monkeypatch.setenv("GRAPHFLOW_PORTABLE", "1")
     graph = Graph()
     server = ControlServer(graph)

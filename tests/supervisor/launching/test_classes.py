@@ -151,7 +151,7 @@ def test_a_module_beside_the_file(project: Path, line: str, way: str) -> None:
 
 
 def test_a_file_that_is_run_apart_from_its_package(project: Path) -> None:
-    """What it imports is found from the folder above, where it is run as a module."""
+    """Its imports are found from the folder above, where it is run as a module."""
     sys.path.remove(str(project))
     add_root(str(project / "machines"))
     for module, line in {"relative": "from .robot import Robot", "whole": "from machines.robot import Robot"}.items():
@@ -181,7 +181,7 @@ def test_a_wrong_declaration_names_its_line(project: Path) -> None:
 
 
 def test_interfaces_travel_as_json(project: Path) -> None:
-    """What a class declares, or why it cannot be had; one that fails leaves the others."""
+    """Each class has its interface or its problem; one that fails leaves the others."""
     paths = ["machines.raises:Robot", "machines.robot:Robot"]
     problem, interface = read_interfaces(interfaces(paths)).values()
     assert isinstance(problem, Problem)

@@ -1,4 +1,4 @@
-"""What programs print for graph files, and what is said of those that fail."""
+"""The output of programs for graph files, and the errors of those that fail."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_what_a_program_prints(text: str, output: str, tmp_path: Path, caplog: p
     ],
 )
 def test_a_program_that_fails(text: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What it said last is told."""
+    """The error has the last line of its error output."""
     if "sleep" in text:
         monkeypatch.setattr(module, "LIMIT", 0.2)
     with pytest.raises(SubstitutionError) as caught:

@@ -54,14 +54,14 @@ def test_what_cannot_be_debugged(name: str, told: str) -> None:
 
 
 def test_without_debugpy(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What to install is told."""
+    """The error names the package to install."""
     monkeypatch.setitem(sys.modules, "debugpy", None)
     with pytest.raises(GraphflowError, match="pip install debugpy"):
         wait_for_debugger(lambda port: None)
 
 
 def test_the_port_is_told_before_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Who waits must be found."""
+    """A user must find the waiting process."""
     story: list[Any] = []
     fake: Any = ModuleType("debugpy")
     fake.listen = lambda address: (address[0], 4711)

@@ -73,7 +73,7 @@ def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
 @slow
 @pytest.mark.real
 def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, project: Path) -> None:
-    """Whoever listens where the rendezvous should be is named, and no node is started."""
+    """The error names the process at the rendezvous's address, and no node is started."""
     _, port = address(machine.endpoint)
     with socket.create_server(("127.0.0.1", port)):
         text = machine.run("up", write(project, GOOD), cwd=project, code=1)
@@ -118,7 +118,7 @@ HAS_GUARDIAN = not is_portable()
 
 
 def family_of(pid: int) -> list[int]:
-    """What a command has started, and what that has; nothing once it has ended."""
+    """Return the descendants of a command; empty once it has ended."""
     try:
         return [child.pid for child in psutil.Process(pid).children(recursive=True)]
     except psutil.NoSuchProcess:

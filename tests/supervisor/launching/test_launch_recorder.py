@@ -17,7 +17,7 @@ ROBOT = PROGRAMS / "launch" / "robot.launch.py"
 
 
 def record(file: Path, **values: Any) -> Any:
-    """What a file describes, and what has no words, as lines; with values when it is about to be started."""
+    """Return the recorded actions and problems as lines; with values, as for a file that is to be started."""
     recorder = ["-m", "graphflow.rclpy", "-m", "graphflow.supervisor.launching.launch_recorder"]
     command = [sys.executable, "-P", *recorder, str(file)]
     command += [json.dumps(values)] if values else []

@@ -101,7 +101,7 @@ def until(condition: Callable[[], bool], output: Path) -> None:
 
 
 def test_its_file_is_a_launch_file_too(machine: Machine, tmp_path: Path) -> None:
-    """What it would start is what it describes."""
+    """The description is that of the launch it would start."""
     (tmp_path / "bringup.py").write_text(PROGRAM)
     plan = machine.look("plan", str(tmp_path / "bringup.py"), "word:=hello")
     assert "/talker\n  class    nodes.talker:Talker" in plan

@@ -62,7 +62,7 @@ def test_what_a_class_declares(project: Path) -> None:
     ],
 )
 def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path) -> None:
-    """What `classes` tells comes back; of a process that told nothing, how it ended."""
+    """The interfaces come back; for a process that wrote none, its end."""
     fault = found(project, class_path)[class_path]
     assert isinstance(fault, Problem)
     assert fault.message == problem

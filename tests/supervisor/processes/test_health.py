@@ -58,7 +58,7 @@ def test_silence_and_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_who_need_not_speak(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What never spoke, as a foreign program, and what is starting or being stopped."""
+    """A process that never sent a beat, such as a foreign program, and one that is starting or being stopped."""
     ward = Ward(monkeypatch)
     ward.looks(10.0, speaks=False)
     ward.looks(1.0, speaks=True)

@@ -1,4 +1,4 @@
-"""What workers are told when they are started, and which are started first."""
+"""The jobs of workers, and the workers that start first."""
 
 from __future__ import annotations
 

@@ -21,6 +21,6 @@ def test_a_tag_belongs_to_one_type(union: object, key: str) -> None:
 
 
 def test_a_job_has_the_keys_of_its_type(tmp_path: Path) -> None:
-    """Those that a worker reads."""
+    """A worker reads all of them."""
     start = next(iter(first_starts(plan_of(tmp_path), 7, tmp_path)))
     assert job_of(start).keys() == WorkerJob.__annotations__.keys()

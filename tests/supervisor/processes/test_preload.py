@@ -114,7 +114,7 @@ def test_workers_have_random_numbers_of_their_own() -> None:
 
 @pytest.mark.skipif(is_portable(), reason="the portable way has no preload process")
 def test_an_order_goes_into_a_pipe_whole_or_not_at_all() -> None:
-    """Who starts the nodes never waits for one that does not read."""
+    """The preload process never waits for a worker that does not read."""
     read, write = os.pipe()
     os.set_blocking(write, False)
     line = b"x" * (ORDER_BOUND - 1) + b"\n"

@@ -42,7 +42,7 @@ def test_rows() -> None:
 
 
 def test_what_is_wrong_with_it() -> None:
-    """How it ended, when it is started again, why it is not, and what is lost of its log."""
+    """Its end, the time of its restart, the reason for none, and the loss of lines in its log."""
     process = Process("/p", [PROGRAM], "p.log")
     process.begin()
     process.state, process.log_error = State.READY, "the disk is full"
@@ -60,7 +60,7 @@ def test_what_is_wrong_with_it() -> None:
 
 
 def test_a_new_start_forgets() -> None:
-    """What became of the one before; but that there was one is counted."""
+    """The state of the one before is forgotten; the restart is counted."""
     process = Process("both", [A, B], "both.log")
     process.begin()
     process.waiting_for.clear()

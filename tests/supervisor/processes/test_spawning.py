@@ -24,7 +24,7 @@ async def opened(tmp_path: Path) -> tuple[SpawningStarter, list[Any], int]:
 
 
 async def say(port: int, *lines: bytes) -> bytes:
-    """What a stranger on the machine is answered until he is cut off, or after he has gone."""
+    """Return the answer to a stranger on the machine, until the connection is closed."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     writer.writelines(lines)
     writer.write_eof()
@@ -38,7 +38,7 @@ async def say(port: int, *lines: bytes) -> bytes:
     "hello", [b"", b"nonsense\n", b"{}\n", b"[]\n", b'{"token": "0", "process": "/a"}\n', b'{"token": null}\n']
 )
 async def test_without_the_token_nobody_is_heard(tmp_path: Path, hello: bytes) -> None:
-    """Whoever finds the port cannot pretend to be a worker, and is cut off without a word."""
+    """A process that finds the port cannot pose as a worker; its connection is closed without an answer."""
     starter, heard, port = await opened(tmp_path)
     assert await say(port, hello, b'{"event": "ready", "process": "/a", "node": "/a"}\n') == b""
     assert heard == []
@@ -46,7 +46,7 @@ async def test_without_the_token_nobody_is_heard(tmp_path: Path, hello: bytes) -
 
 
 async def test_a_worker_that_shows_it_is_heard(tmp_path: Path) -> None:
-    """What it tells comes as it is, until it tells nonsense."""
+    """Its events arrive unchanged, until one is not JSON."""
     starter, heard, port = await opened(tmp_path)
     starter._disconnected["/a"] = asyncio.Event()
     hello = json.dumps({"token": starter._token, "process": "/a"}).encode() + b"\n"

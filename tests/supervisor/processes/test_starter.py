@@ -1,4 +1,4 @@
-"""What a supervisor may ask of a starter, of whichever kind."""
+"""The interface that all starters share."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ KINDS = ["spawning"] if sys.platform != "linux" else ["forking", "spawning"]
 @slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_both_kinds_tell_the_same(machine: Machine, project: Path, kind: str) -> None:
-    """What classes declare; why a worker failed and how it ended; its output and its environment are its own."""
+    """Interfaces come back; a failed worker reports its error and its end; its output and environment are its own."""
     shutil.copy(PROGRAMS / "supervisor" / "dawdles.py", project / "nodes")
     (project / "supervisor.log").touch()
     script = machine.start_python(str(PROGRAMS / "supervisor" / "starting.py"), kind, str(project))

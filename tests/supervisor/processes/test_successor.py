@@ -64,7 +64,7 @@ def test_a_guardian_is_followed_by_others(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_what_is_left_of_a_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What has a log of it as its output or in its environment, and what that has started; never who asks."""
+    """A process with a log of the graph as its output or in its environment, with its descendants; never the caller."""
     log = tmp_path / "n.log"
     with open(log, "wb") as out:
         writing = subprocess.Popen(["sleep", "600"], stdout=out)

@@ -1,4 +1,4 @@
-"""What decoded messages are made of."""
+"""The values of decoded messages."""
 
 from __future__ import annotations
 
