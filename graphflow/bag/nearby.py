@@ -14,7 +14,7 @@ LOOKED_AT = 1000
 """Largest number of entries of a folder that are read."""
 
 
-def meant(path: Path) -> str:
+def suggestion(path: Path) -> str:
     """Return advice on a path at which there is no bag: the bag that may be meant, or the bags beside it."""
     try:
         found = sorted(islice(filter(_is_bag, path.parent.iterdir()), LOOKED_AT))

@@ -33,7 +33,7 @@ logger = logging.getLogger("graphflow")
 COMMANDS = ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", EVENTS)
 """Suffixes of topics that make nodes act, or report that they did."""
 STEP_NS = 20_000_000
-"""Longest sleep of the player, in seconds, between two checks of its commands."""
+"""Longest sleep of the player, in nanoseconds, between two checks of its commands."""
 MIN_RATE, MAX_RATE = 0.001, 1000.0
 """Slowest and fastest rate of playback."""
 REST = 0.01

@@ -15,7 +15,7 @@ from graphflow.bag.formats.db3_file import Db3File
 from graphflow.bag.formats.mcap_file import RECORD_BOUND, McapFile
 from graphflow.bag.formats.metadata import FileContents
 from graphflow.bag.formats.ros1_file import Ros1File
-from graphflow.bag.nearby import meant
+from graphflow.bag.nearby import suggestion
 from graphflow.errors import BagError
 
 _FILES_BOUND = 10_000
@@ -97,7 +97,7 @@ class Bag:
         if self.path.is_file():
             return [self.path]
         if not self.path.is_dir():
-            raise BagError(f"{self.path}: there is no such file or folder{meant(self.path)}")
+            raise BagError(f"{self.path}: there is no such file or folder{suggestion(self.path)}")
         named = entries.get("relative_file_paths")
         names = [Path(_text(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
         found = [self.path / name for name in names if name and (self.path / name).is_file()]

@@ -27,7 +27,7 @@ _PRIMARY = {state for state in LifecycleState if state.is_primary and state}
 _IDS = {transition.label: transition.id for transition in TRANSITIONS}
 
 
-class Lives:
+class LifecycleManager:
     """The lifecycle nodes of foreign programs; workers manage their own.
 
     Args:

@@ -21,7 +21,7 @@ from graphflow.supervisor.control.clients import Clients
 from graphflow.supervisor.control.components import Components
 from graphflow.supervisor.launching import debugging
 from graphflow.supervisor.launching.programs import command_of, signal_of
-from graphflow.supervisor.lifecycle_manager import Lives
+from graphflow.supervisor.lifecycle_manager import LifecycleManager
 from graphflow.supervisor.processes.health import Health
 from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, no_mesh, worker_start
 from graphflow.supervisor.processes.process import Process
@@ -57,7 +57,7 @@ class Supervisor:
         self._context = context
         self._starter = starter
         self._steps = StepRunner(context, step_types)
-        self._lives = Lives(context, self._steps, self.on_event)
+        self._lifecycles = LifecycleManager(context, self._steps, self.on_event)
         self._processes = {
             name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
         }
@@ -118,7 +118,7 @@ class Supervisor:
         in_threads = f" with {', '.join(threads)} in threads" if threads else ""
         self.clients.announce(f"{'start' if only_ended else 'restart'} {node}{in_threads}", by)
         process.restarts.forget()
-        self._happen(process, Event.RESTART)
+        self._apply(process, Event.RESTART)
 
     def stop(self, node: str, by: str) -> None:
         """Stop a node's process; the others go on.
@@ -132,7 +132,7 @@ class Supervisor:
         self.clients.announce(f"stop {node}", by)
         process.stop_requested = True
         process.failed &= process.state is not State.WAITING  # the request, not the failure, ends its restarts
-        self._happen(process, Event.STOP)
+        self._apply(process, Event.STOP)
 
     def _named(self, node: str) -> Process:
         if node not in self._process_of:
@@ -154,11 +154,11 @@ class Supervisor:
             for process in self._processes.values():
                 if process.state in (State.PENDING, State.WAITING, State.RESTARTING, State.RESETTING):
                     process.stop_requested = True  # at once, whatever its layer, or it would be started meanwhile
-                    self._happen(process, Event.STOP)
+                    self._apply(process, Event.STOP)
         if now:
             for process in self._processes.values():
                 process.stop_requested = True
-                self._happen(process, Event.KILL)
+                self._apply(process, Event.KILL)
         self._stop_next_layer()
 
     def note(self, text: str) -> None:
@@ -169,14 +169,14 @@ class Supervisor:
         """Bring the graph up and keep it until it has ended; returns its exit code."""
         if len(self._processes) > MESH_LIMIT:
             self.note(no_mesh(len(self._processes)))
-        self._start_ready_ones()
+        self._start_startable()
         health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
         await self.ended.wait()
         health.cancel()
         for task in self._step_tasks.values():
             task.cancel()
         await asyncio.gather(*self._step_tasks.values(), return_exceptions=True)
-        await self._lives.close()
+        await self._lifecycles.close()
         await self._steps.close()
         self.clients.broadcast({"event": "end", "exit_code": self.exit_code})
         return self.exit_code
@@ -224,7 +224,7 @@ class Supervisor:
         if process.state in _ENDING:  # it had no pid to signal until now
             self._act(process, Do.TERMINATE)
         elif process.is_program and process.nodes[0].lifecycle:
-            self._lives.begin(process.name, process.nodes[0])
+            self._lifecycles.begin(process.name, process.nodes[0])
         elif process.is_program:  # nothing shows when a foreign program is ready
             self._has_become_ready(process, process.name)
 
@@ -233,8 +233,8 @@ class Supervisor:
         if status is None and (trouble := self._starter.trouble()):
             self.note(trouble)
         self.components.lost(process)
-        self._lives.end(process.name)
-        self._happen(process, Event.EXIT)
+        self._lifecycles.end(process.name)
+        self._apply(process, Event.EXIT)
 
     def starter_lost(self, how: str) -> None:
         """Take in the end of the starter, with which all workers end."""
@@ -246,7 +246,7 @@ class Supervisor:
         for process in self._processes.values():
             process.stop_requested = True
             if process.pid is None:
-                self._happen(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
+                self._apply(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
         self._end_if_all_have()
 
     def _has_become_ready(self, process: Process, node: str) -> None:
@@ -254,15 +254,15 @@ class Supervisor:
         self.clients.broadcast({"event": "ready", "node": node, "pid": process.pid})
         if not process.waiting_for:
             process.ready_since = time.monotonic()
-            self._happen(process, Event.READY)
+            self._apply(process, Event.READY)
             self._meet(process.name, "ready")
 
-    def _start_ready_ones(self) -> None:
+    def _start_startable(self) -> None:
         if self._stopping:
             return
         for name in self._order.startable(self._met):
             if name in self._processes:
-                self._happen(self._processes[name], Event.GO)
+                self._apply(self._processes[name], Event.GO)
             elif name not in self._step_tasks:
                 planned = next(s for s in self.plan.steps if f"step {s.name}" == name)
                 self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
@@ -275,7 +275,7 @@ class Supervisor:
     def _meet(self, name: str, *what: str) -> None:
         """Record needs that a process or step has met, and start those that waited for them."""
         self._met.update(Need(name, each) for each in what)
-        self._start_ready_ones()
+        self._start_startable()
 
     async def _run_step(self, planned: PlannedStep) -> None:
         try:
@@ -301,7 +301,7 @@ class Supervisor:
         self.exit_code = 1
         self.begin_stop(now=False, reason=reason)
 
-    def _happen(self, process: Process, event: Event) -> None:
+    def _apply(self, process: Process, event: Event) -> None:
         was = process.state
         if event is Event.LATE and was in _ENDING:
             self.note(f"{process.name} did not end within {process.alarm_after:g} s: killed")
@@ -313,7 +313,7 @@ class Supervisor:
                 process.alarm = None
             process.alarm_after = process.may_stay(time.monotonic())
             if process.alarm_after is not None:
-                process.alarm = self._context.loop.call_later(process.alarm_after, self._happen, process, Event.LATE)
+                process.alarm = self._context.loop.call_later(process.alarm_after, self._apply, process, Event.LATE)
         if was in _ENDING and event is Event.EXIT and process.state is not State.ENDED:
             self._send_exit(process, unexpected=False)
         for action in actions:
@@ -322,7 +322,7 @@ class Supervisor:
             self._process_ended(process, was)
         if process.state is State.PENDING and was is not State.PENDING:
             self._met.discard(Need(process.name))
-            self._start_ready_ones()
+            self._start_startable()
 
     def _act(self, process: Process, action: Do) -> None:
         if action is Do.SPAWN:
@@ -369,7 +369,7 @@ class Supervisor:
         if early and not process.error:
             process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
         failed = not requested and (early or (process.exit is not None and process.exit.failed))
-        follows = None if requested or self._stopping else self._follows(process)
+        follows = None if requested or self._stopping else self._decide_restart(process)
         if isinstance(follows, GiveUp):
             process.given_up = follows.why
         process.failed |= failed
@@ -383,14 +383,14 @@ class Supervisor:
         if failed:
             self.exit_code = 1
         if not requested and not self._stopping:
-            self._judge_end(process, was)
+            self._consider_end(process, was)
         if self._stopping:
             self._stop_next_layer()
         else:
             self._meet(process.name, "exited", *(() if failed or requested else ("done",)))
         self._end_if_all_have()
 
-    def _follows(self, process: Process) -> Again | GiveUp | None:
+    def _decide_restart(self, process: Process) -> Again | GiveUp | None:
         end = process.exit if process.exit is not None else Exit()
         chance = random.random()  # noqa: S311 - it only keeps processes from coming back together
         return process.restarts.decide(end, process.ready_for, time.monotonic(), chance)
@@ -399,11 +399,11 @@ class Supervisor:
         process.last_end = process.error or str(process.exit)
         process.delay = follows.delay
         self._met.discard(Need(process.name))
-        self._happen(process, Event.AGAIN)
+        self._apply(process, Event.AGAIN)
         for name in restarted_with(process.name, self.plan.strategy, self._order, self._processes):
-            self._happen(self._processes[name], Event.RESET)
+            self._apply(self._processes[name], Event.RESET)
 
-    def _judge_end(self, process: Process, was: State) -> None:
+    def _consider_end(self, process: Process, was: State) -> None:
         """Stop the graph if it cannot go on without a process that has ended for good."""
         if was is State.STARTING and not self.up.is_set():
             self._fail(f"{process.name} did not start")
@@ -446,5 +446,5 @@ class Supervisor:
                 process = self._processes[name]
                 if not process.stop_requested:
                     process.stop_requested = True
-                    self._happen(process, Event.STOP)
+                    self._apply(process, Event.STOP)
         self._end_if_all_have()

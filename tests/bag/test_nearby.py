@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from graphflow.bag.nearby import meant
+from graphflow.bag.nearby import suggestion
 
 
 def test_what_is_beside(tmp_path: Path) -> None:
     """A near name, a file without its ending, or all where they are few."""
-    assert meant(tmp_path / "nothing" / "bag") == meant(tmp_path / "bag") == ""
+    assert suggestion(tmp_path / "nothing" / "bag") == suggestion(tmp_path / "bag") == ""
     (tmp_path / "walk").mkdir()
     (tmp_path / "walk" / "metadata.yaml").touch()
     (tmp_path / "walk" / "walk_0.mcap").touch()
     (tmp_path / "walking.txt").touch()
-    assert meant(tmp_path / "wlk") == f"; did you mean {str(tmp_path / 'walk')!r}?"
-    assert meant(tmp_path / "walk.bag") == f"; did you mean {str(tmp_path / 'walk')!r}?"
-    assert meant(tmp_path / "walk" / "walk_0") == f"; did you mean {str(tmp_path / 'walk' / 'walk_0.mcap')!r}?"
-    assert meant(tmp_path / "zzz") == f"; there is {tmp_path / 'walk'}"
+    assert suggestion(tmp_path / "wlk") == f"; did you mean {str(tmp_path / 'walk')!r}?"
+    assert suggestion(tmp_path / "walk.bag") == f"; did you mean {str(tmp_path / 'walk')!r}?"
+    assert suggestion(tmp_path / "walk" / "walk_0") == f"; did you mean {str(tmp_path / 'walk' / 'walk_0.mcap')!r}?"
+    assert suggestion(tmp_path / "zzz") == f"; there is {tmp_path / 'walk'}"

@@ -18,7 +18,7 @@ from graphflow.graph.plan import PlannedNode
 from graphflow.machines.process import START_LIMIT
 from graphflow.msgs.lifecycle_msgs.msg import State
 from graphflow.msgs.lifecycle_msgs.srv import GetState
-from graphflow.supervisor.lifecycle_manager import Lives
+from graphflow.supervisor.lifecycle_manager import LifecycleManager
 from graphflow.supervisor.steps import StepRunner
 from graphflow.testing import Graph
 from tests.cases import slow
@@ -46,10 +46,10 @@ async def bringing(graph: Graph, name: str, state: str) -> AsyncIterator[list[An
     await graph.start(supervisor := Node("_supervisor"))
     heard: list[Any] = []
     steps = StepRunner(supervisor.context, {})
-    lives = Lives(supervisor.context, steps, heard.append)
-    lives.begin("p", planned(name, state))
+    manager = LifecycleManager(supervisor.context, steps, heard.append)
+    manager.begin("p", planned(name, state))
     yield heard
-    await lives.close()
+    await manager.close()
     await steps.close()
 
 
@@ -125,15 +125,15 @@ async def test_a_process_that_has_ended(graph: Graph) -> None:
     await graph.start(supervisor := Node("_supervisor"))
     heard: list[Any] = []
     steps = StepRunner(supervisor.context, {})
-    lives = Lives(supervisor.context, steps, heard.append)
-    lives.begin("p", planned("/camera", "active"))
+    manager = LifecycleManager(supervisor.context, steps, heard.append)
+    manager.begin("p", planned("/camera", "active"))
     await asyncio.sleep(0)
-    lives.end("p")
-    lives.end("p")
+    manager.end("p")
+    manager.end("p")
     await graph.start(Camera("camera"))
     await graph.clock.advance(START_LIMIT)
     assert heard == []
-    await lives.close()
+    await manager.close()
     await steps.close()
 
 

@@ -86,8 +86,12 @@ def test_starts_are_waited_for(here: Path) -> None:
     announced.begin(here / "g.yaml")
     assert not wait_started(told.append, here / "other.yaml")
     ender = threading.Timer(0.01, announced.end)
-    ender.start()
-    assert wait_started(told.append, here / "g.yaml")
+
+    def on_wait(start: Start) -> None:
+        told.append(start)
+        ender.start()  # not earlier: the start must not have ended before the wait begins
+
+    assert wait_started(on_wait, here / "g.yaml")
     ender.join()
     assert told == [Start(os.getpid(), str(here / "g.yaml"))]
 

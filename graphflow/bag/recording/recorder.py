@@ -33,9 +33,10 @@ CACHE = 100 << 20
 """Default size of the cache in bytes."""
 WRITE_EVERY = 0.05
 """Seconds in which messages are collected, so that the writing thread does not wake up for each."""
-LOOK_EVERY = 0.1
+SEARCH_EVERY = 0.1
 """Seconds between two searches for new topics."""
-HEARD = replace(BEST_AVAILABLE, depth=1000)
+SUBSCRIPTION_QOS = replace(BEST_AVAILABLE, depth=1000)
+"""The profile of subscriptions for which none is given."""
 OVERHEAD = 256
 """Overhead of a message in the cache, in bytes."""
 SENDERS_BOUND = 10_000
@@ -146,7 +147,7 @@ class Recorder:
                     break
                 is_new.clear()
                 await is_new.wait()
-                await asyncio.wait([self.failed], timeout=LOOK_EVERY)
+                await asyncio.wait([self.failed], timeout=SEARCH_EVERY)
         finally:
             stop()
             await self._end()
@@ -205,7 +206,12 @@ class Recorder:
 
         try:
             self._subscriptions[entity.name] = raw.subscribe(
-                self._node, entity.type, entity.name, arrived, self._qos.get(entity.name, HEARD), type_hash=entity.hash
+                self._node,
+                entity.type,
+                entity.name,
+                arrived,
+                self._qos.get(entity.name, SUBSCRIPTION_QOS),
+                type_hash=entity.hash,
             )
         except (GraphflowError, ValueError) as error:  # another process may announce any type
             if (entity.name, entity.type) not in self._left_out:

@@ -39,7 +39,7 @@ class ForkingStarter:
         """Living workers by process id: the name of each, and the pidfd that becomes readable at its end, or -1."""
         self._programs: dict[str, signal.Signals] = {}
         """Processes that are foreign programs."""
-        self._begun: dict[str, list[messages.ProcessEvent]] = {}
+        self._early: dict[str, list[messages.ProcessEvent]] = {}
         """Events of workers that were started ahead and not spawned yet."""
         self._on_event: Callable[[messages.ProcessEvent], None]
         self._lost: Callable[[str], None]
@@ -80,7 +80,7 @@ class ForkingStarter:
 
     def begin(self, starts: Iterable[Start]) -> None:
         for start in starts:
-            self._begun[start.process] = []
+            self._early[start.process] = []
             with suppress(ConnectionError):  # it has ended, as is reported once this is open
                 self._send_blocking(_spawn_request(*start))
 
@@ -96,7 +96,7 @@ class ForkingStarter:
 
     def _report(self, event: messages.ProcessEvent) -> None:
         """Report an event of a worker; keep it for later if the worker has not been spawned yet."""
-        early = self._begun.get(event.get("process", ""))
+        early = self._early.get(event.get("process", ""))
         if early is None:
             self._on_event(event)
         else:
@@ -175,16 +175,16 @@ class ForkingStarter:
                 self._ended(pid, status)
 
     def spawn(self, process: str, job: messages.Job, log: str, env: dict[str, str]) -> None:
-        if process in self._begun:
+        if process in self._early:
             # Not at once: the supervisor is still in the middle of the transition that called this.
-            asyncio.get_running_loop().call_soon(self._report_begun, process)
+            asyncio.get_running_loop().call_soon(self._report_early_events, process)
             return
         if "command" in job:
             self._programs[process] = signal.Signals[job["signal"]]
         self._preload.send(_spawn_request(process, job, log, env))
 
-    def _report_begun(self, process: str) -> None:
-        for event in self._begun.pop(process):
+    def _report_early_events(self, process: str) -> None:
+        for event in self._early.pop(process):
             self._on_event(event)
 
     def send_order(self, process: str, order: messages.Order) -> None:
