@@ -19,6 +19,7 @@ from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
 from graphflow.supervisor.control.clients import Clients
 from graphflow.supervisor.control.components import Components
+from graphflow.supervisor.ends import end_of_graph, has_failed, was_stopped
 from graphflow.supervisor.launching import debugging
 from graphflow.supervisor.launching.programs import command_of, signal_of
 from graphflow.supervisor.lifecycle_manager import LifecycleManager
@@ -306,6 +307,7 @@ class Supervisor:
         if event is Event.LATE and was in _ENDING:
             self.note(f"{process.name} did not end within {process.alarm_after:g} s: killed")
         process.state, actions = step(was, event)
+        # The alarm first: the actions below may apply further events to this process.
         if process.state is not was:
             process.since = time.time()
             if process.alarm is not None:
@@ -321,6 +323,7 @@ class Supervisor:
         if process.state is State.ENDED and was is not State.ENDED:
             self._process_ended(process, was)
         if process.state is State.PENDING and was is not State.PENDING:
+            # It was reset after the failure of another, and may be startable at once.
             self._met.discard(Need(process.name))
             self._start_startable()
 
@@ -364,17 +367,15 @@ class Supervisor:
             self.clients.broadcast({"event": "left", "node": node.name, "process": process.name})
 
     def _process_ended(self, process: Process, was: State) -> None:
-        requested = process.stop_requested or was in (State.STOPPING, State.PENDING, State.WAITING)
-        early = was is State.STARTING and not requested
-        if early and not process.error:
+        requested, failed = was_stopped(process, was), has_failed(process, was)
+        if failed and was is State.STARTING and not process.error:
             process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
-        failed = not requested and (early or (process.exit is not None and process.exit.failed))
         follows = None if requested or self._stopping else self._decide_restart(process)
         if isinstance(follows, GiveUp):
             process.given_up = follows.why
         process.failed |= failed
         if failed and process.pid is not None:
-            process.log_end()
+            process.log_end()  # before clients learn of it, who may show the log
         if was not in (State.PENDING, State.WAITING):
             self._send_exit(process, unexpected=failed, again=follows)
         if isinstance(follows, Again):
@@ -383,7 +384,10 @@ class Supervisor:
         if failed:
             self.exit_code = 1
         if not requested and not self._stopping:
-            self._consider_end(process, was)
+            end = end_of_graph(process, was, self._order, is_up=self.up.is_set())
+            if end is not None:
+                self.exit_code = 1 if end.failed else self.exit_code
+                self.begin_stop(now=False, reason=end.reason)
         if self._stopping:
             self._stop_next_layer()
         else:
@@ -398,23 +402,10 @@ class Supervisor:
     def _start_again(self, process: Process, follows: Again) -> None:
         process.last_end = process.error or str(process.exit)
         process.delay = follows.delay
-        self._met.discard(Need(process.name))
+        self._met.discard(Need(process.name))  # processes that start later wait for the new one
         self._apply(process, Event.AGAIN)
         for name in restarted_with(process.name, self.plan.strategy, self._order, self._processes):
             self._apply(self._processes[name], Event.RESET)
-
-    def _consider_end(self, process: Process, was: State) -> None:
-        """Stop the graph if it cannot go on without a process that has ended for good."""
-        if was is State.STARTING and not self.up.is_set():
-            self._fail(f"{process.name} did not start")
-        elif process.failed and process.is_critical:
-            self._fail(f"{process.name} is critical, and has {'been given up' if process.given_up else 'failed'}")
-        elif process.ends_graph:
-            self.begin_stop(now=False, reason=f"{process.name} has ended")
-        elif process.failed:
-            waits = [n for n, needs in self._order.after.items() if Need(process.name, "done") in needs]
-            if waits:
-                self._fail(f"{waits[0]} waits until {process.name} is done, and that has failed")
 
     def _send_exit(self, process: Process, *, unexpected: bool, again: Again | GiveUp | None = None) -> None:
         if process.exit is not None:
