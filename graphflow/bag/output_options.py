@@ -79,14 +79,14 @@ def read(path: Path) -> list[Output]:
 
 def _output(row: object) -> Output:
     if not isinstance(row, Mapping):
-        raise ValueError("it is no mapping; write uri: NAME")
+        raise ValueError("it is not a mapping; write uri: NAME")
     for key, value in row.items():
         if key in _TEXTS and type(value) is not str:
             raise ValueError(f"{key}: {value!r} is not a text")
         if key in _FLAGS and type(value) is not bool:
             raise ValueError(f"{key}: {value!r} is not true or false")
         if key in _NUMBERS and (type(value) is not int or value < 0):
-            raise ValueError(f"{key}: {value!r} is not a whole number that is not negative")
+            raise ValueError(f"{key}: {value!r} is not a non-negative integer")
     if not row.get("uri"):
         raise ValueError("it has no uri, the folder of the new bag")
     storage = row.get("storage_id") or "mcap"
@@ -141,10 +141,10 @@ def _compression(row: Mapping[str, Any]) -> str:
     if mode in ("file", "message"):  # MCAP has only the compression of chunks
         name = row.get("compression_format") or "zstd"
         if name not in ("zstd", "lz4"):
-            raise ValueError(f"compression_format: {name!r} is not there; write zstd or lz4")
+            raise ValueError(f"compression_format: {name!r} is not available; write zstd or lz4")
         return str(name)
     if mode not in ("", "none"):
-        raise ValueError(f"compression_mode: {mode!r} is none of none, file, message")
+        raise ValueError(f"compression_mode: {mode!r} is not one of none, file, message")
     if preset not in _PACKED:
-        raise ValueError(f"storage_preset_profile: {preset!r} is none of {', '.join(filter(None, _PACKED))}")
+        raise ValueError(f"storage_preset_profile: {preset!r} is not one of {', '.join(filter(None, _PACKED))}")
     return _PACKED[preset]

@@ -78,11 +78,11 @@ def _profile(row: object) -> Qos:
         if key in ENUMS:
             members = ENUMS[key].__members__
             if str(value).upper() not in members:
-                raise ValueError(f"{key}: {value!r} is none of {', '.join(m.lower() for m in members)}")
+                raise ValueError(f"{key}: {value!r} is not one of {', '.join(m.lower() for m in members)}")
             policies[key] = members[str(value).upper()]
         elif key == "depth":
             if type(value) is not int or not 0 <= value < 2**31:
-                raise ValueError(f"depth: {value!r} is no number of messages")
+                raise ValueError(f"depth: {value!r} is not a number of messages")
             policies[key] = value
         elif key in DURATIONS:
             policies[DURATIONS[key]] = _span(key, value)
@@ -96,4 +96,4 @@ def _span(key: str, value: object) -> int:
         sec, nsec = value.get("sec", 0), value.get("nsec", 0)
         if type(sec) is int and type(nsec) is int and 0 <= sec * 10**9 + nsec < 2**63:
             return sec * 10**9 + nsec
-    raise ValueError(f"{key}: {value!r} is no duration; write {{sec: 1, nsec: 0}}")
+    raise ValueError(f"{key}: {value!r} is not a duration; write {{sec: 1, nsec: 0}}")

@@ -160,7 +160,7 @@ class Player:
                 continue
             goes = self._options.remaps.get(name, name)
             if any(goes.endswith(end) for end in COMMANDS) and not self._options.allows_commands:
-                self.refused.append(f"{name} would have others act; to play it: --allow-commands")
+                self.refused.append(f"{name} would make nodes act; to play it: --allow-commands")
             elif topic.encoding != "cdr":
                 self.refused.append(f"{name} is serialized as {topic.encoding!r}, not as CDR")
             elif goes == "/clock" and (self._options.clock_hz or self._is_clocked):

@@ -177,7 +177,7 @@ class BagWriter:
         try:
             folder.mkdir(parents=True)
         except FileExistsError:
-            raise BagError(f"{folder} is there already; choose another name with -o") from None
+            raise BagError(f"{folder} exists already; choose another name with -o") from None
         except OSError as error:
             raise BagError(f"{folder}: {error.strerror}") from None
         self._flushed_ns = self._synced_ns = self._now_ns()

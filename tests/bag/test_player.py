@@ -211,8 +211,8 @@ EVENTS = Topic("/add/_service_event", "std_msgs/msg/String")
 @pytest.mark.parametrize(
     ("topic", "message"),
     [
-        (GOAL, "would have others act; to play it: --allow-commands"),
-        (EVENTS, "would have others act; to play it: --allow-commands"),
+        (GOAL, "would make nodes act; to play it: --allow-commands"),
+        (EVENTS, "would make nodes act; to play it: --allow-commands"),
         (Topic("@graphflow/1/look/ab", "std_msgs/msg/String"), "is not a name"),
         (Topic("/a/*/b", "std_msgs/msg/String"), "is not a name"),
         (Topic("/a//b", "std_msgs/msg/String"), "is not a name"),
@@ -241,7 +241,7 @@ async def test_a_new_name_that_is_a_command(graph: Graph, tmp_path: Path) -> Non
     """It is what it is played to that counts."""
     show = Show(graph, tmp_path / "bag", [record(CHATTER, String(), 0.0)])
     await graph.start(show.node)
-    with pytest.raises(BagError, match="there is nothing to play: /chatter would have others act"):
+    with pytest.raises(BagError, match="there is nothing to play: /chatter would make nodes act"):
         Player(show.node, show.bag, PlayOptions(remaps={"/chatter": GOAL.name}))
 
 

@@ -63,14 +63,14 @@ def test_some_of_it(foreign: Path) -> None:
             lambda folder: text(folder / "metadata.yaml", "a: 1"),
             "metadata.yaml is a part of the bag; give its folder: ",
         ),
-        (lambda folder: text(folder / "a.mcap", "hello"), "a.mcap: it is no MCAP file"),
-        (lambda folder: text(folder / "a.db3", "hello"), "a.db3: it is no SQLite file"),
+        (lambda folder: text(folder / "a.mcap", "hello"), "a.mcap: it is not an MCAP file"),
+        (lambda folder: text(folder / "a.db3", "hello"), "a.db3: it is not an SQLite file"),
         (lambda folder: text(folder / "a.db3", "SQLite format 3\0" + "x" * 200), "a.db3: "),
         (lambda folder: text(folder / "a.mcap.zstd", ""), "a.mcap.zstd: it is empty"),
-        (lambda folder: text(folder / "metadata.yaml", "a: [").parent, "metadata.yaml: it is no bag's metadata"),
-        (lambda folder: text(folder / "metadata.yaml", "a: 1").parent, "metadata.yaml: it is no bag's metadata"),
+        (lambda folder: text(folder / "metadata.yaml", "a: [").parent, "metadata.yaml: it is not a bag's metadata"),
+        (lambda folder: text(folder / "metadata.yaml", "a: 1").parent, "metadata.yaml: it is not a bag's metadata"),
         (lambda folder: text(folder / "metadata.yaml", "a: &a [x]\nb: *a").parent, "it has aliases"),
-        (lambda folder: text(folder / "metadata.yaml", "- 1").parent, "metadata.yaml: it is no bag's metadata"),
+        (lambda folder: text(folder / "metadata.yaml", "- 1").parent, "metadata.yaml: it is not a bag's metadata"),
         (
             lambda folder: (
                 text(

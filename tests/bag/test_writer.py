@@ -120,7 +120,7 @@ def test_several_files(tmp_path: Path, options: dict[str, Any]) -> None:
 def test_a_folder_that_is_there(tmp_path: Path) -> None:
     """Is not touched."""
     write(tmp_path / "bag")
-    with pytest.raises(BagError, match="bag is there already; choose another name with -o"):
+    with pytest.raises(BagError, match="bag exists already; choose another name with -o"):
         BagWriter(tmp_path / "bag")
     assert Bag(tmp_path / "bag").contents.message_count == 41
 

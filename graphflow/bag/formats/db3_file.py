@@ -30,7 +30,7 @@ class Db3File:
         try:
             with path.open("rb") as file:
                 if file.read(len(MAGIC)) != MAGIC:
-                    raise BagError(f"{path}: it is no SQLite file")
+                    raise BagError(f"{path}: it is not an SQLite file")
             with closing(self._open()) as base:
                 self._topics = _read_topics(base)
                 ends = base.execute("SELECT min(timestamp), max(timestamp) FROM messages").fetchone()
@@ -71,7 +71,7 @@ class Db3File:
                     if number not in wanted:
                         continue
                     if not isinstance(data, bytes) or not isinstance(when, int) or when < 0:
-                        raise BagError(f"{self.path}: it has a message that is none")
+                        raise BagError(f"{self.path}: it has a damaged message")
                     yield Record(wanted[number], when, when, 0, data)
         except sqlite3.Error as error:
             raise BagError(f"{self.path}: {error}") from None

@@ -81,7 +81,7 @@ async def fetch(node: Node, entity: Entity) -> str:
     except InterfaceError as error:
         unknown = error
     else:
-        unknown = InterfaceError("its definition here is another")
+        unknown = InterfaceError("its definition here differs")
     try:
         return joined(entity.type, await asked_sources(node, entity))
     except InterfaceError as error:

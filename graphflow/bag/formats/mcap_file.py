@@ -78,7 +78,7 @@ class McapFile:
             raise BagError(f"{self.path}: {error.strerror}") from None
         if file.read(len(MAGIC)) != MAGIC:
             file.close()
-            raise BagError(f"{self.path}: it is no MCAP file; a bag is a folder, an .mcap, .db3 or .bag file")
+            raise BagError(f"{self.path}: it is not an MCAP file; a bag is a folder, an .mcap, .db3 or .bag file")
         return file
 
     @property
@@ -285,7 +285,7 @@ class McapFile:
         except compression.Damaged as error:
             raise _Broken(f"({error})") from None
         if len(found) != unpacked or (check and zlib.crc32(found) != check):
-            raise _Broken("(its checksum is another)")
+            raise _Broken("(its checksum does not match)")
         return found
 
 

@@ -100,7 +100,7 @@ def read(folder: Path) -> dict[str, object]:
         raise BagError(f"{path}: {error.strerror}") from None
     except (yaml.YAMLError, RecursionError, KeyError, TypeError, ValueError) as error:
         first = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise BagError(f"{path}: it is no bag's metadata: {first}") from None
+        raise BagError(f"{path}: it is not a bag's metadata: {first}") from None
 
 
 def plain(qos: Qos) -> dict[str, object]:

@@ -135,10 +135,10 @@ def _check_names(types: Mapping[str, Any]) -> None:
     """
     for one, (constants, fields) in types.items():
         if not _TYPE.match(one):
-            raise InterfaceError(f"{one[:100]!r} is no name of a type")
+            raise InterfaceError(f"{one[:100]!r} is not a legal type name")
         for name in (*(constant[0] for constant in constants), *(field for field, _ in fields)):
             if not _FIELD.match(name):
-                raise InterfaceError(f"{name[:100]!r} is no name of a field")
+                raise InterfaceError(f"{name[:100]!r} is not a legal field name")
 
 
 def _sources(types: Mapping[str, Any], name: str) -> dict[str, str]:

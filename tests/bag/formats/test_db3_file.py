@@ -87,10 +87,10 @@ def test_one_that_is_damaged(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("row", "message"),
     [
-        ((1, START, 5_000_000_000), "it has a message that is none"),
-        ((1, START, None), "it has a message that is none"),
-        ((1, START, "text"), "it has a message that is none"),
-        ((1, -5, b"x"), "it has a message that is none"),
+        ((1, START, 5_000_000_000), "it has a damaged message"),
+        ((1, START, None), "it has a damaged message"),
+        ((1, START, "text"), "it has a damaged message"),
+        ((1, -5, b"x"), "it has a damaged message"),
     ],
 )
 def test_columns_of_other_kinds(tmp_path: Path, row: tuple[object, ...], message: str) -> None:

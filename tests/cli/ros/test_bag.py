@@ -75,8 +75,8 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
         ("record -o /chatter", 2, "no topics to record; /chatter, after -o, is the bag's folder; name topics"),
         ("record", 2, "no topics to record; name topics, or record all: graphflow bag record -a"),
         ("record -e [", 2, "'[' is not a regular expression"),
-        ("record -a -o bag", 1, "bag is there already; choose another name with -o"),
-        ("filter bag -o bag", 1, "bag is there already; choose another name with -o"),
+        ("record -a -o bag", 1, "bag exists already; choose another name with -o"),
+        ("filter bag -o bag", 1, "bag exists already; choose another name with -o"),
         ("record a//b", 2, "a//b"),
         ("filter bag -m /a:/b -o new", 2, "'/a:/b' is not a remap rule; write OLD:=NEW"),
         (
