@@ -137,7 +137,7 @@ class Service(Generic[Request, Response]):
     def __new__(cls, *_: object, **__: object) -> Self:
         """Raise TypeError: a service type has no instances."""
         raise TypeError(
-            f"{cls.__name__} is a service; make {cls.__name__}.Request(...) or {cls.__name__}.Response(...)"
+            f"{cls.__name__} is a service; create {cls.__name__}.Request(...) or {cls.__name__}.Response(...)"
         )
 
 
@@ -179,4 +179,4 @@ class Action(Generic[Goal, Result, Feedback]):
 
     def __new__(cls, *_: object, **__: object) -> Self:
         """Raise TypeError: an action type has no instances."""
-        raise TypeError(f"{cls.__name__} is an action; make {cls.__name__}.Goal(...), .Result(...) or .Feedback(...)")
+        raise TypeError(f"{cls.__name__} is an action; create {cls.__name__}.Goal(...), .Result(...) or .Feedback(...)")

@@ -65,7 +65,7 @@ class _InterfaceFinder:
                 cls = registry.interface_class(f"{package}/{kind}/{name}")
             except UnknownInterface as error:
                 if name in registry.names_in(package, kind):  # otherwise the unknown name is that of a field's type
-                    text = f"{package}/{kind}/{name} has a field of a type that is not there: {error}"
+                    text = f"{package}/{kind}/{name} has a field of an unknown type: {error}"
                     raise UnknownInterface(text) from None
                 raise AttributeError(str(error)) from None
             setattr(module, name, cls)

@@ -88,7 +88,7 @@ def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:
             del _foreign[needed]
         for memory in (interface, _part, message_schema, hash_of):  # no class or codec has been built from them
             memory.cache_clear()
-        raise InterfaceError(f"{name}: types in it have other definitions here")
+        raise InterfaceError(f"{name}: its nested types have other definitions here")
 
 
 def definition(name: str) -> str:

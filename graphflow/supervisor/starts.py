@@ -117,7 +117,7 @@ def wait_started(on_wait: Callable[[Start], object], file: Path | None = None) -
     while left := [start for start in starting() if start.pid in pids]:
         if time.monotonic() > deadline:
             slow = min(left)
-            text = f"{slow}, is not up after {PATIENCE:g} s; to break that off: kill {slow.pid}"
+            text = f"{slow}, is not up after {PATIENCE:g} s; to cancel it: kill {slow.pid}"
             raise SupervisorError(text, exit_code=4)
         time.sleep(0.01)
     return bool(pending)

@@ -218,7 +218,7 @@ class Supervisor:
                 self.note(debugging.invitation(process.name, event["port"]))
             case "log_lost":
                 process.log_error = event["why"]
-                self.note(f"{process.name}: its log is not written whole: {process.log_error}")
+                self.note(f"{process.name}: its log is incomplete: {process.log_error}")
 
     def _has_spawned(self, process: Process, pid: int) -> None:
         process.pid = pid
@@ -420,7 +420,7 @@ class Supervisor:
                 return
             needs = self._order.after[left[0].name] - self._met
             unmet = ", ".join(f"{need.name} ({need.what})" for need in sorted(needs))
-            self._fail(f"{left[0].name} comes after {unmet}, which cannot come any more")
+            self._fail(f"{left[0].name} comes after {unmet}, which cannot happen any more")
             return
         if left:
             return

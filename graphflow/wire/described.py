@@ -32,7 +32,7 @@ FIXED_BOUND = 1_000_000
 """Largest number of values in arrays of fixed size, which an empty message contains, too."""
 VALUES_BOUND = 2_000_000
 """Largest number of values in the lists of a message of such a type, arrays of numbers left out."""
-_BY_HAND = "if it is meant, put its files into interfaces/"
+_BY_HAND = "if that is intended, put its files into interfaces/"
 
 
 class DescribedField(NamedTuple):
@@ -78,11 +78,11 @@ def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, In
         InterfaceError: They are wrong, too large, incomplete, or of another hash.
     """
     if len(sources) > TYPES_BOUND or sum(map(len, sources.values())) > TEXT_BOUND:
-        raise InterfaceError(f"{name}: its definition is larger than any that there is")
+        raise InterfaceError(f"{name}: its definition is too large")
     if any(len(type_.split("/")) != 3 or type_.split("/")[1] not in ("msg", "srv", "action") for type_ in sources):
-        raise InterfaceError(f"{name}: its definition names a type that is none")
+        raise InterfaceError(f"{name}: its definition has an illegal type name")
     if any(len(line.partition("#")[0]) > LINE_BOUND for text in sources.values() for line in text.splitlines()):
-        raise InterfaceError(f"{name}: its definition has a line that is longer than any that there is")
+        raise InterfaceError(f"{name}: its definition has a line that is too long")
     found = {type_: idl.parse(type_, text) for type_, text in sources.items()}
     messages = {m.name: m for interface in found.values() for m in _messages(interface)}
 
@@ -108,6 +108,6 @@ def _refuse_size(name: str, lookup: Lookup) -> None:
     """Refuse types whose code, or whose empty messages, would exhaust the memory."""
     size = extent(name, lookup)
     if size.fields > FIELDS_BOUND:
-        raise InterfaceError(f"{name}: with the types in it, it has more than {FIELDS_BOUND:,} fields; {_BY_HAND}")
+        raise InterfaceError(f"{name}: with its nested types, it has more than {FIELDS_BOUND:,} fields; {_BY_HAND}")
     if size.values > FIXED_BOUND:
-        raise InterfaceError(f"{name}: an empty one would have more than {FIXED_BOUND:,} values; {_BY_HAND}")
+        raise InterfaceError(f"{name}: an empty message would have more than {FIXED_BOUND:,} values; {_BY_HAND}")

@@ -56,4 +56,4 @@ def extent(name: str, lookup: Lookup) -> Extent:
 
 
 def _too_deep(name: str) -> InterfaceError:
-    return InterfaceError(f"{name}: more than {DEPTH_BOUND} types are in each other; define it with fewer levels")
+    return InterfaceError(f"{name}: more than {DEPTH_BOUND} levels of nested types; define it with fewer")

@@ -99,7 +99,7 @@ def test_a_field_of_a_type_that_is_not_there(save: Save) -> None:
     """Is told with the definition that has it, also by `from ... import`."""
     save("find_field/msg/Greeting", "string text")
     save("find_field/msg/Thing", "float64 x\nGreting y")
-    text = "find_field/msg/Thing has a field of a type that is not there: .*did you mean 'Greeting'"
+    text = "find_field/msg/Thing has a field of an unknown type: .*did you mean 'Greeting'"
     with pytest.raises(UnknownInterface, match=text):
         exec("from graphflow.msgs.find_field.msg import Thing")
 

@@ -264,7 +264,7 @@ def test_what_does_not_go_with_what_is_known(monkeypatch: pytest.MonkeyPatch) ->
     messages = {name: message for name, message in whole.items() if isinstance(message, Message)}
     digest = type_hash(messages["clashing_msgs/msg/A"], messages.__getitem__)
     for _ in range(2):
-        with pytest.raises(InterfaceError, match="types in it have other definitions here"):
+        with pytest.raises(InterfaceError, match="its nested types have other definitions here"):
             registry.adopt("clashing_msgs/msg/A", digest, sources)
         assert registry._foreign == {}
         with pytest.raises(UnknownInterface):

@@ -100,7 +100,7 @@ def test_a_start_that_takes_too_long(here: Path, monkeypatch: pytest.MonkeyPatch
     """Is an error that says how to break it off, with the exit code of a timeout."""
     monkeypatch.setattr(starts, "PATIENCE", 0.0)
     announced = begun(here / "g.yaml")
-    with pytest.raises(SupervisorError, match=rf"is not up after 0 s; to break that off: kill {os.getpid()}") as error:
+    with pytest.raises(SupervisorError, match=rf"is not up after 0 s; to cancel it: kill {os.getpid()}") as error:
         wait_started(lambda _: None)
     assert error.value.exit_code == 4
     announced.end()

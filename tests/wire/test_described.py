@@ -82,8 +82,8 @@ BOMBS = {
         nested(50, "".join(f"{{0}} x{n}\n" for n in range(100))),
         "more than 20,000 fields",
     ),
-    "depth": (nested(500, "{0} x"), "more than 50 types are in each other"),
-    "depth and width": (nested(500, "{0} x\n{0} y"), "more than 50 types are in each other"),
+    "depth": (nested(500, "{0} x"), "more than 50 levels of nested types"),
+    "depth and width": (nested(500, "{0} x\n{0} y"), "more than 50 levels of nested types"),
 }
 
 
@@ -127,21 +127,21 @@ def test_the_largest_that_are_not_refused(text: str) -> None:
         ({"p/msg/A": "A a"}, "a message cannot contain itself: p/msg/A in p/msg/A"),
         (
             {"p/msg/A": "uint8[1000001] x"},
-            "p/msg/A: an empty one would have more than 1,000,000 values; if it is meant",
+            "p/msg/A: an empty message would have more than 1,000,000 values; if that is intended",
         ),
         ({"p/msg/A": "B[1000] b", "p/msg/B": "uint8[2000] x"}, "would have more than 1,000,000 values"),
         ({"p/msg/A": "import os\n"}, "import"),
         ({"p/msg/A": "int32 x; import os"}, "x;"),
         ({"p/msg/A": "int32 class"}, "keyword"),
-        ({"p/msg/A": f"#{'x' * 1_000_000}"}, "larger than any that there is"),
+        ({"p/msg/A": f"#{'x' * 1_000_000}"}, "is too large"),
         ({"p/msg/A": "B[1000000000] b", "p/msg/B": ""}, "would have more than 1,000,000 values"),
         (nested(49, "{0}[%d] x" % 10**17), "would have more than 1,000,000 values"),  # noqa: UP031 - braces stay
-        ({"p/msg/A": f"string<={'9' * 5000} x"}, "longer than any"),
+        ({"p/msg/A": f"string<={'9' * 5000} x"}, "a line that is too long"),
         ({"p/msg/A": f"string<={'9' * 500} x"}, "is not a type"),
-        ({"p/msg/A": "string[] x [" + "'," * 600 + "]"}, "longer than any"),
-        ({"p/msg/A": "", **{f"p/msg/A{n}": "" for n in range(500)}}, "larger than any that there is"),
-        ({"p/msg/A": "", "../../etc": ""}, "names a type that is none"),
-        ({"p/msg/A": "", "p/exe/A": ""}, "names a type that is none"),
+        ({"p/msg/A": "string[] x [" + "'," * 600 + "]"}, "a line that is too long"),
+        ({"p/msg/A": "", **{f"p/msg/A{n}": "" for n in range(500)}}, "is too large"),
+        ({"p/msg/A": "", "../../etc": ""}, "has an illegal type name"),
+        ({"p/msg/A": "", "p/exe/A": ""}, "has an illegal type name"),
         ({"p/msg/A": "", "p/msg/a b": ""}, "type name 'a b'"),
     ],
 )

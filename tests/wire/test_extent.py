@@ -41,7 +41,7 @@ def test_how_deep_types_may_be() -> None:
     last = f"A{DEPTH_BOUND}"
     assert size_of(A="A2 x", **{**chain, last: ""}).depth == DEPTH_BOUND
     for text in ("A1 x", "A2 x\nA1 y", "A2 x\nB y"):
-        with pytest.raises(InterfaceError, match="p/msg/A: more than 50 types are in each other"):
+        with pytest.raises(InterfaceError, match="p/msg/A: more than 50 levels of nested types"):
             size_of(A=text, **{**chain, last: ""}, B="A2 x")
 
 

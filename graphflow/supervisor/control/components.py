@@ -115,7 +115,7 @@ class Components:
             there = ", ".join(f"{number} {name}" for name, number in process.numbers.items())
             raise SupervisorError(f"{container} has no component {number}; there is {there}")
         if len(process.nodes) == 1:
-            raise SupervisorError(f"{name} is all that {container} has; to end it: graphflow stop {name}")
+            raise SupervisorError(f"{name} is the last node of {container}; to stop it: graphflow stop {name}")
         await self._order(process, {"do": "unload", "order": next(self._numbers), "node": name}, None)
         return name
 

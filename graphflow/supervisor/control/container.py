@@ -67,7 +67,7 @@ class Container:
             planned = self._planned(request)
             described = planned.to_json()
             if len(json.dumps(described)) > DESCRIPTION_BOUND:
-                raise GraphflowError("its parameters are too many for this way; use graphflow component load")
+                raise GraphflowError("it has too many parameters for this service; use graphflow component load")
             if planned.name in self._node.context.cache.nodes():
                 raise GraphflowError(f"there is a node {planned.name} already")
             number, node = await self._orders.load(described)

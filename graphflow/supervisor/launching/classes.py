@@ -203,7 +203,7 @@ def _lies_in(folder: Path, module: str) -> bool:
 def _as_module(file: Path) -> str:
     """Describe how to run a file that imports from its own package."""
     package, above = file.parent.name, file.parent.parent
-    return f"as a module of {package} it finds that: graphflow run {package}.{file.stem}, in {above}"
+    return f"run it as a module of {package}: graphflow run {package}.{file.stem}, in {above}"
 
 
 def _package_of(file: Path) -> str:

@@ -33,12 +33,14 @@ def described(file: Path, name: str, values: Mapping[str, Any] | None) -> Descri
     try:
         ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
     except subprocess.TimeoutExpired:
-        raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
+        raise GraphFileError(
+            [Problem(Place(name), f"it did not return a launch description within {PYTHON_LIMIT:g} s")]
+        ) from None
     if values is not None:  # its output is for the user who starts it
         sys.stderr.write(ran.stderr.decode(errors="replace"))
     try:
         recorded: Description = json.loads(ran.stdout)
     except ValueError:
         last = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
-        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {last}")]) from None
+        raise GraphFileError([Problem(Place(name), f"it ended without a launch description: {last}")]) from None
     return recorded

@@ -151,7 +151,7 @@ def _described(path: str, tree: ast.Module) -> list[Any]:
     code = compile(tree, path, "exec")
     for node in ast.walk(tree):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Attribute) and node.value.attr in _ADDING:
-            text = f"{node.value.attr} is not called: what it adds goes into parentheses behind it"
+            text = f"{node.value.attr} is not called: put its argument in parentheses after it"
             RECORDING.problems.append({"line": node.lineno, "message": text})
     RECORDING.remarks += [{"line": line, "message": text} for line, text in early_uses(tree)]
     space: dict[str, Any] = {"__name__": "launch_file", "__file__": path}

@@ -68,5 +68,5 @@ def _why(process: Process) -> str:
         return f"process {pid} is stopped; to let it go on: kill -CONT {pid}"
     if hasattr(signal, "SIGUSR2"):
         process_tree.kill(pid, signal.SIGUSR2)  # its faulthandler dumps the stacks of all threads into the log
-        return f"its event loop is blocked; where, its log shows: {process.log}"
+        return f"its event loop is blocked; its log shows where: {process.log}"
     return f"its event loop is blocked; its log: {process.log}"

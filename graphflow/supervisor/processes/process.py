@@ -130,7 +130,7 @@ class Process:
             return f"its event loop has not answered for {time.monotonic() - self.silent_since:.0f} s"
         if self.exit is not None and self.exit.failed:
             return str(self.exit)
-        return f"its log is not written whole: {self.log_error}" if self.log_error else ""
+        return f"its log is incomplete: {self.log_error}" if self.log_error else ""
 
     def rows(self) -> list[NodeRow]:
         """Return one row per node, for `ps`."""

@@ -103,7 +103,7 @@ def main() -> None:
         note = json.loads(supervisor.readline())
         supervisor.read()  # until the supervisor's end closes the pipe
     log = str(Path(note["logs"]) / SUPERVISOR_LOG)
-    how = "an unknown cause, which only the guardian that was killed before would know"
+    how = "an unknown cause: the guardian, which would know, was killed before"
     clean_up(Charge(note["domain"], note["graph"], log), note["pid"], how, partial(left_of, note["logs"]))
 
 

@@ -88,7 +88,7 @@ def make_node(planned: PlannedNode, file: str) -> Node:
         node_logger(planned.name).setLevel(log_level(planned.log_level))
     node = make_within(cls, options, names.name)
     if not isinstance(node, Node):
-        raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")
+        raise GraphflowError(f"{planned.class_path} created a {type(node).__name__}, not a node")
     core = core_of(node)  # raises if the class did not call `Node.__init__`
     if isinstance(core, ManagedCore) and planned.lifecycle:
         core.target = LifecycleState[planned.lifecycle.upper()]

@@ -63,9 +63,7 @@ def test_xml(machine: Machine, tmp_path: Path) -> None:
 def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
     """The error has the reason, or the right command."""
     (tmp_path / "a.py").write_text("import os\nos._exit(3)\n")
-    assert "it ended before it had described itself" in machine.look(
-        "launch", "convert", str(tmp_path / "a.py"), code=2
-    )
+    assert "it ended without a launch description" in machine.look("launch", "convert", str(tmp_path / "a.py"), code=2)
     assert "does not exist" in machine.look("launch", "convert", "gone.xml", code=2)
     told = machine.look("launch", "turtlesim", "multisim.launch.py", code=2)
     assert "comes with graphflow has no launch files; to start its graph: graphflow up turtlesim" in told

@@ -96,7 +96,7 @@ class View:
 
 def test_learning(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first usable definition is taken; a known type is not fetched."""
-    monkeypatch.setattr(registry, "_given", {})
+    monkeypatch.setattr(registry, "_foreign", {})
     view: Any = View(InterfaceError("broken"), response(), response())
     learn(view, "/things", "std_msgs/msg/String")
     assert view.asked == []
@@ -112,7 +112,7 @@ def test_learning(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_learning_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
     """The error has every node's reason."""
-    monkeypatch.setattr(registry, "_given", {})
+    monkeypatch.setattr(registry, "_foreign", {})
     view: Any = View(InterfaceError("broken"))
     with pytest.raises(UnknownInterface, match=r"no interface package 'definitions_msgs'.*; broken"):
         learn(view, "/things", THING)
@@ -128,7 +128,7 @@ def test_what_is_asked() -> None:
 
 def test_how_many_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     """A few; and none who use another type of that name."""
-    monkeypatch.setattr(registry, "_given", {})
+    monkeypatch.setattr(registry, "_foreign", {})
     view: Any = View(*(InterfaceError("broken") for _ in range(6)))
     with pytest.raises(UnknownInterface):
         learn(view, "/things", THING)

@@ -108,7 +108,7 @@ async def test_what_cannot_be_loaded(container: str, name: str, told: str) -> No
     ("container", "number", "told"),
     [
         ("tutorial", 3, "tutorial has no component 3; there is 1 /a, 2 /b"),
-        ("/c", 1, "/c is all that /c has; to end it: graphflow stop /c"),
+        ("/c", 1, "/c is the last node of /c; to stop it: graphflow stop /c"),
     ],
 )
 async def test_what_cannot_be_unloaded(container: str, number: int, told: str) -> None:

@@ -96,7 +96,7 @@ async def test_a_node_is_loaded_listed_and_unloaded(graph: Graph) -> None:
         (
             "composition::Talker",
             {"parameters": [{"name": "greeting", "value": {"type": 4, "string_value": "x" * 4000}}]},
-            "too many for this way",
+            "too many parameters for this service",
         ),
     ],
 )

@@ -158,7 +158,7 @@ def test_a_file_that_is_run_apart_from_its_package(project: Path) -> None:
         (project / "machines" / f"{module}.py").write_text(f"{line}\n")
         with pytest.raises(GraphflowError) as caught:
             import_class(f"{module}:Robot")
-        way = f"; as a module of machines it finds that: graphflow run machines.{module}, in {project}"
+        way = f"; run it as a module of machines: graphflow run machines.{module}, in {project}"
         assert str(caught.value).endswith(way)
 
 

@@ -311,8 +311,8 @@ def test_a_full_disk_for_logs(machine: Machine, project: Path, small_disk: Path)
     text = "nodes:\n  /t: {class: nodes.talker:Talker, params: {rate: 1000.0}}\n  /b: {class: nodes.lab:Good}\n"
     machine.run("up", "-d", write(project, text), cwd=project)
     pids = {name: row["pid"] for name, row in rows(machine).items()}
-    machine.until(lambda: "its log is not written whole" in rows(machine)["/t"]["detail"], "the disk is full")
-    assert "its log is not written whole" in machine.look("ps")
+    machine.until(lambda: "its log is incomplete" in rows(machine)["/t"]["detail"], "the disk is full")
+    assert "its log is incomplete" in machine.look("ps")
     now = {name: (row["pid"], row["state"]) for name, row in rows(machine).items()}
     assert now == {name: (pid, "ready") for name, pid in pids.items()}
     assert "success=True" in machine.look("service", "call", "/b/ask", "std_srvs/srv/Trigger")

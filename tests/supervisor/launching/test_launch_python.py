@@ -39,8 +39,8 @@ def test_what_it_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("import os; os._exit(3)", "it ended before it had described itself"),
-        ("import time; time.sleep(60)", "it has not described itself within 0.5 s"),
+        ("import os; os._exit(3)", "it ended without a launch description"),
+        ("import time; time.sleep(60)", "it did not return a launch description within 0.5 s"),
     ],
 )
 def test_what_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, why: str) -> None:

@@ -245,7 +245,7 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
             "import launch\ndef generate_launch_description():\n    ld = launch.LaunchDescription()\n"
             "    ld.add_action\n    return ld\n",
             4,
-            "add_action is not called: what it adds goes into parentheses behind it",
+            "add_action is not called: put its argument in parentheses after it",
         ),
         (
             "import launch\ndef generate_launch_description():\n"

@@ -46,7 +46,7 @@ def test_what_is_wrong_with_it() -> None:
     process = Process("/p", [PROGRAM], "p.log")
     process.begin()
     process.state, process.log_error = State.READY, "the disk is full"
-    assert process.detail == "its log is not written whole: the disk is full"
+    assert process.detail == "its log is incomplete: the disk is full"
     process.state, process.exit, process.failed = State.ENDED, Exit(code=3), True
     assert (process.state_name, process.detail) == ("failed", "exit code 3")
     process.given_up = "started again 5 times within 30 s"

@@ -154,7 +154,7 @@ def test_lists_of_more_values_than_allowed() -> None:
 
 def test_values_of_types_from_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """May be fewer than those of types that are installed here."""
-    monkeypatch.setattr(registry, "_given", {"decode_msgs/msg/Rows": "std_msgs/Empty[] rows"})
+    monkeypatch.setattr(registry, "_foreign", {"decode_msgs/msg/Rows": "std_msgs/Empty[] rows"})
     for codec in (registry.codec, registry.plain_codec):
         with pytest.raises(DecodeError, match="more than 2,000,000 values"):
             codec("decode_msgs/msg/Rows").decode(b"\0\1\0\0" + (2_000_001).to_bytes(4, "little") + bytes(2_000_001))
