@@ -241,7 +241,8 @@ def messages_in(file: Path) -> list[tuple[str, object]]:
         text = found_text(file, bound=_MESSAGES_BOUND)
     except (OSError, UnicodeDecodeError) as error:
         raise UsageFault(f"{file}: {getattr(error, 'strerror', None) or 'is not UTF-8 text'}") from None
-    found, line = [], 0
+    found: list[tuple[str, object]] = []
+    line = 0
     for document in _BETWEEN_DOCUMENTS.split(text):
         if _CONTENT.search(document):
             first = line + document[: len(document) - len(document.lstrip())].count("\n") + 1

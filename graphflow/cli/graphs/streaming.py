@@ -24,7 +24,7 @@ from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, left_over
 from graphflow.system import is_portable, terminal_name
 
 if TYPE_CHECKING:
-    from graphflow.supervisor.control.clients import Event
+    from graphflow.supervisor.control.client import Event
 
 _POLL = 0.1
 """Seconds between reads of the log files."""

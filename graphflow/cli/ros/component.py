@@ -18,7 +18,7 @@ from graphflow.supervisor.control.client import ControlClient
 from graphflow.workspace.executables import EXECUTABLES
 
 if TYPE_CHECKING:
-    from graphflow.supervisor.control.clients import Event
+    from graphflow.supervisor.control.client import Event
 
 ANSWER_LIMIT = 30.0
 """Seconds that the supervisor has to answer."""

@@ -31,9 +31,7 @@ _MADE_BY = {"__init__", "__post_init__"}
 """Methods that run while an object is created."""
 
 
-def setters(
-    frames: list[Frame], waiter: AnyFuture | None, node: Subject, *, is_bounded: bool = False
-) -> Setters | None:
+def setters(frames: list[Frame], waiter: object, node: Subject, *, is_bounded: bool = False) -> Setters | None:
     """Return the code that can end a wait; None if it is not known.
 
     Args:

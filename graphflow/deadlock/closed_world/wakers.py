@@ -175,7 +175,7 @@ class Question:
 
     # waits for an object
 
-    def of_object(self, waiter: AnyFuture | None) -> Setters | None:
+    def of_object(self, waiter: object) -> Setters | None:
         """Return the setters of a primitive in the node's attributes; None if the wait is for no primitive."""
         waits = self._waits[::-1]
         if not waits and (wait := awaited_future(waiter)) is not None:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import socket
 from collections.abc import Iterator
-from typing import Any, Self
+from typing import Any, Self, TypeAlias
 
 from graphflow.errors import SupervisorError
 
+Event: TypeAlias = dict[str, Any]
+"""A line from a supervisor, one of the types in `messages`, tagged by `event`."""
 CONNECT_LIMIT = 5.0
 """Seconds for a connection, and by default for each event."""
 TCP = "tcp/"
@@ -64,7 +66,7 @@ class ControlClient:
         except OSError as error:
             raise SupervisorError(f"the supervisor has gone: {error.strerror}") from None
 
-    def receive(self, timeout: float | None = CONNECT_LIMIT) -> Iterator[dict[str, Any]]:
+    def receive(self, timeout: float | None = CONNECT_LIMIT) -> Iterator[Event]:
         """Yield events as they come, until the supervisor closes the connection.
 
         Args:
@@ -88,7 +90,7 @@ class ControlClient:
                 return
             self._buffer += data
 
-    def pending(self) -> list[dict[str, Any]] | None:
+    def pending(self) -> list[Event] | None:
         """Return the events that have arrived; None once the supervisor has closed the connection."""
         self._socket.setblocking(False)
         try:
@@ -102,6 +104,6 @@ class ControlClient:
         except ConnectionError:  # events that arrived before it still count
             return self._lines() or None
 
-    def _lines(self) -> list[dict[str, Any]]:
+    def _lines(self) -> list[Event]:
         *lines, self._buffer = self._buffer.split(b"\n")
         return [json.loads(line) for line in lines]

@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypedDict
+from typing import IO, TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypedDict
 
 from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.guardian import guard, leave_note
@@ -41,7 +41,7 @@ class Accepted(TypedDict):
     """The report of a graph that is being brought up."""
 
     ok: Literal[True]
-    run: dict[str, object]
+    run: dict[str, Any]
     """The run file's content."""
     classes: dict[str, str]
     """Places of the node classes, by class path."""
