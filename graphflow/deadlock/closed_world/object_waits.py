@@ -14,7 +14,7 @@ from graphflow.analysis.attribute_uses import Use
 from graphflow.analysis.class_source import ClassSource, Unknown, source_of
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.user_code import is_users, is_users_module, is_users_object
-from graphflow.deadlock.asyncio_frames import AnyFuture, is_inside, object_wait
+from graphflow.deadlock.asyncio_frames import is_inside, object_wait
 from graphflow.deadlock.closed_world.loops import Loop, is_library, only_pauses
 from graphflow.deadlock.closed_world.values import TOOLS
 from graphflow.deadlock.closed_world.wakers import (
