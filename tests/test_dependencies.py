@@ -36,7 +36,7 @@ NEEDED = modules(PROJECT_TABLE["dependencies"])
 OPTIONAL = {
     module
     for extra, requirements in PROJECT_TABLE["optional-dependencies"].items()
-    if extra != "dev"
+    if extra not in ("dev", "docs")
     for module in modules(requirements)
 }
 

@@ -152,7 +152,7 @@ async def test_fields_of_one_unit_share_an_axis(graph: Graph, monkeypatch: pytes
     ("about", "message"),
     [
         ("/speed.linear.q", "has no field 'q'"),
-        ("/speed.linear", "no number"),
+        ("/speed.linear", "is of type"),
         ("/nothing", "nobody publishes /nothing"),
     ],
 )
