@@ -63,7 +63,7 @@ def faults(env: Mapping[str, str], version: Callable[[str], str | None]) -> Iter
         yield from _sourced(env)
 
 
-def compiled_anew(module: ModuleType, *, writes: bool) -> Iterator[str]:
+def recompiled(module: ModuleType, *, writes: bool) -> Iterator[str]:
     """Explain why each start compiles graphflow, which makes it several times slower; nothing if it does not.
 
     Args:

@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-from graphflow.introspect.installation import compiled_anew, faults, requirement
+from graphflow.introspect.installation import faults, recompiled, requirement
 
 ROS = {"AMENT_PREFIX_PATH": "/opt/ros/jazzy", "ROS_DISTRO": "jazzy", "RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
 
@@ -108,13 +108,13 @@ def test_each_start_compiles_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(sys, "pycache_prefix", None)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     module = imported(tmp_path)
-    [text] = compiled_anew(module, writes=False)
+    [text] = recompiled(module, writes=False)
     assert "PYTHONDONTWRITEBYTECODE is set; compile it once" in text
     assert text.endswith("graphflow")
-    [text] = compiled_anew(module, writes=True)
+    [text] = recompiled(module, writes=True)
     assert f"{tmp_path / '__pycache__'} cannot be written" in text
 
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     kept = imported(tmp_path)
-    assert list(compiled_anew(kept, writes=True)) == []
-    assert list(compiled_anew(kept, writes=False)) == []
+    assert list(recompiled(kept, writes=True)) == []
+    assert list(recompiled(kept, writes=False)) == []

@@ -164,7 +164,9 @@ async def test_a_wrong_configuration_is_not_tried_again(tmp_path: Path) -> None:
     """At the start it stops the graph, as any node that does not come up."""
     async with graph(f"nodes: {{a: {{class: x:Y, restart: {QUICK}}}}}", tmp_path, "/a") as stage:
         stage.workers.end("/a", 78)
-        assert stage.told("exited")[0]["given_up"].startswith("a restart would not change exit code 78 (wrong configuration)")
+        assert stage.told("exited")[0]["given_up"].startswith(
+            "a restart would not change exit code 78 (wrong configuration)"
+        )
         assert await stage.ended() == 1
         assert stage.told("stopping")[0]["reason"] == "/a did not start"
 

@@ -96,7 +96,7 @@ def _here() -> tuple[Findings, Findings]:
     faults = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
     notes = {
         "rclpy": list(_whose_rclpy()),
-        "starts": list(installation.compiled_anew(installation, writes=not sys.dont_write_bytecode)),
+        "starts": list(installation.recompiled(installation, writes=not sys.dont_write_bytecode)),
     }
     return faults, notes
 

@@ -177,14 +177,14 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 return
             if not isinstance(error, DecodeError):
                 self.host.handler_failed(self._label, error)
-            request.reply_error(RemoteError(type(error).__name__, self._told(error)).to_payload())
+            request.reply_error(RemoteError(type(error).__name__, self._error_text(error)).to_payload())
             return
         asked = attachment.unpack(request.attachment[: attachment.SIZE])
         now = self.host.context.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
         self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
 
-    def _told(self, error: BaseException) -> str:
+    def _error_text(self, error: BaseException) -> str:
         """Return the error text for the client; a deadlock's full explanation is logged only here."""
         explain(error)
         head, _, rest = str(error).partition("\n")

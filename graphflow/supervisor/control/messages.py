@@ -111,7 +111,7 @@ class StepEnded(TypedDict):
     text: str
 
 
-class Said(TypedDict):
+class StepText(TypedDict):
     """The text of a `log` step."""
 
     event: Literal["said"]
@@ -169,7 +169,7 @@ GraphEvent: TypeAlias = (
     | NodeLeft
     | ProcessExited
     | StepEnded
-    | Said
+    | StepText
     | Up
     | Checked
     | Stopping

@@ -187,10 +187,10 @@ class Clock:
         if after is not None and callable(after):
             wanted = after
 
-            def told(jump: TimeJumpDictionary) -> None:
+            def adapted(jump: TimeJumpDictionary) -> None:
                 wanted(TimeJump(jump["clock_change"], Duration(nanoseconds=jump["delta"])))
 
-            return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=told)
+            return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=adapted)
         return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=after)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
@@ -268,12 +268,12 @@ class ROSClock(Clock):
     def _jump(self, change: ClockChange, delta_ns: int, move: Callable[[], None]) -> None:
         with self._moving:
             is_told = self._is_overridden or change is not ClockChange.ROS_TIME_NO_CHANGE
-            told = [j for j in list(self._jumps) if is_told and j.threshold.covers(change, delta_ns)]
-            for jump in told:
+            covered = [j for j in list(self._jumps) if is_told and j.threshold.covers(change, delta_ns)]
+            for jump in covered:
                 if jump.pre_callback is not None:
                     jump.pre_callback()
             move()
-            for jump in told:
+            for jump in covered:
                 if jump.post_callback is not None:
                     jump.post_callback({"clock_change": change, "delta": delta_ns})
         for watcher in list(self._watching):

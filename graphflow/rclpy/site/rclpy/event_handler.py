@@ -213,12 +213,12 @@ QoSEventHandler = EventHandler
 def dispatcher(handlers: list[EventHandler]) -> Callable[[QosEvent], None]:
     """Return the function that dispatches an endpoint's events to the handlers of their type."""
 
-    def told(event: QosEvent) -> None:
+    def adapted(event: QosEvent) -> None:
         for handler in handlers:
             if handler.kind == event.kind:
                 handler.notice(event)
 
-    return told
+    return adapted
 
 
 class SubscriptionEventCallbacks:
