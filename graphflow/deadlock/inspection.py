@@ -26,7 +26,7 @@ from graphflow.executor.allowance import Allowance
 from graphflow.executor.runner import Runner
 from graphflow.machines.waits.wait_graph_json import to_json
 from graphflow.names import did_you_mean
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 

@@ -17,7 +17,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import NodeCore, core_of
 from graphflow.runtime.node_services import TypeDescriptions
 from graphflow.runtime.part import Part
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 from graphflow.wire.liveliness import Entity
 
 P = TypeVar("P", bound=Part)

@@ -10,7 +10,8 @@ from typing import Any
 
 import zenoh
 
-from graphflow.transport.base import Closable, Inbox
+from graphflow.transport.base import Closable
+from graphflow.transport.inbox import Inbox
 
 logger = logging.getLogger("graphflow.transport")
 

@@ -24,7 +24,6 @@ from graphflow.domain import rendezvous_endpoint
 from graphflow.errors import TransportError
 from graphflow.graph.net import NetProfile, read_profile
 from graphflow.graph.zenoh_address import endpoint
-from graphflow.transport.base import Bell, Inbox
 from graphflow.transport.config import (
     CONNECT_VARIABLE,
     PROFILE_VARIABLE,
@@ -34,6 +33,7 @@ from graphflow.transport.config import (
     open_session,
 )
 from graphflow.transport.event_loop.foreign_threads import at_once
+from graphflow.transport.inbox import Bell, Inbox
 from graphflow.wire import net
 
 logger = logging.getLogger("graphflow.link")

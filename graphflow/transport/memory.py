@@ -16,7 +16,8 @@ from typing import NamedTuple, Protocol
 from weakref import WeakSet
 
 from graphflow.qos import Durability, Qos
-from graphflow.transport.base import Answer, Bell, Inbox, LargeSender, Payload, RingReceiver, Sender
+from graphflow.transport.base import Answer, LargeSender, Payload, RingReceiver, Sender
+from graphflow.transport.inbox import Bell, Inbox
 
 _zids = itertools.count(1)
 

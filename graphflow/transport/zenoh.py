@@ -24,7 +24,7 @@ import zenoh
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.qos import Durability, Qos, Reliability
-from graphflow.transport.base import EARLY, Answer, Bell, DeepInbox, Inbox, Payload, Sender
+from graphflow.transport.base import EARLY, Answer, Payload, Sender
 from graphflow.transport.config import (
     QUERY_LIMIT_MS,
     close_at_exit,
@@ -34,6 +34,7 @@ from graphflow.transport.config import (
 )
 from graphflow.transport.event_loop.foreign_threads import at_once
 from graphflow.transport.event_loop.loop import in_thread
+from graphflow.transport.inbox import Bell, DeepInbox, Inbox
 from graphflow.transport.latched import AskingAgain, load_ext
 from graphflow.transport.questions import Questions
 

@@ -12,7 +12,7 @@ from graphflow.rclpy import node_bridge
 from graphflow.rclpy.context_state import LOOP, ContextState, parse_only_ros
 from graphflow.rclpy.node_bridge import NodeBell
 from graphflow.runtime.node_core import core_of
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 
 
 def test_a_bell_wakes_the_executor_and_tells_the_inboxes_that_have_rung() -> None:

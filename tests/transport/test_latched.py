@@ -8,7 +8,7 @@ import pytest
 import zenoh
 
 from graphflow.qos import Durability, Qos
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 from graphflow.transport.rendezvous import free_endpoint
 from graphflow.transport.zenoh import ZenohSession
 from tests.conftest import LIMIT

@@ -9,7 +9,8 @@ import pytest
 
 from graphflow.qos import Durability, Qos
 from graphflow.testing.clock import settle
-from graphflow.transport.base import Answer, Inbox
+from graphflow.transport.base import Answer
+from graphflow.transport.inbox import Inbox
 from graphflow.transport.memory import MemorySession, Network
 
 

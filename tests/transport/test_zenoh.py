@@ -12,7 +12,8 @@ import pytest
 import zenoh
 
 from graphflow.qos import Durability, Qos
-from graphflow.transport.base import Answer, Inbox
+from graphflow.transport.base import Answer
+from graphflow.transport.inbox import Inbox
 from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine

@@ -11,7 +11,8 @@ import asyncio
 from collections import OrderedDict
 
 from graphflow.errors import printable
-from graphflow.transport.base import Answer, Closable, Inbox, Session
+from graphflow.transport.base import Answer, Closable, Session
+from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.process import GOALS, answer_key
 

@@ -24,18 +24,8 @@ from typing import Any, NamedTuple
 from graphflow.errors import DecodeError, RemoteError, ServerBusy
 from graphflow.executor.runner import BURST, Runner
 from graphflow.qos import SERVICES
-from graphflow.transport.base import (
-    BYTES_BOUND,
-    REQUESTS_BOUND,
-    Answer,
-    Closable,
-    Inbox,
-    Payload,
-    RequestInbox,
-    Sender,
-    Session,
-    size_of,
-)
+from graphflow.transport.base import Answer, Closable, Payload, Sender, Session
+from graphflow.transport.inbox import BYTES_BOUND, REQUESTS_BOUND, Inbox, RequestInbox, size_of
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
 

@@ -14,7 +14,8 @@ from graphflow.runtime.endpoints.intra_process import Handed, Receiver
 from graphflow.runtime.endpoints.shared_memory import RingReading
 from graphflow.runtime.endpoints.subscriptions import unreadable
 from graphflow.runtime.part import Host
-from graphflow.transport.base import Inbox, Sender, open_inbox
+from graphflow.transport.base import Sender
+from graphflow.transport.inbox import Inbox, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind

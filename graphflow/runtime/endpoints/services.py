@@ -25,7 +25,8 @@ from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.part import Host
-from graphflow.transport.base import BYTES_BOUND, REQUESTS_BOUND, RequestInbox, request_size
+from graphflow.transport.base import request_size
+from graphflow.transport.inbox import BYTES_BOUND, REQUESTS_BOUND, RequestInbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 

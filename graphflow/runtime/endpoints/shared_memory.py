@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from graphflow.qos import Durability, History
-from graphflow.transport.base import KEEP_ALL_BOUND, Closable, Inbox, RingReceiver, Session
+from graphflow.transport.base import Closable, RingReceiver, Session
+from graphflow.transport.inbox import KEEP_ALL_BOUND, Inbox
 from graphflow.wire.liveliness import Entity
 from graphflow.wire.shared_memory import Reader, parse_reader, reader_token, readers_key, ring_key
 

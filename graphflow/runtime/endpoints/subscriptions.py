@@ -24,7 +24,7 @@ from graphflow.runtime.endpoints.shared_memory import RingReading
 from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.mistakes.echoes import Echo
 from graphflow.runtime.part import Host
-from graphflow.transport.base import BYTES_BOUND, DeepInbox, Inbox, open_inbox
+from graphflow.transport.inbox import BYTES_BOUND, DeepInbox, Inbox, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind

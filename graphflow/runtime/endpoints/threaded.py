@@ -24,17 +24,8 @@ from graphflow.runtime.endpoints.service_client import error_of, sequence_of
 from graphflow.runtime.endpoints.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.part import Host
-from graphflow.transport.base import (
-    REQUESTS_BOUND,
-    Answer,
-    Caller,
-    Inbox,
-    Request,
-    RequestInbox,
-    Rings,
-    open_inbox,
-    request_size,
-)
+from graphflow.transport.base import Answer, Caller, Request, request_size
+from graphflow.transport.inbox import REQUESTS_BOUND, Inbox, RequestInbox, Rings, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Kind

@@ -12,8 +12,9 @@ from typing import Any
 
 import zenoh
 
-from graphflow.transport.base import Closable, Inbox, Sender
+from graphflow.transport.base import Closable, Sender
 from graphflow.transport.event_loop.foreign_threads import at_once
+from graphflow.transport.inbox import Inbox
 from graphflow.transport.shared_memory.ring import (
     LEAST_SLOTS,
     MOST_READERS,

@@ -14,7 +14,7 @@ from graphflow.runtime.endpoints.direct_calls import EARLY_BOUND, ServerLines
 from graphflow.runtime.endpoints.service_client import ServiceClient
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 

@@ -16,7 +16,7 @@ from graphflow.msgs.nav_msgs.srv import SetMap
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.endpoints.service_client import ServiceClient
 from graphflow.testing import Graph
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Kind
 from tests.runtime.cast import Adder, Log, SlowAdder, begun, client_of

@@ -26,7 +26,7 @@ from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
-from graphflow.transport import base
+from graphflow.transport import inbox as inbox_module
 from graphflow.wire import attachment
 from tests.runtime.cast import Log, Speaker, nothing
 
@@ -281,7 +281,7 @@ async def test_a_subscription_that_nobody_reads_is_told(graph: Graph, caplog: py
 
 async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """KEEP_ALL is not without end: beyond its bound messages are lost and counted."""
-    monkeypatch.setattr(base, "KEEP_ALL_BOUND", 50)
+    monkeypatch.setattr(inbox_module, "KEEP_ALL_BOUND", 50)
     node = Node("n")
     subscribed = node.create_subscription(Int32, "x", None, Qos(depth=1, history=History.KEEP_ALL))
     await graph.start(node)
@@ -322,7 +322,7 @@ async def test_a_deep_queue_that_is_full_is_told(
     graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Once, when its bytes are too many: those of messages from elsewhere, and of the same process."""
-    monkeypatch.setattr(base, "BYTES_BOUND", 10_000)
+    monkeypatch.setattr(inbox_module, "BYTES_BOUND", 10_000)
     node, gate = Node("n"), asyncio.Event()
 
     async def slow(message: String) -> None:

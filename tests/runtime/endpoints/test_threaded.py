@@ -22,7 +22,7 @@ from graphflow.runtime.endpoints.threaded import (
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
-from graphflow.transport.base import Inbox
+from graphflow.transport.inbox import Inbox
 
 
 class Ring:

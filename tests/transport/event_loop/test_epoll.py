@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from graphflow.system import is_portable
-from graphflow.transport.base import Bell, Inbox
 from graphflow.transport.event_loop.loop import run
+from graphflow.transport.inbox import Bell, Inbox
 
 epoll: Any = pytest.importorskip(
     "graphflow.transport.event_loop.epoll", reason="only Linux has epoll", exc_type=ImportError
