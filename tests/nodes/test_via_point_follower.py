@@ -10,6 +10,7 @@ from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from nodes.turtlesim import TurtleSim
 from nodes.via_point_follower import ViaPointFollower
+from tests.cases import slow
 
 
 def test_it_has_what_its_parent_has() -> None:
@@ -21,6 +22,7 @@ def test_it_has_what_its_parent_has() -> None:
     assert {e.name for e in interface.endpoints} == {"cmd_vel", "pose"}
 
 
+@slow
 async def test_it_visits_all_six_points_in_order_and_begins_again(
     graph: Graph, caplog: pytest.LogCaptureFixture
 ) -> None:

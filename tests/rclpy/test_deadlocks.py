@@ -118,6 +118,7 @@ def test_the_remedy_of_a_ring_ends_it(machine: Machine, case: tuple[str, str]) -
 NOBODY = [("calls", "spin_until_future_complete"), ("polls", "spin_until_future_complete"), ("sleeps", "target=")]
 
 
+@slow
 @pytest.mark.parametrize("case", some(NOBODY, NOBODY[0]), ids=lambda case: case[0])
 def test_nobody_spins(machine: Machine, case: tuple[str, str]) -> None:
     """The main thread waits for what only it, or another thread, could bring about by spinning."""

@@ -11,6 +11,7 @@ from graphflow.msgs.diagnostic_msgs.srv import SelfTest
 from graphflow.supervisor.processes.process import Process
 from graphflow.supervisor.status import Mirror
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.conftest import Machine
 from tests.supervisor.control.test_components import node
 
@@ -54,6 +55,7 @@ def test_any_name_of_a_graph_gives_a_legal_one(graph_name: str, name: str) -> No
     assert Mirror(graph_name, list).full_name == name
 
 
+@slow
 @pytest.mark.real
 def test_a_running_graph_is_mirrored(machine: Machine) -> None:
     """A late subscription gets the states, and a change is told; the node does not show unless it is asked for."""

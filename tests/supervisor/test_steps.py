@@ -50,6 +50,7 @@ def test_a_failed_step_stops_the_graph(machine: Machine, project: Path, call: st
     nothing_is_left(machine, [])
 
 
+@slow
 @pytest.mark.real
 def test_a_message_is_said_when_it_is_due(machine: Machine, project: Path) -> None:
     """In the folder of the start and in order, also after the end of a program."""

@@ -176,6 +176,7 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
     )
 
 
+@slow
 def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """It waits for time, and its clock does not move; a busy test continues."""
     monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.4)

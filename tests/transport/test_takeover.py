@@ -72,6 +72,7 @@ def test_the_others_go_on_when_the_rendezvous_is_killed(machine: Machine) -> Non
         machine.until(lambda expected=expected: expected <= set(nodes(machine)), "all are seen")  # type: ignore[misc]
 
 
+@slow
 def test_a_node_that_is_killed_disappears_at_once(machine: Machine) -> None:
     """Its tokens go with its connection; no list shows a ghost."""
     talker, listener = machine.start("run", *TALKER), machine.start("run", *LISTENER)

@@ -6,6 +6,7 @@ import pytest
 
 from graphflow.tui.pane_area import Frame, Title, Workspace, _cut
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -23,6 +24,7 @@ async def test_a_click_focuses_a_pane() -> None:
         await s.until(lambda: s.console.window.focused == b)
 
 
+@slow
 @pytest.mark.parametrize(("key", "axis"), [("percent_sign", "columns"), ("quotation_mark", "rows")])
 async def test_borders_are_dragged(key: str, axis: str) -> None:
     """The line between columns can be dragged, and the title of the lower of two rows."""

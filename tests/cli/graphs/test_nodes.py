@@ -49,6 +49,7 @@ def test_the_last_node(machine: Machine) -> None:
     assert machine.look("stop", "/a").startswith("/a has ended")
 
 
+@slow
 def test_a_node_that_runs_by_itself(machine: Machine) -> None:
     """The error says in which process a node outside all graphs runs."""
     node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")

@@ -6,7 +6,7 @@ import signal
 
 import pytest
 
-from tests.cases import some
+from tests.cases import slow, some
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -15,6 +15,7 @@ pytestmark = pytest.mark.real
 WORDS = [("router",), ("run", "rmw_zenoh_cpp", "rmw_zenohd")]
 
 
+@slow
 @pytest.mark.parametrize("words", some(WORDS, WORDS[1]))
 def test_it_is_the_rendezvous(machine: Machine, words: tuple[str, ...]) -> None:
     """The router starts as rendezvous, also under ROS 2's name; a second one waits to take over."""

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_picture(machine: Machine, tmp_path: Path) -> None:
     """turtlesim's drawing becomes a picture; impossible requests are explained."""
     machine.run("up", "-d", "turtlesim", cwd=tmp_path)

@@ -32,6 +32,7 @@ def test_addresses_that_viewers_can_open() -> None:
     ]
 
 
+@slow
 @pytest.mark.real
 def test_a_graph_that_runs(standing: Machine) -> None:
     """Its topics are there; Ctrl-C ends it."""

@@ -9,6 +9,7 @@ import pytest
 
 from graphflow.cli.ros.launch import _files_below
 from graphflow.graph.resolve import load
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
@@ -88,6 +89,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
     """`launch` starts a file, or a file of a package, with ROS 2's options."""
     folder = tmp_path / "my_robot"

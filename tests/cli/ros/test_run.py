@@ -36,6 +36,7 @@ def test_a_script_that_runs_a_node_ends_as_cleanly(machine: Machine) -> None:
     assert "Traceback" not in node.text
 
 
+@slow
 def test_remaps_and_namespace_reach_the_graph(machine: Machine) -> None:
     """__ns, __node, a remap rule and a parameter take effect, with or without --ros-args."""
     node = machine.start(

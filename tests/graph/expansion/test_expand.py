@@ -11,6 +11,7 @@ from graphflow.graph.expansion import expand
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import load, resolve
 from graphflow.markup import source
+from tests.cases import slow
 
 ENV = {"USER": "ada"}
 
@@ -145,6 +146,7 @@ SUMS = "args:\n" + "".join(
 )
 
 
+@slow
 @pytest.mark.parametrize(
     ("text", "said"),
     [

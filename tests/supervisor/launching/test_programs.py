@@ -101,6 +101,7 @@ def test_a_program_is_like_a_node(machine: Machine, project: Path) -> None:
     assert log.read_text().count("cleaned up") == (0 if is_portable() and os.name == "nt" else 2)
 
 
+@slow
 @pytest.mark.skipif(is_portable(), reason="the portable way has no guardian")
 @pytest.mark.parametrize("victim", some(["supervisor", "preload"], "preload"))
 def test_it_ends_with_the_graph(machine: Machine, project: Path, victim: str) -> None:
@@ -179,6 +180,7 @@ def generate_launch_description():
 """
 
 
+@slow
 @pytest.mark.parametrize("start", some(["graph file", "launch file"], "graph file"))
 def test_an_executable_of_a_package_is_a_node(machine: Machine, project: Path, start: str) -> None:
     """It has its name, namespace, remaps and parameters, is logged, asked for parameters, and started again."""

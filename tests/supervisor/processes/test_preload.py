@@ -40,6 +40,7 @@ def test_the_preload_process_has_one_thread(machine: Machine, project: Path) -> 
     machine.look("down")
 
 
+@slow
 @pytest.mark.real
 def test_fresh_interpreter_for_variables_that_need_one(machine: Machine, project: Path) -> None:
     """`env:` with PYTHON..., LD_... or MALLOC_... starts the node in an interpreter of its own."""

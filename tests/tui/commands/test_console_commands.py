@@ -151,6 +151,7 @@ async def test_stopping(keys: tuple[str, ...]) -> None:
         assert s.console.return_value == "stop"
 
 
+@slow
 async def test_ctrl_c_never_stops_the_graph() -> None:
     """Typed twice, it only opens the question; in a prompt it interrupts the command or clears the line."""
     async with stage(Content("nodes"), Content("prompt")) as s:

@@ -8,6 +8,7 @@ import pytest
 
 from graphflow.tui.panes import Content
 from graphflow.tui.tty import clipboard
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -56,6 +57,7 @@ def test_a_copy(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "timed out" in clipboard.copy_with(("hang",), "")
 
 
+@slow
 async def test_what_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only an external program confirms the copy."""
     async with stage(Content("nodes")) as s:

@@ -144,6 +144,7 @@ async def test_a_change_that_ends_one_of_two() -> None:
         assert rows[0].startswith("   done here: allow 2 runs")
 
 
+@slow
 async def test_a_race(graph: Graph) -> None:
     """The whole report is shown; enter opens the line known from /rosout, if there is one."""
     async with stage(Content("groups"), graph=graph) as s:

@@ -8,6 +8,7 @@ from graphflow.console.views import VIEWS
 from graphflow.tui.commands.actions import console_actions, keys_of
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -24,6 +25,7 @@ async def test_every_action_is_in_it() -> None:
             assert f"  {keys_of(action, 'ctrl+b'):22} {action.title}" in text
 
 
+@slow
 async def test_long_lines_go_on_beside_the_keys() -> None:
     """Lines that do not fit into 80 columns are wrapped."""
     async with stage(Content("nodes"), size=(80, 24)) as s:
@@ -35,6 +37,7 @@ async def test_long_lines_go_on_beside_the_keys() -> None:
         assert next(line for line in lines if "TRANSITION" in line).index("set") == keys.index("change")
 
 
+@slow
 async def test_it_is_found_by_typing() -> None:
     """Keys, titles and commands are searched; the view that opened the help comes first."""
     async with stage(Content("nodes"), size=(100, 40)) as s:

@@ -13,6 +13,7 @@ from textual.widgets import Input
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.log import place_in
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import record, stage
 
@@ -129,6 +130,7 @@ async def test_going_to_the_next_warning_and_to_the_source() -> None:
         assert str(s.view.content) == "source nodes/arm.py:7"
 
 
+@slow
 async def test_the_source_of_a_line_that_names_none(graph: Graph) -> None:
     """The source of other lines comes from /rosout."""
     node = Talker()

@@ -136,6 +136,7 @@ async def test_a_colon_opens_the_command_line() -> None:
         await s.until("Any verb of graphflow; or a view")
 
 
+@slow
 async def test_what_was_asked_for_by_a_key_is_read_from_the_top() -> None:
     """The output of a command started by a key is shown from the top; that of later commands is followed."""
     async with stage(Content("nodes"), size=(80, 20)) as s:

@@ -6,6 +6,7 @@ import pytest
 from textual.widgets import Input, OptionList
 
 from graphflow.tui.widgets.dialogs import SHOWN, Ask, AskLine, Choice, Item, Pick
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -51,6 +52,7 @@ async def test_picking_by_parts_of_a_name() -> None:
         assert answers == [417]
 
 
+@slow
 async def test_what_fits_best_comes_first() -> None:
     """An exact match comes first, then words, beginnings and parts."""
     texts = ["detail", "catalogue", "log /arm", "log", "logger", "x"]

@@ -12,6 +12,7 @@ from textual.widget import Widget
 
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets.line_view import MAX_PARTS, LineView, breaks
+from tests.cases import slow
 from tests.tui.stage import Stage, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -88,6 +89,7 @@ def test_a_row_that_is_much_too_long() -> None:
     assert len([*breaks("a" * 100_000, 10)]) == MAX_PARTS
 
 
+@slow
 async def test_moving() -> None:
     """The cursor moves by lines, by pages, and to both ends."""
     async with lines() as (s, made):

@@ -40,6 +40,7 @@ async def test_a_narrow_pane(graph: Graph) -> None:
         await s.until("/talker  [log] 2 of 6")
 
 
+@slow
 async def test_it_follows_the_cursor(graph: Graph) -> None:
     """The view begins with all logs; then it shows the selected node in the chosen tab, without another pane."""
     await graph.start(Talker())
