@@ -20,8 +20,8 @@ from typing import Self
 from graphflow import __version__
 from graphflow.bag.contents import Contents, Record, Topic, together
 from graphflow.bag.formats import metadata
-from graphflow.bag.formats.bag_file import Part
 from graphflow.bag.formats.db3_writer import Db3Part
+from graphflow.bag.formats.file_writer import FileWriter
 from graphflow.bag.formats.mcap_writer import McapWriter
 from graphflow.bag.formats.metadata import FileContents
 from graphflow.bag.recording.latched import NO_REPEATS, LatchedMessages, Repeats
@@ -87,7 +87,7 @@ class _Stream:
         self._file.close()
 
 
-class _McapPart(Part):
+class _McapPart(FileWriter):
     """An MCAP file."""
 
     def __init__(self, path: Path, compression: str, make_room: Callable[[], bool]) -> None:
@@ -278,7 +278,7 @@ class BagWriter:
             logger.warning("%s", error)
             self._part.abandon()
 
-    def _next(self) -> Part:
+    def _next(self) -> FileWriter:
         with _bag_errors(self.folder):
             name = f"{self.folder.name}_{len(self._done)}"
             if self._storage == "sqlite3":

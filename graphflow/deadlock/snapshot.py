@@ -29,8 +29,8 @@ from graphflow.deadlock.closed_world.wakers import Setters, cancellers, entries_
 from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.startup_waits import start_of, unopened
 from graphflow.deadlock.vertices import Item, Vertices, arrived_calls, call_of
+from graphflow.deadlock.wait_paths import Subtask, WaitPath, gathered, limit_of, subtasks
 from graphflow.deadlock.watchdog import Watchdog
-from graphflow.deadlock.ways import Subtask, Way, gathered, limit_of, subtasks
 from graphflow.executor.activity import Activity
 from graphflow.executor.clock import WallClock
 from graphflow.executor.runner import Run, Runner
@@ -209,7 +209,7 @@ class _Builder:
             below: The activity as a task below another one, whose deadlines bound its wait, too.
         """
         self._pause, self._limit_ns = None, below and below.limit_ns
-        wait = self._condition(task, Way(node, task, is_bounded=below is not None and below.is_bounded))
+        wait = self._condition(task, WaitPath(node, task, is_bounded=below is not None and below.is_bounded))
         self._seen.add((id_, wait))
         age, left = self._times(id_, wait, task)
         found = where(self._frames_of(task), node.instance, self._pause)
@@ -260,7 +260,7 @@ class _Builder:
 
     # conditions
 
-    def _condition(self, task: TaskLike, way: Way) -> Condition:
+    def _condition(self, task: TaskLike, way: WaitPath) -> Condition:
         """Return the condition of a task or an activity to which `way` leads."""
         if id(task) in way.tasks or task.done():  # tasks that await each other are no handlers' concern
             return FREE
@@ -275,7 +275,7 @@ class _Builder:
         frames = self._frames_of(task)
         limit_ns = self._limit_of(task)
         is_bounded = way.is_bounded or limit_ns is not None or aio.may_give_up(task)
-        way = Way(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
+        way = WaitPath(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
         if limit_ns is not None:
             self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
         # The innermost joint wait decides: its waiter is a future of asyncio's own that says nothing by itself.
@@ -285,7 +285,7 @@ class _Builder:
                 return self._of_joint_wait(together, way)
         return self._of_future(waiter, way)
 
-    def _of_joint_wait(self, wait: aio.JointWait, way: Way) -> Condition:
+    def _of_joint_wait(self, wait: aio.JointWait, way: WaitPath) -> Condition:
         ends = [f for f in wait.tasks if f.done() and (wait.wants == "any" or (wait.fails_early and aio.has_failed(f)))]
         if ends:
             return FREE  # the wait is over, and the waiter's next step is due
@@ -305,7 +305,7 @@ class _Builder:
     def _limit_of(self, task: TaskLike) -> int | None:
         return limit_of(task, self._now_ns, self._process.loop.time())
 
-    def _of_future(self, future: AnyFuture, way: Way) -> Condition:
+    def _of_future(self, future: AnyFuture, way: WaitPath) -> Condition:
         """Return the condition that a future stands for: by the ledger, by asyncio, or by the source."""
         ledger = self._ledger
         if future in ledger.threads:
@@ -326,7 +326,7 @@ class _Builder:
             return self._of_asyncio(future, way)
         return FREE
 
-    def _of_thread(self, future: AnyFuture, way: Way) -> Condition:
+    def _of_thread(self, future: AnyFuture, way: WaitPath) -> Condition:
         """Return the condition of a thread, which may wait for the loop in turn."""
         ledger = self._ledger
         sent = next((task for task in map(aio.sent_to_loop, reversed(way.frames)) if task is not None), None)
@@ -335,7 +335,7 @@ class _Builder:
         asking = ledger.asking.get(ledger.threads[future].ident or 0)
         return self._closed_world(way, None) if asking is None else self._condition(asking, way)
 
-    def _of_asyncio(self, future: AnyFuture, way: Way) -> Condition:
+    def _of_asyncio(self, future: AnyFuture, way: WaitPath) -> Condition:
         """Return the condition of a task, a `gather`, a `shield`, or a future that the node's code must set."""
         if isinstance(future, TaskLike):
             known = self._join(future)
@@ -353,7 +353,7 @@ class _Builder:
                 return Join(self._vertices.task_id(task))
         return None
 
-    def _closed_world(self, way: Way, waiter: AnyFuture | None) -> Condition:
+    def _closed_world(self, way: WaitPath, waiter: AnyFuture | None) -> Condition:
         """Return the wait for a change that, by the source code, only handlers of the node make."""
         found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
         if found is None or found.is_shared(way.node, self._nodes) or any(task.done() for task in found.tasks):
@@ -364,7 +364,7 @@ class _Builder:
             ends.insert(0, self._set_by(found, way))
         return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
 
-    def _or_cancelled(self, condition: Condition, thing: object, way: Way) -> Condition:
+    def _or_cancelled(self, condition: Condition, thing: object, way: WaitPath) -> Condition:
         """Return the wait for a task or goal, or for one of the node's handlers to cancel it."""
         if condition is FREE:
             return FREE
@@ -374,7 +374,7 @@ class _Builder:
             return FREE
         return condition if found is None else AnyOf((condition, self._set_by(found, way)))
 
-    def _set_by(self, found: Setters, way: Way) -> Condition:
+    def _set_by(self, found: Setters, way: WaitPath) -> Condition:
         """Return the wait for setters: by the queues of their handlers, and by the activities that run them."""
         node = way.node
         runners = [r for n, r in self._runners if n is node and handler_of(r) in found.handlers]
@@ -446,7 +446,7 @@ class _Builder:
     def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Item) -> str:
         stack = stack_of(self._ledger.thread)
         id_ = self._vertices.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
-        way = Way(node, run, tuple(stack))
+        way = WaitPath(node, run, tuple(stack))
         self._pause = None
         if self._ledger.blocking is None:
             wait = self._closed_world(way, None)

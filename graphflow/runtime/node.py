@@ -51,7 +51,7 @@ from graphflow.runtime.mistakes.doubled import warn_doubled
 from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.rclpy_words import OF_PARTS, AttributeHints, with_argument_hints
 from graphflow.runtime.mistakes.repeats import warn_duplicate
-from graphflow.runtime.mistakes.source.shadowing import check_names
+from graphflow.runtime.mistakes.source.shadowing import check_bound_once
 from graphflow.runtime.node_arguments import rules_of
 from graphflow.runtime.node_core import NodeCore
 from graphflow.wire.attachment import MessageInfo
@@ -130,7 +130,7 @@ class Node(AttributeHints):
     def interface(cls) -> Interface:
         """Return the class's declarations, and the endpoints its methods are seen to create, without making a node."""
         check_module(cls)
-        check_names(cls)  # type: ignore[arg-type]
+        check_bound_once(cls)  # type: ignore[arg-type]
         return with_made(cls, declared.interface_of(cls))
 
     def __init_subclass__(cls, **kwargs: object) -> None:

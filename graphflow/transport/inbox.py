@@ -31,7 +31,7 @@ STAND_INS = 10
 """Limit of refused items kept for a response, as a multiple of the queue's depth."""
 
 
-class Rings(Protocol):
+class Wakeup(Protocol):
     """The wake-up of consumers of inboxes: the loop, by a `Bell`, or other threads."""
 
     rung: deque[Inbox]
@@ -114,7 +114,7 @@ class Inbox:
 
     __slots__ = ("_bell", "_losses", "_tell_at", "dropped", "items", "ready", "ringing")
 
-    def __init__(self, bell: Rings, depth: int | None, ready: Callable[[], None]) -> None:
+    def __init__(self, bell: Wakeup, depth: int | None, ready: Callable[[], None]) -> None:
         self.items: deque[Any] = deque(maxlen=depth)
         self.ready = ready
         self.dropped = 0
@@ -165,7 +165,7 @@ class DeepInbox(Inbox):
 
     __slots__ = ("_at_most",)
 
-    def __init__(self, bell: Rings, depth: int, ready: Callable[[], None]) -> None:
+    def __init__(self, bell: Wakeup, depth: int, ready: Callable[[], None]) -> None:
         super().__init__(bell, depth, ready)
         self._at_most = 0
         """Upper limit of the queued bytes, assuming that nothing was taken since the last count."""
@@ -206,7 +206,7 @@ class RequestInbox(Inbox):
 
     def __init__(
         self,
-        bell: Rings,
+        bell: Wakeup,
         depth: int,
         ready: Callable[[], None],
         size: Callable[[Any], int],
@@ -246,7 +246,7 @@ def size_of(item: Any) -> int:
     return len(item.payload)
 
 
-def open_inbox(qos: Qos, bell: Rings, ready: Callable[[], None]) -> Inbox:
+def open_inbox(qos: Qos, bell: Wakeup, ready: Callable[[], None]) -> Inbox:
     """Return the inbox for a subscription."""
     bound = KEEP_ALL_BOUND if qos.history is History.KEEP_ALL else qos.depth
     return DeepInbox(bell, bound, ready) if bound > DEEP else Inbox(bell, bound, ready)

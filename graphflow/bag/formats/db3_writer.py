@@ -15,7 +15,7 @@ from pathlib import Path
 
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.formats import metadata
-from graphflow.bag.formats.bag_file import Part
+from graphflow.bag.formats.file_writer import FileWriter
 from graphflow.wire.profile import wire_profile
 
 PIECE = 1 << 20
@@ -34,7 +34,7 @@ CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 _VERSION = 4
 
 
-class Db3Part(Part):
+class Db3Part(FileWriter):
     """A file during writing.
 
     Args:

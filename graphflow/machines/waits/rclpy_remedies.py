@@ -17,7 +17,7 @@ _REENTRANT = "callback_group=ReentrantCallbackGroup()"
 _EXCLUSIVE = "callback_group=MutuallyExclusiveCallbackGroup()"
 
 
-class Way(NamedTuple):
+class Member(NamedTuple):
     """A member of a ring."""
 
     edge: Edge
@@ -26,17 +26,17 @@ class Way(NamedTuple):
     """Reason why it cannot proceed itself."""
 
 
-def members_of(deadlock: Deadlock, graph: WaitGraph) -> tuple[list[Way], list[Way]]:
+def members_of(deadlock: Deadlock, graph: WaitGraph) -> tuple[list[Member], list[Member]]:
     """Return the members whose callback group or thread another one wants, and those that block their own responses.
 
     The latter wait for a response whose delivery needs what they hold: no change elsewhere would free them.
     """
-    found = [Way(deadlock.edges[i - 1], edge) for i, edge in enumerate(deadlock.edges)]
+    found = [Member(deadlock.edges[i - 1], edge) for i, edge in enumerate(deadlock.edges)]
     holding = [way for way in found if way.edge.group and graph.groups[way.edge.group].sort]
     return holding, [way for way in found if _keeps_its_answer_out(way, graph)]
 
 
-def _keeps_its_answer_out(way: Way, graph: WaitGraph) -> bool:
+def _keeps_its_answer_out(way: Member, graph: WaitGraph) -> bool:
     holder = graph.activities[way.edge.to]
     reply = _reply_queue(holder, way.wait, graph)
     if reply is None or _is_spun_inside(holder, reply, graph):
@@ -44,7 +44,7 @@ def _keeps_its_answer_out(way: Way, graph: WaitGraph) -> bool:
     return any(group.id in holder.holds for group in _full(reply, graph))
 
 
-def in_rclpys_words(holding: Sequence[Way], alone: Sequence[Way], graph: WaitGraph) -> Iterator[str]:
+def in_rclpys_words(holding: Sequence[Member], alone: Sequence[Member], graph: WaitGraph) -> Iterator[str]:
     """Yield the remedies: for one member, or for all that block their own responses."""
     for way in holding:
         needs = [graph.groups[name] for name in _needs(way.edge, graph)]
@@ -88,7 +88,7 @@ def _joined(ways: Sequence[Sequence[str]]) -> Iterator[str]:
         yield from rest
 
 
-def _spun(way: Way, graph: WaitGraph) -> Iterator[str]:
+def _spun(way: Member, graph: WaitGraph) -> Iterator[str]:
     """Yield the remedies for a thread that waits while nothing spins the node."""
     holder, place = graph.activities[way.edge.to], graph.activities[way.edge.to].line
     reply = _reply_queue(holder, way.wait, graph)
@@ -191,7 +191,7 @@ def _is_spun_inside(holder: ActivityView, reply: QueueView, graph: WaitGraph) ->
     return bool(mine and wanted) and mine.isdisjoint(wanted)
 
 
-def _apart(ways: Sequence[Way], graph: WaitGraph) -> list[str]:
+def _apart(ways: Sequence[Member], graph: WaitGraph) -> list[str]:
     """Return the clauses that let the awaited callbacks run beside the holders: other groups, more threads."""
     moved: list[tuple[ActivityView, bool]] = []
     clients: list[str] = []

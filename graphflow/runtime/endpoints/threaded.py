@@ -25,7 +25,7 @@ from graphflow.runtime.endpoints.service_events import Introspection, ServiceEve
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.part import Host
 from graphflow.transport.base import Answer, Caller, Request, request_size
-from graphflow.transport.inbox import REQUESTS_BOUND, Inbox, RequestInbox, Rings, open_inbox
+from graphflow.transport.inbox import REQUESTS_BOUND, Inbox, RequestInbox, Wakeup, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Kind
@@ -87,7 +87,7 @@ class ThreadedSubscription(TopicSubscription[Any]):
         type_: Any,
         name: str,
         qos: Qos,
-        bell: Rings,
+        bell: Wakeup,
         ready: Callable[[], None],
         on_event: OnEvent | None = None,
     ) -> None:
@@ -166,7 +166,7 @@ class ThreadedService(Endpoint):
 
     kind = Kind.SERVICE
 
-    def __init__(self, host: Host, type_: Any, name: str, qos: Qos, bell: Rings, ready: Callable[[], None]) -> None:
+    def __init__(self, host: Host, type_: Any, name: str, qos: Qos, bell: Wakeup, ready: Callable[[], None]) -> None:
         super().__init__(host, type_.NAME, name, qos)
         self.inbox = RequestInbox(bell, REQUESTS_BOUND, ready, request_size, unanswered)
         self.inbox.tell_losses(lambda: warn_of_refused(self.inbox, f"{name} of {host.full_name}: requests"), 1)
@@ -258,7 +258,7 @@ class ThreadedClient(Endpoint):
         type_: Any,
         name: str,
         qos: Qos,
-        bell: Rings,
+        bell: Wakeup,
         ready: Callable[[], None],
         changed: Callable[[], None],
     ) -> None:

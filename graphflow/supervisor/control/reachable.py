@@ -8,7 +8,7 @@ from pathlib import Path
 
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control.server import ControlServer
-from graphflow.supervisor.processes.successor import Guard
+from graphflow.supervisor.processes.successor import GuardianWatch
 from graphflow.supervisor.rundir import GraphRun, RunDirectory
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.system import is_portable
@@ -24,7 +24,7 @@ async def keep_reachable(
 
     It also replaces a guardian that has ended, which only the supervisor can notice.
     """
-    guard = Guard(run)
+    guard = GuardianWatch(run)
     while True:
         if text := guard.check():
             supervisor.note(text)

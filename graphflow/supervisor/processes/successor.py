@@ -32,7 +32,7 @@ INTENSITY = Backoff("always", max_restarts=3, within=60.0)
 _COMMAND = (sys.executable, "-P", "-m", "graphflow.supervisor.processes.successor")
 
 
-class Guard:
+class GuardianWatch:
     """The watch over a graph's guardian, by its supervisor.
 
     Args:

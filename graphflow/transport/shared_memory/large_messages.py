@@ -26,9 +26,9 @@ from graphflow.transport.shared_memory.ring import (
 )
 from graphflow.wire.shared_memory import unpack
 
-__all__ = ["FROM", "RingReceiver", "RingSender", "can_share", "receive"]
+__all__ = ["LARGE_FROM", "RingReceiver", "RingSender", "can_share", "receive"]
 
-FROM = 64 << 10
+LARGE_FROM = 64 << 10
 """Smallest message in bytes to send through memory; for smaller ones a copy costs less than the ring."""
 DEEPEST = 10
 """Longest queue in memory, the default depth; readers with longer queues copy arrivals."""
@@ -67,7 +67,7 @@ class RingSender:
 
     def put_parts(self, parts: tuple[list[Any], int], *, attachment: bytes) -> None:
         buffers, size = parts
-        ring = self._ring_for(size) if size >= FROM else None
+        ring = self._ring_for(size) if size >= LARGE_FROM else None
         place = None if ring is None else ring.write(buffers, size)
         if place is None:
             self._put(b"".join(buffers), attachment=attachment)
@@ -110,7 +110,7 @@ class RingSender:
 
     def lend(self, dtype: Any, count: int) -> Any:
         size = int(count) * int(dtype.itemsize)
-        ring = self._ring_for(size) if size >= FROM else None
+        ring = self._ring_for(size) if size >= LARGE_FROM else None
         return None if ring is None or ring.is_lent else ring.lend(dtype, count)
 
     def take_back(self) -> None:

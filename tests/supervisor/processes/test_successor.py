@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from graphflow.supervisor.processes.orphaned import LOG_VARIABLE
-from graphflow.supervisor.processes.successor import INTENSITY, Guard, left_of
+from graphflow.supervisor.processes.successor import INTENSITY, GuardianWatch, left_of
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, start_time
 from graphflow.system import is_portable
 from tests.cases import slow
@@ -43,10 +43,10 @@ def run_of(guardian: int, logs: Path) -> GraphRun:
 def test_a_guardian_is_followed_by_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """But not for ever, and each time it is said; a process that merely has its number is none."""
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    assert Guard(run_of(0, tmp_path)).check() == ""
-    assert Guard(run_of(os.getppid(), tmp_path)).check() == ""
+    assert GuardianWatch(run_of(0, tmp_path)).check() == ""
+    assert GuardianWatch(run_of(os.getppid(), tmp_path)).check() == ""
 
-    guard = Guard(run_of(1, tmp_path))
+    guard = GuardianWatch(run_of(1, tmp_path))
     for _ in range(INTENSITY.max_restarts):
         former = guard.run.guardian
         told = guard.check()

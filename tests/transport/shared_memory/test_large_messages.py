@@ -11,7 +11,7 @@ import pytest
 from graphflow.system import is_portable
 from graphflow.transport.base import Payload
 from graphflow.transport.shared_memory import large_messages, ring
-from graphflow.transport.shared_memory.large_messages import FROM, RingSender
+from graphflow.transport.shared_memory.large_messages import LARGE_FROM, RingSender
 from graphflow.transport.shared_memory.ring import RingReader, number_of
 from graphflow.wire.shared_memory import Descriptor, unpack
 
@@ -45,7 +45,7 @@ class Wire:
         for reader in self.readers:
             reader.open(place)
 
-    def publish(self, size: int = FROM) -> None:
+    def publish(self, size: int = LARGE_FROM) -> None:
         self.sender.put_parts(([b"x" * size], size), attachment=b"")
 
     def close(self) -> None:
@@ -72,13 +72,13 @@ def test_large_ones_go_through_memory() -> None:
     """Once the readers have it open; small ones never do."""
     wire = Wire(ALICE)
     wire.sender.admit({ALICE: 10})
-    wire.publish(FROM - 1)
+    wire.publish(LARGE_FROM - 1)
     assert wire.counts == (1, 0, 0)
     for _ in range(3):
         wire.publish()
     assert wire.counts == (1, 3, 1)
     assert wire.sender.in_memory == 3
-    assert 12 * FROM < wire.sender.memory < 14 * (FROM + 3 * 4096) + 12 * FROM // 8
+    assert 12 * LARGE_FROM < wire.sender.memory < 14 * (LARGE_FROM + 3 * 4096) + 12 * LARGE_FROM // 8
 
 
 def test_a_reader_that_does_not_open_it() -> None:
@@ -99,7 +99,7 @@ def test_a_larger_message_makes_a_larger_ring() -> None:
     wire.sender.admit({ALICE: 10})
     wire.publish()
     before = wire.sender.memory
-    wire.publish(3 * FROM)
+    wire.publish(3 * LARGE_FROM)
     assert wire.sender.memory > 2 * before
     wire.publish(ring.RING_BOUND // 2)
     assert wire.counts == (1, 2, 2)
@@ -144,18 +144,18 @@ def test_loans() -> None:
     """One at a time, only of what is large, and only in a ring that is open; the ring is not replaced meanwhile."""
     wire = Wire(ALICE)
     dtype = np.dtype(np.uint8)
-    assert wire.sender.lend(dtype, 10 * FROM) is None
+    assert wire.sender.lend(dtype, 10 * LARGE_FROM) is None
     wire.sender.admit({ALICE: 10})
-    assert wire.sender.lend(dtype, FROM - 1) is None
-    array = wire.sender.lend(dtype, FROM)
-    assert array.size == FROM
-    assert wire.sender.lend(dtype, FROM) is None
-    wire.publish(20 * FROM)
+    assert wire.sender.lend(dtype, LARGE_FROM - 1) is None
+    array = wire.sender.lend(dtype, LARGE_FROM)
+    assert array.size == LARGE_FROM
+    assert wire.sender.lend(dtype, LARGE_FROM) is None
+    wire.publish(20 * LARGE_FROM)
     assert wire.counts == (1, 0, 1)
-    wire.sender.put_parts(([b"head", array.data], FROM + 4), attachment=b"")
+    wire.sender.put_parts(([b"head", array.data], LARGE_FROM + 4), attachment=b"")
     wire.sender.take_back()
     assert wire.counts == (1, 1, 1)
-    wire.publish(20 * FROM)
+    wire.publish(20 * LARGE_FROM)
     assert wire.counts == (1, 2, 2)
 
 

@@ -1,1 +1,5 @@
-"""Mistakes in a node class's source, found before or while it runs: each module finds one kind."""
+"""Mistakes in the source of a node class; each module finds one kind.
+
+`shadowing` raises when the class is described. `slips` runs all that only warn, when a node opens and in
+`graphflow check`. `name_errors` and `text_numbers` complete errors that Python raises.
+"""

@@ -34,7 +34,7 @@ _PARTS = {"setter", "getter", "deleter", "overload"}
 
 
 @cache
-def check_names(cls: type) -> None:
+def check_bound_once(cls: type) -> None:
     """Check that a class and its parents bind no name of a handler or declaration twice.
 
     Raises:

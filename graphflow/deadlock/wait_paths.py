@@ -1,8 +1,8 @@
 """Paths from an activity to its wait, through the tasks that it waits for.
 
 Tasks that a user creates are not vertices of the wait-for graph by themselves: `await task` is followed into the task,
-and its wait becomes the activity's. `Way` records the path, so that no task is followed twice and deadlines on the way
-are known; `subtasks` enumerates the tasks at the other end.
+and its wait becomes the activity's. `WaitPath` records the tasks on the way, so that none is followed twice, and their
+deadlines; `subtasks` enumerates the tasks at the other end.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LimitOf: TypeAlias = Callable[[TaskLike], int | None]
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class WaitPath:
     """The path from a run of a handler to its wait, through the tasks that it waits for."""
 
     node: Subject

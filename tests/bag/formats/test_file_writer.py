@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from graphflow.bag.contents import Record, Topic
-from graphflow.bag.formats.bag_file import Part
+from graphflow.bag.formats.file_writer import FileWriter
 from tests.bag.cast import CHATTER, COUNT, MAP, START, some_records
 
 
-class Listed(Part):
+class Listed(FileWriter):
     """Keeps what it is told to write."""
 
     def __init__(self) -> None:

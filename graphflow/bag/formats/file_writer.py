@@ -8,7 +8,7 @@ from pathlib import Path
 from graphflow.bag.contents import Contents, Record, Topic
 
 
-class Part(ABC):
+class FileWriter(ABC):
     """The counts of a file; subclasses write their format."""
 
     def __init__(self, path: Path) -> None:

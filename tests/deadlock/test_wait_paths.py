@@ -6,7 +6,7 @@ import asyncio
 from contextlib import suppress
 from typing import Any
 
-from graphflow.deadlock.ways import Subtask, gathered, subtasks
+from graphflow.deadlock.wait_paths import Subtask, gathered, subtasks
 from graphflow.testing.clock import settle
 
 
