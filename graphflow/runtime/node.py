@@ -200,7 +200,7 @@ class Node(AttributeHints):
 
     @property
     def group(self) -> HandlerGroup:
-        """The group of the running handler: `async with self.group.released(): ...`.
+        """The group of the running handler, for `async with self.group.released()`.
 
         Raises:
             RuntimeError: The current task is not a handler run in a group, but for example a `@task`.
