@@ -9,6 +9,7 @@ from typing import Any, Self
 from graphflow.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
 from rclpy.duration import Duration
 from rclpy.impl.callers import stack_level
+from rclpy.impl.mistakes import swapped_policies
 
 _BEST_AVAILABLE_NS = 2**63 - 2
 _POLICIES = (
@@ -186,6 +187,7 @@ class QoSProfile:
     def history(self, value: HistoryPolicy) -> None:
         assert isinstance(value, (HistoryPolicy, int)), _mismatch("history", HistoryPolicy, value)
         self._history = HistoryPolicy(value)
+        swapped_policies.check("history", value, self._history)
 
     @property
     def reliability(self) -> ReliabilityPolicy:
@@ -195,6 +197,7 @@ class QoSProfile:
     def reliability(self, value: ReliabilityPolicy) -> None:
         assert isinstance(value, (ReliabilityPolicy, int)), _mismatch("reliability", ReliabilityPolicy, value)
         self._reliability = ReliabilityPolicy(value)
+        swapped_policies.check("reliability", value, self._reliability)
 
     @property
     def durability(self) -> DurabilityPolicy:
@@ -204,6 +207,7 @@ class QoSProfile:
     def durability(self, value: DurabilityPolicy) -> None:
         assert isinstance(value, (DurabilityPolicy, int)), _mismatch("durability", DurabilityPolicy, value)
         self._durability = DurabilityPolicy(value)
+        swapped_policies.check("durability", value, self._durability)
 
     @property
     def depth(self) -> int:
@@ -221,6 +225,7 @@ class QoSProfile:
         if value < 0:
             raise ValueError("Depth must be greater than or equal to zero")
         self._depth = value
+        swapped_policies.check("depth", value, value + 0)
 
     @property
     def lifespan(self) -> Duration:
@@ -248,6 +253,7 @@ class QoSProfile:
     def liveliness(self, value: LivelinessPolicy) -> None:
         assert isinstance(value, (LivelinessPolicy, int)), _mismatch("liveliness", LivelinessPolicy, value)
         self._liveliness = LivelinessPolicy(value)
+        swapped_policies.check("liveliness", value, self._liveliness)
 
     @property
     def liveliness_lease_duration(self) -> Duration:
@@ -431,5 +437,5 @@ def validated(qos_profile: QoSProfile | int) -> QoSProfile:
     if isinstance(qos_profile, int):
         if qos_profile < 0:
             raise ValueError("history depth must be greater than or equal to zero")
-        return QoSProfile(depth=qos_profile)
+        return QoSProfile(depth=int(qos_profile))
     raise TypeError(f"Expected QoSProfile or int, but received {type(qos_profile)!r}")
