@@ -16,6 +16,7 @@ from typing import Any
 from graphflow.analysis.user_code import short_place, users_frame
 from rclpy.clock import ROSClock
 from rclpy.duration import Duration
+from rclpy.impl.mistakes.unmatched_stamps import Unmatched
 from rclpy.logging import get_logger
 from rclpy.subscription import Subscription
 from rclpy.time import Time
@@ -158,7 +159,10 @@ class TimeSynchronizer(SimpleFilter):
         frame = users_frame(sys._getframe(1))
         self._graphflow_place = f"{short_place(frame.f_code.co_filename, frame.f_lineno)}: " if frame else ""
         self._graphflow_unheard = 0
+        self._graphflow_unmatched: Unmatched | None = None
+        """The watch over the stamps, until a first set is complete or the lack of one is reported."""
         self.connectInput(fs)
+        self._graphflow_watch(fs, slop_ns=0)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802 - its name there
         """Connect filters as the inputs."""
@@ -169,9 +173,12 @@ class TimeSynchronizer(SimpleFilter):
     def add(self, msg: Any, my_queue: dict[int, object], my_queue_index: int | None = None) -> None:
         """Take a message from a filter."""
         with self.lock:
-            self._keep(Time.from_msg(msg.header.stamp).nanoseconds, msg, my_queue)
+            stamp_ns = Time.from_msg(msg.header.stamp).nanoseconds
+            self._keep(stamp_ns, msg, my_queue)
             common = sorted(set[int].intersection(*(set(queue) for queue in self.queues)))
             found = [[queue.pop(stamp) for queue in self.queues] for stamp in common]
+            if self._graphflow_unmatched is not None:
+                self._graphflow_take(my_queue_index, stamp_ns, is_complete=bool(found))
         for together in found:
             self.signalMessage(*together)
 
@@ -182,6 +189,17 @@ class TimeSynchronizer(SimpleFilter):
             if self._graphflow_unheard == UNHEARD:
                 text = "%sthis synchronizer has matched messages, but has no callback; write %s"
                 logger.warning(text, self._graphflow_place, "synchronizer.registerCallback(self.callback)")
+
+    def _graphflow_watch(self, fs: Sequence[SimpleFilter], slop_ns: int) -> None:
+        names = [getattr(f, "topic_name", type(f).__name__) for f in fs]
+        if len(names) > 1:
+            kind = type(self).__name__
+            self._graphflow_unmatched = Unmatched(kind, self._graphflow_place, names, self.queue_size, slop_ns)
+
+    def _graphflow_take(self, index: int | None, stamp_ns: int, *, is_complete: bool) -> None:
+        watch = self._graphflow_unmatched
+        if is_complete or index is None or (watch is not None and watch.take(index, stamp_ns)):
+            self._graphflow_unmatched = None
 
     def _keep(self, stamp_ns: int, msg: object, queue: dict[int, object]) -> None:
         queue[stamp_ns] = msg
@@ -204,6 +222,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
     ) -> None:
         super().__init__(fs, queue_size)
         self.slop, self.allow_headerless = Duration(seconds=slop), allow_headerless
+        self._graphflow_watch(fs, self.slop.nanoseconds)
 
     def add(self, msg: Any, my_queue: dict[int, object], my_queue_index: int | None = None) -> None:
         """Take a message from a filter."""
@@ -214,6 +233,8 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
             self._keep(stamp.nanoseconds, msg, my_queue)
             stamps = self._nearest(stamp.nanoseconds, my_queue)
             together = [queue.pop(at) for queue, at in zip(self.queues, stamps, strict=True)] if stamps else []
+            if self._graphflow_unmatched is not None:
+                self._graphflow_take(my_queue_index, stamp.nanoseconds, is_complete=bool(together))
         if together:
             self.signalMessage(*together)
 
