@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from geometry_msgs.msg import TransformStamped
 
 from rclpy.duration import Duration
+from rclpy.impl.mistakes.refused_transforms import TOLERANCE
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.logging import get_logger
 from rclpy.time import Time
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from geometry_msgs.msg import Transform
 
 
-TOLERANCE = 0.01
-"""The greatest deviation of a quaternion's squared length from 1."""
 NAME_BOUND = 1000
 """The length of a frame's name in characters, at most."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-from rclpy.impl.mistakes.unnamed_frames import check
+from rclpy.impl.mistakes.refused_transforms import check
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_ros.transform_broadcaster import as_list
 
