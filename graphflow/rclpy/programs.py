@@ -9,6 +9,7 @@ import runpy
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from importlib import import_module
 from inspect import isclass, isfunction
@@ -179,13 +180,13 @@ def _print_error(
     workspace: Workspace, kind: type[BaseException], error: BaseException, _: TracebackType | None
 ) -> None:
     """Print an error that ends a program, limited to the program's own code, with a next step."""
-    tracebacks.shorten(error)
-    sys.__excepthook__(kind, error, error.__traceback__)
-    if isinstance(error, ModuleNotFoundError) and error.name is not None and not hiding.hidden(error):
-        sys.stderr.write(f"note: {_where_to_have(error.name, workspace, _imported_in(error))}\n")
-    if isinstance(error, AssertionError) and " field must be " in str(error):
-        later = "ROS 2 Jazzy checks this only when the message is sent, and then aborts the process"
-        sys.stderr.write(f"note: {later}; to check it only then here, too: ROS_PYTHON_CHECK_FIELDS=0\n")
+    tracebacks.show(kind, error)
+    with suppress(KeyboardInterrupt):  # which leaves out the note
+        if isinstance(error, ModuleNotFoundError) and error.name is not None and not hiding.hidden(error):
+            sys.stderr.write(f"note: {_where_to_have(error.name, workspace, _imported_in(error))}\n")
+        if isinstance(error, AssertionError) and " field must be " in str(error):
+            later = "ROS 2 Jazzy checks this only when the message is sent, and then aborts the process"
+            sys.stderr.write(f"note: {later}; to check it only then here, too: ROS_PYTHON_CHECK_FIELDS=0\n")
 
 
 def _imported_in(error: BaseException) -> str:

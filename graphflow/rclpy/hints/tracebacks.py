@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+from contextlib import suppress
 from types import TracebackType
 
 from graphflow.analysis.user_code import is_ours, is_refusal, is_users, parts_of
@@ -14,7 +15,7 @@ from graphflow.runtime.mistakes.errors.attribute_errors import explain
 def install() -> None:
     """Install a hook that shortens uncaught errors of the program and its threads; keep another's hook."""
     if sys.excepthook is sys.__excepthook__:
-        sys.excepthook = _show
+        sys.excepthook = show
     install_in_threads()
 
 
@@ -32,7 +33,7 @@ def shorten(error: BaseException) -> None:
     step.
     """
     explain(error)
-    hint = lookup.hint(error)
+    hint = "" if isinstance(error, KeyboardInterrupt) else lookup.hint(error)
     note = f"note: {hint}"
     if hint and note not in getattr(error, "__notes__", ()):
         error.add_note(note)
@@ -70,9 +71,12 @@ def _is_redundant(error: BaseException) -> bool:
     return isinstance(error, (KeyboardInterrupt, SyntaxError)) or type(error).__module__.startswith("rclpy.")
 
 
-def _show(kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
-    shorten(error)
-    sys.__excepthook__(kind, error, error.__traceback__)
+def show(kind: type[BaseException], error: BaseException, _: TracebackType | None = None) -> None:
+    """Print an uncaught error, shortened, with its next step; what an interrupt cuts short is left out."""
+    with suppress(KeyboardInterrupt):
+        shorten(error)
+    with suppress(KeyboardInterrupt):
+        sys.__excepthook__(kind, error, error.__traceback__)
 
 
 def _show_in_thread(args: threading.ExceptHookArgs) -> None:

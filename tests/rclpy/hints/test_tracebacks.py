@@ -12,7 +12,7 @@ import pytest
 from std_msgs.msg import String
 
 import rclpy
-from graphflow.rclpy.hints import tracebacks
+from graphflow.rclpy.hints import lookup, tracebacks
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 
@@ -129,6 +129,24 @@ def test_hooks(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[st
     monkeypatch.setattr(sys, "excepthook", others)
     tracebacks.install()
     assert sys.excepthook is others
+
+
+@pytest.mark.parametrize("place", [(lookup, "hint"), (tracebacks, "explain"), (sys, "__excepthook__")])
+@pytest.mark.parametrize("kind", [ValueError, KeyboardInterrupt])
+def test_an_interrupt_in_the_hook(
+    kind: type[BaseException],
+    place: tuple[Any, str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """It leaves out the rest of the hint, and the error is shown."""
+
+    def interrupted(*_: object) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(*place, interrupted)
+    tracebacks.show(kind, kind("the reason"))
+    assert ("the reason" in capsys.readouterr().err) is (place[0] is not sys)
 
 
 def test_the_hook_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
