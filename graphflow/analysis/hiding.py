@@ -1,4 +1,4 @@
-"""Files that hide packages: with a `numpy.py` next to a program, `import numpy` imports that file."""
+"""Files and folders that hide packages: with a `numpy.py` next to a program, `import numpy` imports that file."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import ast
 import os
 import re
 import sys
-from importlib.machinery import PathFinder
+from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
 
 from graphflow.analysis.user_code import is_installed, is_users
 from graphflow.msgs import registry
+from graphflow.msgs.registry import KINDS
 from graphflow.reading import found_text
 from graphflow.system import SITE
 
@@ -25,6 +26,9 @@ def hidden(error: BaseException) -> str:
     name = ""
     if isinstance(error, ImportError) and error.name and _LACKING.search(str(error)):
         name = error.name.partition(".")[0]
+    elif isinstance(error, ModuleNotFoundError) and error.name and "." in error.name:
+        top = error.name.partition(".")[0]
+        name = top if (file := _file_of(top)) is not None and _is_in_package(error.name, file) else ""
     elif isinstance(error, AttributeError) and isinstance(error.obj, ModuleType):
         name = error.obj.__name__
     file = _file_of(name) if name else None
@@ -69,7 +73,22 @@ def _is_package(name: str, file: Path) -> bool:
     """Whether there is a package of that name, ROS's or an installed one, besides the file."""
     if name in sys.stdlib_module_names or name in registry.packages() or name == "graphflow":
         return True
+    found = _elsewhere(name, file)
+    return found is not None and found.origin is not None
+
+
+def _is_in_package(module: str, file: Path) -> bool:
+    """Whether the package that a file hides has a module, such as `std_msgs.msg`."""
+    package, part = module.split(".")[:2]
+    if package in registry.packages():
+        return part in KINDS and bool(registry.names_in(package, part))
+    found = _elsewhere(package, file)
+    folders = found.submodule_search_locations if found is not None else None
+    return bool(folders) and PathFinder.find_spec(f"{package}.{part}", folders) is not None
+
+
+def _elsewhere(name: str, file: Path) -> ModuleSpec | None:
+    """Find a package in all folders but that of a file."""
     own = file.parents[1] if file.name == "__init__.py" else file.parent
     elsewhere = [SITE, *(entry for entry in sys.path if Path(entry or os.curdir).resolve() != own.resolve())]
-    found = PathFinder.find_spec(name, elsewhere)
-    return found is not None and found.origin is not None
+    return PathFinder.find_spec(name, elsewhere)

@@ -39,6 +39,30 @@ def test_an_error_about_a_hidden_package(name: str, line: str, tmp_path: Path, m
     monkeypatch.delitem(sys.modules, name, raising=False)
 
 
+@pytest.mark.parametrize(
+    ("name", "line", "is_hiding"),
+    [
+        ("shape_msgs", "from shape_msgs.msg import Plane", True),
+        ("shape_msgs", "import shape_msgs.plane", False),
+        ("psutil", "import psutil._common", True),
+        ("psutil", "import psutil.lamps", False),
+        ("lampshade", "import lampshade.msg", False),
+    ],
+)
+def test_a_folder_that_hides_a_package(
+    name: str, line: str, is_hiding: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is named where the package has the module; a module that neither has is another mistake."""
+    (tmp_path / name).mkdir()
+    beside(tmp_path, f"{name}/__init__", "", monkeypatch)
+    monkeypatch.delitem(sys.modules, name, raising=False)
+    with pytest.raises(ModuleNotFoundError) as caught:
+        exec(line, {})
+    text = f"{tmp_path / name} hides the package {name}: rename it, as in my_{name}"
+    assert hiding.hidden(caught.value) == (text if is_hiding else "")
+    monkeypatch.delitem(sys.modules, name, raising=False)
+
+
 @pytest.mark.parametrize("line", ["import lampshade\nlampshade.cpu", "import json\njson.cpu", "from json import cpu"])
 def test_errors_about_modules_that_hide_nothing(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is told of a module of the user's own, or of a package that is the right one."""
