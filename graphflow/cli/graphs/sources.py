@@ -16,6 +16,7 @@ from graphflow.graph.checks.check import check
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import Interface
 from graphflow.reading import found_text
+from graphflow.runtime.mistakes.source.called_early import results_passed, spins_called
 from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces, slips_in
 from graphflow.workspace.node_classes import node_classes_in
@@ -41,6 +42,7 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
             elif uses_ros(file):
                 found.is_rclpy = True
                 found.ways += findings_in(file)
+                found.slips += _rclpy_slips(file)
                 found.unfollowed += unfollowed_in(file)
             elif classes := node_classes_in(file):
                 found.nodes += len(classes)
@@ -81,6 +83,15 @@ def _unreadable(file: Path) -> Problem | None:
     except (OSError, ValueError) as error:
         return Problem(Place(shown(file)), f"cannot be read: {error}")
     return None
+
+
+def _rclpy_slips(file: Path) -> list[str]:
+    """Return the remarks on source that is written for rclpy, and is not run."""
+    module = ast.parse(found_text(file))
+    slips = [(early.line, early.text) for early in spins_called(module)]
+    for is_of_threads in (True, False):
+        slips += results_passed(module, is_of_threads=is_of_threads)
+    return [f"{Place(shown(file), line)}: {text}" for line, text in sorted(slips)]
 
 
 def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[Finding], list[str]]:

@@ -105,3 +105,19 @@ def test_slips_in_source(here: Machine, tmp_path: Path) -> None:
     assert here.look("check", "nodes", cwd=tmp_path) == f"{said}\nnodes: 2 node classes, no mistakes, 1 remark\n"
     assert json.loads(here.look("check", "nodes", "--json", cwd=tmp_path))["remarks"] == [said]
     assert json.loads(here.look("check", "graphs/g.yaml", "--json", cwd=tmp_path))["remarks"] == [said]
+
+
+def test_functions_that_rclpy_source_calls_early(here: Machine, tmp_path: Path) -> None:
+    """They are remarks, read from the source; a function that is passed is none."""
+    body = "    def work(self):\n        self.on = True\n    def __init__(self):\n"
+    body += "        Thread(target=rclpy.spin(self)).start()\n        self.create_timer(1.0, self.work())\n"
+    body += "        Thread(target=self.work).start()\n"
+    (tmp_path / "ros" / "move.py").write_text(RCLPY.replace("    pass\n", body))
+    said = [
+        "ros/move.py:7: target=rclpy.spin(self) spins here, and Thread is not called before that ends; write "
+        "target=rclpy.spin, args=(self,)",
+        "ros/move.py:8: create_timer(..., self.work()) calls work here, and passes None, which it returns; write "
+        "self.work",
+    ]
+    text = "\n".join([*said, "ros: no deadlocks visible in the source, 2 remarks", ""])
+    assert here.look("check", "ros", cwd=tmp_path) == text

@@ -29,6 +29,7 @@ from graphflow.names import nearest
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.overridden import overridden
@@ -65,6 +66,7 @@ def _slips(cls: type) -> Iterator[str]:
                     yield from _wrong_fields(method, file, space)
             found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
             found = (*found, *ineffective(definition), *overridden(parent, definition))
+            found = (*found, *results_passed(definition, is_of_threads=True))
             yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
 

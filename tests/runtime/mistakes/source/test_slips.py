@@ -55,6 +55,10 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ("async def heard(self, message: String) -> None: ...", LOOKS.format("heard", SUBSCRIPTION)),
         ("def add(self, request: AddTwoInts.Request): ...", LOOKS.format("add", SERVICE)),
         ("def on_pose(self, message): ...", LOOKS.format("on_pose", SUBSCRIPTION)),
+        (
+            "def work(self):\n    self.x = 1\ndef go(self):\n    Thread(target=self.work())",
+            "target=self.work() calls work here, and passes None, which it returns; write target=self.work",
+        ),
         ("def on_strat(self): ...", "nothing calls Robot.on_strat; did you mean on_start?"),
         ("def on_stop(self): ...", "nothing calls Robot.on_stop; did you mean on_shutdown?"),
         (

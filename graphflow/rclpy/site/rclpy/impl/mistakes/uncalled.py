@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.analysis.user_code import is_users, short_place
+from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from rclpy.impl.entities import entities_of
@@ -52,6 +53,7 @@ class Uncalled:
             with suppress(OSError, SyntaxError, ValueError):  # its source is not available
                 module = syntax_of(file).module
                 told = (*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module))
+                told = (*told, *results_passed(module, is_of_threads=True))
                 for line, text in told:
                     logger.warning("%s: %s", short_place(file, line), text)
 

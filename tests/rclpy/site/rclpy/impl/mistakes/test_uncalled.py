@@ -18,6 +18,10 @@ def tick(timer):
     timer.cancel
     timer.period
     timer.state == "on"
+    Thread(target=work())
+
+def work():
+    print("works")
 """
 
 
@@ -47,6 +51,7 @@ def test_a_method_without_parentheses(
     assert found == [
         "lamp.py:3: timer.cancel without parentheses calls nothing; write: timer.cancel()",
         "lamp.py:5: timer.state == 'on' compares without effect; write = to set it",
+        "lamp.py:6: target=work() calls work here, and passes None, which it returns; write target=work",
     ]
 
 
