@@ -1,5 +1,7 @@
 """Calls after `rclpy.spin(node)`, which ends only with the program: requests, goals, and nodes created there.
 
+So is a thread that was to spin: `Thread(target=rclpy.spin(node))`.
+
 When a spin has ended, the context is shut down, so calls that need the network would fail as well. What a program
 does at its end, such as destroying, logging, saving and plotting, is not reported, and neither is `finally`.
 """
@@ -14,16 +16,20 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FunctionType, MethodType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
 from graphflow.analysis.user_code import is_ours, is_users, short_place
 from graphflow.reading import found_text
+from graphflow.runtime.mistakes.source.called_early import spins_called
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.impl.deadlock.stacks import stacks
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.context_state import ContextState
 
 TELL_AFTER = 3.0
 """Seconds that a spin must have lasted."""
@@ -49,9 +55,10 @@ class _Late(NamedTuple):
 
 
 class Unreached:
-    """The spins of one process, each reported once."""
+    """The spins of one context, each reported once."""
 
-    def __init__(self) -> None:
+    def __init__(self, life: ContextState) -> None:
+        self._life = life
         self._next = 0.0
         self._since: dict[tuple[CodeType, int], float] = {}
         """The monotonic time at which each line was first seen to spin."""
@@ -64,7 +71,7 @@ class Unreached:
         if now < self._next:
             return
         self._next = now + LOOK_EVERY
-        frames = {(frame.f_code, frame.f_lineno): frame for frame in _spinning()}
+        frames = {(frame.f_code, frame.f_lineno): frame for frame in _spinning(self._life)}
         self._since = {line: self._since.get(line, now) for line in frames}
         for line, since in self._since.items():
             if now - since >= TELL_AFTER and line not in self._read:
@@ -74,9 +81,11 @@ class Unreached:
                 self._read.add(line)
 
 
-def _spinning() -> Iterator[Frame]:
-    """Yield the user's frames that have called an endless spin."""
+def _spinning(life: ContextState) -> Iterator[Frame]:
+    """Yield the user's frames that have called an endless spin of a context."""
     for stack in stacks():
+        if not any(executor.context.life is life for executor in stack.spins):
+            continue
         frames = stack.levels[0].frames
         at = next((place for place, frame in enumerate(frames) if _is_spin(frame.f_code)), None)
         if stack.is_users and at is not None:
@@ -93,6 +102,10 @@ def _report(frame: Frame) -> None:
     function = _function_of(frame)
     if function is None:
         return
+    for early in spins_called(function):
+        if early.line <= frame.f_lineno <= early.end:
+            logger.warning("%s: %s", short_place(file, early.line), early.text)
+            return
     spin, later = _after(function, frame.f_lineno)
     if spin is None or (not ast.unparse(spin.func).startswith("rclpy.") and _may_be_ended(file, function)):
         return

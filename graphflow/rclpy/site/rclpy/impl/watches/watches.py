@@ -35,7 +35,7 @@ class Watches:
             Unserved(life, context, is_reported),
             Unexecuted(life),
             Uncalled(life),
-            Unreached(),
+            Unreached(life),
         )
         unheard.attend(life)
         orphans.attend(life)

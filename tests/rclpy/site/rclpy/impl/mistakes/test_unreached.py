@@ -13,6 +13,7 @@ from types import ModuleType
 import pytest
 
 import rclpy
+from rclpy.context import Context
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.mistakes import unreached
 from rclpy.node import Node
@@ -105,6 +106,40 @@ WAY = "which does not return: {} is not called before that ends; call it before,
 def test_calls_after_a_spin(told: Callable[[str], list[str]], body: str, line: int, spin: str, name: str) -> None:
     """What needs other nodes is told, with its line and the spin."""
     assert told(body) == [f"late.py:{LINE + line} comes after {spin}, {WAY.format(name)}"]
+
+
+def test_several_contexts(node: Node) -> None:
+    """The watch of each sees the spins of its own, so that a spin is told once."""
+    own, other = node.context.life, Context()
+    rclpy.init(context=other)
+    executor = rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
+
+    def main() -> None:
+        with suppress(rclpy.executors.ExternalShutdownException):
+            executor.spin()
+
+    thread = threading.Thread(target=main)
+    thread.start()
+    assert own is not None
+    assert other.life is not None
+    until = time.monotonic() + 5.0
+    while not (spinning := list(unreached._spinning(own))):
+        assert time.monotonic() < until
+    assert [frame.f_code.co_name for frame in spinning] == ["main"]
+    assert list(unreached._spinning(other.life)) == []
+    rclpy.shutdown(context=other)
+    rclpy.shutdown()
+    thread.join(5.0)
+
+
+def test_a_thread_that_was_to_spin(told: Callable[[str], list[str]], caplog: Caplog) -> None:
+    """The spin in its arguments is told, and not what comes after it."""
+    told("import threading\nthreading.Thread(target=rclpy.spin(node)).start()\nnode.ask()")
+    assert [text for text in caplog.messages if "late.py" in text] == [
+        f"late.py:{LINE + 1}: target=rclpy.spin(node) spins here, and Thread is not called before that ends; write "
+        "target=rclpy.spin, args=(node,)"
+    ]
 
 
 def test_a_node_that_is_made_after_a_spin(told: Callable[[str], list[str]]) -> None:
