@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import linecache
 import logging
+import os
 import random
 import re
 import sys
@@ -28,12 +29,16 @@ LOOK_EVERY = 0.5
 ANSWER_WITHIN = 0.1
 """Seconds after which a busy loop that was pinged counts as blocked."""
 REPORT_AFTER = 1.0
-"""Seconds after which a blocked loop is reported with its stack."""
+"""Seconds after which a loop that the user's code blocks is reported with its stack."""
+REPORT_OTHERS_AFTER = 3.0
+"""The same where none of the user's code is on the stack: the machine may be overloaded, above all at a start."""
 LOOKS, TOO_MANY = 10, 7
 """Checks in a row, and the number of them that must find the loop blocked to be reported, if each block is shorter."""
 STACK_SHOWN = 6
 """Lines of the stack in a report, from the user's code inwards."""
 _REMEDY = "Await what takes long, or move it to a thread: thread=True, or await self.offload(...)"
+_HELD = "it was stopped, C code held it, or the machine is overloaded"
+_NOTHING_RUNS = "nothing else in this process can run."
 _LOCKED = re.compile(r"(?:^with\s+|^)(?P<name>\w+(?:\.\w+)*)(?:\.acquire\(|\s*:)")
 """Pattern of a line that waits for a lock."""
 _LOCKS = (type(threading.Lock()), type(threading.RLock()))
@@ -56,6 +61,8 @@ class Watchdog:
         self._ended = threading.Event()
         self._rung_at: float | None = None
         """Time of the ping that the loop has not answered."""
+        self._processor_time = 0.0
+        """Processor time of this process at that ping, in seconds."""
         self._reported = False
         """Whether the present block was reported."""
         self._resting: tuple[CodeType, int] | None = None
@@ -94,7 +101,7 @@ class Watchdog:
         while not self._ended.wait(pause := LOOK_EVERY * random.uniform(0.5, 1.5)):  # noqa: S311
             lost = time.monotonic() - began - pause
             if lost > REPORT_AFTER:
-                logger.warning("nothing in this process could run for %.1f s: it was stopped, or C code held it", lost)
+                logger.warning("nothing in this process could run for %.1f s: %s", lost, _HELD)
             if self._is_busy():
                 self._ping()
             else:
@@ -114,7 +121,7 @@ class Watchdog:
     def _ping(self) -> None:
         """Ping the loop, and wait for its answer; report it if that takes long."""
         answered = threading.Event()
-        self._rung_at = time.monotonic()
+        self._rung_at, self._processor_time = time.monotonic(), time.process_time()
         try:
             self._loop.call_soon_threadsafe(self._answer, answered)
         except RuntimeError:  # the loop is closed
@@ -125,8 +132,7 @@ class Watchdog:
             place = self._place()
             self._blocked()
             if self.blocked_for >= REPORT_AFTER and not self._reported:
-                self._reported = True
-                logger.error("%s", self._stack())
+                self._report()
         took = self.blocked_for
         self._rung_at = None
         if took > ANSWER_WITHIN:
@@ -165,22 +171,26 @@ class Watchdog:
         frame = innermost(called_by_loop(stack_of(self._loop_thread)))
         return "" if frame is None else f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}"
 
-    def _stack(self) -> str:
-        """Return the report of a loop that is blocked now, with the stack from the user's code inwards."""
+    def _report(self) -> None:
+        """Report a loop that is blocked now, with the stack from the user's code inwards."""
         frames = called_by_loop(stack_of(self._loop_thread))
         files = [frame.f_code.co_filename for frame in frames]
         shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
         begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # the frames before started graphflow
         last = max((i for i, file in enumerate(files) if i >= begun and is_users(file)), default=-1)
+        seconds = self.blocked_for
+        if last < 0 and seconds < REPORT_OTHERS_AFTER:
+            return
+        self._reported = True
         above = next((i for i, file in enumerate(files) if is_users(file)), 0)  # skips asyncio's own frames
         first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=above)
-        where = f" in {shown[last]}" if last >= 0 else ""
-        remedy = _of_lock(frames[last]) or _REMEDY if last >= 0 else _REMEDY
+        if last < 0:
+            level, text = _of_others(seconds, time.process_time() - self._processor_time)
+        else:
+            blocked = f"the event loop has been blocked for {seconds:.1f} s in {shown[last]}: {_NOTHING_RUNS}"
+            level, text = logging.ERROR, f"{blocked}\n{_of_lock(frames[last]) or _REMEDY}"
         stack = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
-        return (
-            f"the event loop has been blocked for {self.blocked_for:.1f} s{where}: nothing else in this process can "
-            f"run.\n{remedy}{stack}"
-        )
+        logger.log(level, "%s%s", text, stack)
 
     @property
     def is_closed(self) -> bool:
@@ -190,6 +200,23 @@ class Watchdog:
     def close(self) -> None:
         """Stop watching."""
         self._ended.set()
+
+
+def _of_others(seconds: float, processor_time: float) -> tuple[int, str]:
+    """Return the level and text of a report where the loop's thread is in none of the user's code.
+
+    Args:
+        seconds: Time since the ping that the loop has not answered.
+        processor_time: Processor time that the process got meanwhile, in seconds.
+    """
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
+    if processor_time < seconds / 2 and load > (os.cpu_count() or 1):
+        return logging.WARNING, (
+            f"the event loop has not run for {seconds:.1f} s, in which this process got {processor_time:.1f} s of "
+            f"processor time; the machine seems to be overloaded, with a load average of {load:.1f}"
+        )
+    blocked = f"the event loop has been blocked for {seconds:.1f} s, with no line of this program on its stack"
+    return logging.ERROR, f"{blocked}: {_NOTHING_RUNS}"
 
 
 def _of_lock(frame: Frame) -> str:

@@ -103,6 +103,45 @@ async def test_the_report_of_a_blocked_loop(
     assert second.startswith("the event loop runs again after ")
 
 
+@pytest.mark.parametrize(
+    ("load", "processor_time", "level", "text"),
+    [
+        (9.0, 0.4, logging.WARNING, "the event loop has not run for 4.0 s, in which this process got 0.4 s of "
+                                    "processor time; the machine seems to be overloaded, with a load average of 9.0"),
+        (9.0, 2.5, logging.ERROR, "the event loop has been blocked for 4.0 s, with no line of this program on its "
+                                  "stack: nothing else in this process can run."),
+        (0.5, 0.0, logging.ERROR, "the event loop has been blocked for 4.0 s, with no line of this program on its "
+                                  "stack: nothing else in this process can run."),
+    ],
+)  # fmt: skip
+def test_an_overloaded_machine(
+    monkeypatch: pytest.MonkeyPatch, load: float, processor_time: float, level: int, text: str
+) -> None:
+    """It is named where there is more to do than processors, and the process got little of them."""
+    monkeypatch.setattr("os.getloadavg", lambda: (load, 0.0, 0.0))
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    assert module._of_others(4.0, processor_time) == (level, text)
+
+
+async def test_a_block_without_code_of_the_users(
+    graphflow_runner: asyncio.Runner,
+    watched: Watched,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It is told later, and without advice to the user."""
+    monkeypatch.setattr(module, "is_users", lambda _: False)
+    monkeypatch.setattr(module, "REPORT_OTHERS_AFTER", 0.2)
+    watched.watchdog.start()
+    while not (told := [r.getMessage() for r in caplog.records if "the event loop has" in r.getMessage()]):
+        watched.block(times=1)
+    watched.watchdog.close()
+    head, _, stack = told[0].partition("\n")
+    assert float(head.partition(" for ")[2].partition(" s")[0]) >= 0.2
+    assert module._REMEDY not in told[0]
+    assert " in block" in stack
+
+
 async def test_many_short_blocks(
     graphflow_runner: asyncio.Runner,
     watched: Watched,
