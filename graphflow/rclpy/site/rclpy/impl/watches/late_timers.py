@@ -20,6 +20,7 @@ from rclpy.impl.watches.starvation import (
     OWN_GROUP,
     RETURN,
     HeldUp,
+    empty_group,
     kept_by,
     label_of,
     label_with_line,
@@ -49,6 +50,8 @@ class _Slow(NamedTuple):
     late: Timer
     is_own: bool
     """Whether the timer is delayed by its own callback."""
+    remark: str
+    """A further remark on the node."""
 
 
 class LateTimers:
@@ -103,7 +106,7 @@ class LateTimers:
         title = f"{label_of(run)} of {full_name(node)}"
         if self._held_up.is_deadlocked(run, title):
             return None
-        return _Slow(title, place_of(level, node), own or late[0], own is not None)
+        return _Slow(title, place_of(level, node), own or late[0], own is not None, empty_group(node))
 
     def _report_slow(self, slow: _Slow, seconds: float) -> None:
         if slow.title not in self._were_slow and seconds < SLOW_ONCE:
@@ -117,7 +120,8 @@ class LateTimers:
                     f"keeps {role_of(slow.late).label}, which is due {every}, waiting",
                     f"{RETURN}, or {OWN_GROUP}",
                 )
-            logger.warning("%s takes %.1f s, as in %s, and %s: %s", slow.title, seconds, slow.place, late, way)
+            text = "%s takes %.1f s, as in %s, and %s: %s%s"
+            logger.warning(text, slow.title, seconds, slow.place, late, way, slow.remark)
 
 
 def _is_restless(timer: Timer) -> bool:

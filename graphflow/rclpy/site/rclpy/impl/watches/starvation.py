@@ -19,6 +19,7 @@ from graphflow.errors import Place
 from graphflow.rclpy.wake import Wake
 from rclpy.action.client import ActionClient
 from rclpy.action.server import ActionServer
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.impl.deadlock.groups import executors, is_exclusive, threads_of
@@ -128,6 +129,7 @@ class HeldUp:
         if level.waiting is not None:
             way = "it spins there; let it return instead, and the spin that called it continues"
         text = f"{title} has been running for {seconds:.1f} s, now in {place_of(level, node)}, and {keeps}: {way}"
+        text += empty_group(node)
         return _Report(text, f"{title} has returned")
 
     def _report_init(self, node: Node) -> None:
@@ -211,6 +213,15 @@ def _spins_on(level: Level) -> bool:
     """Whether code has called a `spin` that lasts as long as the context."""
     is_spin = any(frame.f_code.co_name == "spin" and is_ours(frame.f_code.co_filename) for frame in level.frames)
     return is_spin and level.waiting is not None
+
+
+def empty_group(node: Node) -> str:
+    """Describe a callback group among a node's attributes that has no callbacks; empty if there is none."""
+    for name, group in list(vars(node).items()):
+        is_known = type(group) in (MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup)
+        if is_known and not group.entities and group is not node.default_callback_group:
+            return f"; self.{name} has no callbacks yet: write callback_group=self.{name} where they are made"
+    return ""
 
 
 def kept_by(run: Run, *, spins_on: bool = False) -> Iterator[Entity]:

@@ -12,8 +12,10 @@ from std_msgs.msg import String
 
 import rclpy
 from graphflow.runtime.node_clock import TIMELESS
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.watches import late_timers
+from rclpy.impl.watches.starvation import empty_group
 from rclpy.node import Node
 from tests.rclpy.conftest import Spinner
 
@@ -60,6 +62,21 @@ def test_a_callback_that_keeps_a_timer(node: Node, spin: Spinner, caplog: Caplog
     [text] = told(caplog)
     assert f"as in {PLACE}, and keeps timer <lambda>, which is due every 0.02 s, waiting: return from it soon" in text
     assert text.endswith("give it a callback group of its own and spin with MultiThreadedExecutor()")
+
+
+def test_a_group_without_callbacks(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """It is named beside what its callbacks would help; a group that has some is not."""
+    node.mine, node.other = ReentrantCallbackGroup(), ReentrantCallbackGroup()  # type: ignore[attr-defined]
+    node.create_timer(10.0, tick, callback_group=node.mine)  # type: ignore[attr-defined]
+    node.create_timer(0.01, tick)
+    spin(lambda: told(caplog))
+    [text] = told(caplog)
+    assert text.endswith(
+        ", or give it a longer period; self.other has no callbacks yet: write callback_group=self.other where they are "
+        "made"
+    )
+    node.create_timer(10.0, tick, callback_group=node.other)  # type: ignore[attr-defined]
+    assert empty_group(node) == ""
 
 
 def test_callbacks_that_are_slow_where_nothing_is_late(node: Node, spin: Spinner, caplog: Caplog) -> None:
