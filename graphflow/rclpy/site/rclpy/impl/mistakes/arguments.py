@@ -202,6 +202,9 @@ class NotConstructed:
 def must_return(callback: object, what: str, value: object) -> str:
     """Return the sentence for a callback that returned something other than `what`."""
     given = "None" if value is None else type(value).__name__
+    if isinstance(value, type):
+        name = value.__name__.replace("_", ".")
+        given = f"the class {name}: write {name}()"
     return f"{described(callback)} must return {what}, and returned {given}"
 
 

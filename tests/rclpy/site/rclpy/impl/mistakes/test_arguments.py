@@ -192,6 +192,8 @@ def test_callbacks_that_must_return_something(node: Node, spin: Spinner) -> None
     with pytest.raises(AttributeError, match=re.escape(f"{place}SetParametersResult(successful=True)")):
         node.set_parameters([Parameter("level", value=2)])
     assert must_return(node, "it", 3) == "Node must return it, and returned int"
+    told = must_return(node, "its response", Trigger.Response)
+    assert told == "Node must return its response, and returned the class Trigger.Response: write Trigger.Response()"
 
 
 def test_an_action_that_returns_no_result(node: Node, spin: Spinner) -> None:
