@@ -76,6 +76,9 @@ TEXTS: dict[str, str] = {
     r"not a list of one of the allowed types": (
         "all elements must be of one type, as in [1.0, 2.5], and none a list: make nested lists parameters of their own"
     ),
+    r"in parameters list: ([\w.]+); expecting length": (
+        "('{0}') is a string, not a tuple: write ('{0}', 1.0), with its default"
+    ),
     r"Third element (.*) at index .* is not a ParameterDescriptor": (
         "the third argument is a ParameterDescriptor(description={0!r}), from rcl_interfaces.msg"
     ),

@@ -76,6 +76,9 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
         "a parameter is a bool, an int, a float, a str, bytes, or a list",
     ),
     (lambda n: n.declare_parameter("gains", [1, 2.5]), "all elements must be of one type, as in [1.0, 2.5]"),
+    (lambda n: n.declare_parameters("", [("speed")]), "('speed') is a string, not a tuple: write ('speed', 1.0)"),
+    (lambda n: n.declare_parameters("", ["max"]), "('max') is a string, not a tuple: write ('max', 1.0)"),
+    (lambda n: n.declare_parameters("", [("a", 1, 2, 3)]), ""),
     (lambda n: n.declare_parameter("rate", 1.0, "the rate"), "is a ParameterDescriptor(description='the rate')"),
     (lambda n: n.set_parameters(Parameter("n", value=6)), ""),
     (lambda n: Parameter("n", 2.0), "pass the value by keyword: Parameter('name', value=2.0)"),  # type: ignore[arg-type]

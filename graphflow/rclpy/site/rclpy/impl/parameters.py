@@ -20,6 +20,7 @@ from rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
+from rclpy.impl.callers import stack_level
 from rclpy.impl.mistakes.arguments import must_return
 from rclpy.impl.overrides import remark
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
@@ -121,7 +122,14 @@ class NodeParameters:
     def _read(given: Sequence[object], index: int) -> tuple[str, object, ParameterDescriptor]:
         from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
-        if not 1 <= len(given) <= 3:
+        is_text = isinstance(given, str) and len(given) > 1
+        if is_text and len(given) == 2:  # ROS 2 takes the first character for the name
+            warnings.warn(
+                f"{given!r} is a string, not a tuple, and declares {given[0]!r} with the value {given[1]!r}: write "
+                f"({given!r}, 1.0), with its default",
+                stacklevel=stack_level(),
+            )
+        if not 1 <= len(given) <= 3 or (is_text and len(given) == 3):
             raise TypeError(
                 f"Invalid parameter tuple length at index {index} in parameters list: {given}; "
                 "expecting length between 1 and 3"

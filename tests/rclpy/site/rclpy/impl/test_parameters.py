@@ -16,6 +16,7 @@ from rclpy.exceptions import (
     ParameterUninitializedException,
 )
 from rclpy.impl.parameters import NodeParameters
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 P = Parameter
@@ -185,3 +186,13 @@ def test_words_for_truth_values() -> None:
     assert [parameter.value for parameter in declared] == [True, False, "on"]
     with pytest.raises(InvalidParameterTypeException, match="expecting type 'BOOL'"):
         parameters.declare("", [("d", True)])
+
+
+def test_a_string_in_place_of_a_tuple(node: Node) -> None:
+    """One of two characters is taken, with a warning that shows the line."""
+    with pytest.warns(
+        UserWarning, match=r"'kp' is a string.* declares 'k' with the value 'p': write \('kp', 1.0\)"
+    ) as got:
+        node.declare_parameters("", [("kp")])
+    assert [warning.filename for warning in got] == [__file__]
+    assert node.get_parameter("k").value == "p"
