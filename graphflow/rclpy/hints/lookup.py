@@ -18,6 +18,7 @@ from graphflow.rclpy.hints.calls import called_value, wrong_call
 from graphflow.rclpy.hints.fields import message_as_value, missing_field, no_message, wrong_value
 from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
 from graphflow.rclpy.hints.names import missing_name, misspelt_init, unknown_name, unset
+from graphflow.rclpy.hints.pending import early_result
 from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages.classes import StrictMessage
 
@@ -94,6 +95,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _attribute,
     missing_name,
     unknown_name,
+    early_result,
     unset,
     misspelt_init,
     wrong_call,
