@@ -114,9 +114,9 @@ def test_functions_that_rclpy_source_calls_early(here: Machine, tmp_path: Path) 
     body += "        Thread(target=self.work).start()\n"
     (tmp_path / "ros" / "move.py").write_text(RCLPY.replace("    pass\n", body))
     said = [
-        "ros/move.py:7: target=rclpy.spin(self) spins here, and Thread is not called before that ends; write "
-        "target=rclpy.spin, args=(self,)",
-        "ros/move.py:8: create_timer(..., self.work()) calls work here, and passes None, which it returns; write "
+        "ros/move.py:7: target=rclpy.spin(self) calls rclpy.spin at once, and it does not "
+        "return before the program ends; write target=rclpy.spin, args=(self,)",
+        "ros/move.py:8: create_timer(..., self.work()) calls work at once, and passes on its result, None; write "
         "self.work",
     ]
     text = "\n".join([*said, "ros: no deadlocks visible in the source, 2 remarks", ""])

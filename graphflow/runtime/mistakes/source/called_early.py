@@ -57,8 +57,8 @@ def spins_called(code: ast.AST) -> Iterator[Early]:
         name = ast.unparse(function)
         owner = last_name(function.value).lower() if isinstance(function, ast.Attribute) else ""
         if last_name(function) == "spin" and ("executor" in owner or owner in ("rclpy", "exec")):
-            shown = _shown(given)
-            text = f"{shown} spins here, and {given.taker} is not called before that ends; write {_way(given, name)}"
+            early = f"{_shown(given)} calls {name} at once, and it does not return before the program ends"
+            text = f"{early}; write {_way(given, name)}"
             yield Early(given.call.lineno, given.call.end_lineno or 0, text)
 
 
@@ -73,7 +73,7 @@ def results_passed(code: ast.AST, *, is_of_threads: bool) -> Iterator[tuple[int,
         called = _function(given, silent)
         if called is not None:
             shown, name = _shown(given), ast.unparse(given.call.func)
-            text = f"{shown} calls {called} here, and passes None, which it returns; write {_way(given, name)}"
+            text = f"{shown} calls {called} at once, and passes on its result, None; write {_way(given, name)}"
             yield given.call.lineno, text
 
 

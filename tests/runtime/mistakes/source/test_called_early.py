@@ -62,7 +62,8 @@ def told(line: str, *, is_of_threads: bool) -> list[tuple[int, str]]:
     return list(results_passed(ast.parse(SOURCE.format(line=line)), is_of_threads=is_of_threads))
 
 
-HERE = "here, and passes None, which it returns; write"
+EVER = "at once, and it does not return before the program ends; write"
+HERE = "at once, and passes on its result, None; write"
 
 
 @pytest.mark.parametrize(
@@ -125,14 +126,17 @@ def test_calls_that_return_a_function(line: str) -> None:
 @pytest.mark.parametrize(
     ("line", "text"),
     [
-        ("Thread(target=rclpy.spin(n), daemon=True)", "target=rclpy.spin(n) spins here, and Thread is not called "
-         "before that ends; write target=rclpy.spin, args=(n,)"),
-        ("Thread(target=self.executor.spin())", "target=self.executor.spin() spins here, and Thread is not called "
-         "before that ends; write target=self.executor.spin"),
-        ("pool.submit(rclpy.spin(n))", "submit(..., rclpy.spin(n)) spins here, and submit is not called "
-         "before that ends; write rclpy.spin, n"),
+        (
+            "Thread(target=rclpy.spin(n), daemon=True)",
+            f"target=rclpy.spin(n) calls rclpy.spin {EVER} target=rclpy.spin, args=(n,)",
+        ),
+        (
+            "Thread(target=self.executor.spin())",
+            f"target=self.executor.spin() calls self.executor.spin {EVER} target=self.executor.spin",
+        ),
+        ("pool.submit(rclpy.spin(n))", f"submit(..., rclpy.spin(n)) calls rclpy.spin {EVER} rclpy.spin, n"),
     ],
-)  # fmt: skip
+)
 def test_spins(line: str, text: str) -> None:
     """They do not return."""
     [early] = spins_called(ast.parse(SOURCE.format(line=line)))

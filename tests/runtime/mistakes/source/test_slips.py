@@ -57,7 +57,7 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ("def on_pose(self, message): ...", LOOKS.format("on_pose", SUBSCRIPTION)),
         (
             "def work(self):\n    self.x = 1\ndef go(self):\n    Thread(target=self.work())",
-            "target=self.work() calls work here, and passes None, which it returns; write target=self.work",
+            "target=self.work() calls work at once, and passes on its result, None; write target=self.work",
         ),
         ("def on_strat(self): ...", "nothing calls Robot.on_strat; did you mean on_start?"),
         ("def on_stop(self): ...", "nothing calls Robot.on_stop; did you mean on_shutdown?"),

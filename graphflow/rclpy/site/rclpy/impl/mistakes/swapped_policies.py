@@ -43,5 +43,5 @@ def check(word: str, value: object, taken: object) -> None:
     place = short_place(frame.f_code.co_filename, frame.f_lineno)
     if (place, word) not in _reported:
         _reported.add((place, word))
-        text = "%s: the %s is given %s, and is %s, since only the number counts: write %s=%s"
+        text = "%s: %s=%s is read as %s, since only the number counts: write %s=%s"
         logger.warning(text, place, word, given, read, own, given)

@@ -16,13 +16,14 @@ def test_a_policy_of_another_kind(caplog: pytest.LogCaptureFixture) -> None:
         QoSProfile(depth=HistoryPolicy.KEEP_LAST)
     assert (profile.durability, profile.reliability) == (DurabilityPolicy.VOLATILE, ReliabilityPolicy.RELIABLE)
     line = test_a_policy_of_another_kind.__code__.co_firstlineno + 3
+    numbers = ", since only the number counts: write"
     assert caplog.messages == [
-        f"test_swapped_policies.py:{line}: the durability is given ReliabilityPolicy.BEST_EFFORT, and is "
-        "DurabilityPolicy.VOLATILE, since only the number counts: write reliability=ReliabilityPolicy.BEST_EFFORT",
-        f"test_swapped_policies.py:{line + 1}: the reliability is given DurabilityPolicy.TRANSIENT_LOCAL, and is "
-        "ReliabilityPolicy.RELIABLE, since only the number counts: write durability=DurabilityPolicy.TRANSIENT_LOCAL",
-        f"test_swapped_policies.py:{line + 2}: the depth is given HistoryPolicy.KEEP_LAST, and is 1, since only the "
-        "number counts: write history=HistoryPolicy.KEEP_LAST",
+        f"test_swapped_policies.py:{line}: durability=ReliabilityPolicy.BEST_EFFORT is read as "
+        f"DurabilityPolicy.VOLATILE{numbers} reliability=ReliabilityPolicy.BEST_EFFORT",
+        f"test_swapped_policies.py:{line + 1}: reliability=DurabilityPolicy.TRANSIENT_LOCAL is read as "
+        f"ReliabilityPolicy.RELIABLE{numbers} durability=DurabilityPolicy.TRANSIENT_LOCAL",
+        f"test_swapped_policies.py:{line + 2}: depth=HistoryPolicy.KEEP_LAST is read as 1{numbers} "
+        "history=HistoryPolicy.KEEP_LAST",
     ]
 
 

@@ -51,7 +51,7 @@ def test_a_method_without_parentheses(
     assert found == [
         "lamp.py:3: timer.cancel without parentheses calls nothing; write: timer.cancel()",
         "lamp.py:5: timer.state == 'on' compares without effect; write = to set it",
-        "lamp.py:6: target=work() calls work here, and passes None, which it returns; write target=work",
+        "lamp.py:6: target=work() calls work at once, and passes on its result, None; write target=work",
     ]
 
 
