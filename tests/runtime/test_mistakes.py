@@ -179,6 +179,11 @@ MISTAKES = {
         body("async def on_strat(self): ...", "async def on_strat(self): ..."),
         body("async def on_configure(self): ..."),
         body(
+            "def work(self):\n    self.done = True\n@timer(9.0)\ndef tick(self):\n"
+            "    Thread(target=self.work()).start()",
+            "Thread(target=self.work()).start()",
+        ),
+        body(
             "motion = Group(1)\n@timer(0.1)\nasync def tick(self):\n    with self.motion: ...", "with self.motion: ..."
         ),
         ticking("Header(stamp=1700000000.5).to_bytes()"),
