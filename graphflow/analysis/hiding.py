@@ -58,6 +58,8 @@ def hides_what_it_imports(file: Path) -> bool:
 
 def _text(file: Path) -> str:
     named = file.parent if file.name == "__init__.py" else file
+    if named.is_dir() and (named.parent / "package.xml").is_file() and named.name in registry.packages():
+        return f"your package {named.parent} hides ROS 2's {named.name}; rename yours, there and in its files"
     return f"{named} hides the package {named.stem}: rename it, as in my_{named.name}"
 
 

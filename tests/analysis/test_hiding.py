@@ -60,6 +60,9 @@ def test_a_folder_that_hides_a_package(
         exec(line, {})
     text = f"{tmp_path / name} hides the package {name}: rename it, as in my_{name}"
     assert hiding.hidden(caught.value) == (text if is_hiding else "")
+    (tmp_path / "package.xml").touch()
+    text = f"your package {tmp_path} hides ROS 2's {name}; rename yours, there and in its files"
+    assert hiding.hidden(caught.value).startswith(text) is (is_hiding and name == "shape_msgs")
     monkeypatch.delitem(sys.modules, name, raising=False)
 
 
