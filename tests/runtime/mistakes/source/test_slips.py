@@ -77,7 +77,7 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ),
         (
             "tags = Param(['a'])\ndef work(self):\n    self.tags[0] = 'b'",
-            "self.tags[0] changes the list of a parameter unseen by its checks",
+            "self.tags[0] changes a parameter's list without its checks",
         ),
         ("def work(self):\n    self.rat = 2.0", "self.rat is set and never read; did you mean self.rate?"),
         *(
