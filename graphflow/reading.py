@@ -33,13 +33,16 @@ def found_bytes(path: Path, bound: int = FOUND_BOUND) -> bytes:
 
 
 def found_text(path: Path, errors: str = "strict", bound: int = FOUND_BOUND) -> str:
-    """Read a file as UTF-8, with all line breaks as line feeds. `errors` as for `open`.
+    """Read a file as UTF-8, with or without a byte order mark, with all line breaks as line feeds.
+
+    Args:
+        errors: As for `open`.
 
     Raises:
         OSError: As for `found_bytes`.
         UnicodeDecodeError: The file is not UTF-8.
     """
-    return found_bytes(path, bound).decode(errors=errors).replace("\r\n", "\n").replace("\r", "\n")
+    return found_bytes(path, bound).decode("utf-8-sig", errors).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _open_at_once(path: str, flags: int) -> int:

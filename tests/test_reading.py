@@ -13,12 +13,14 @@ pytestmark = pytest.mark.timeout(20)
 
 
 def test_a_regular_file(tmp_path: Path) -> None:
-    """Is read as `open` would read it, also through a link."""
+    """Is read as `open` would read it, also through a link; a byte order mark is no part of the text."""
     file, link = tmp_path / "package.xml", tmp_path / "link"
     file.write_bytes(b"<name>\r\nl\xc3\xa4mp</name>\r")
     link.symlink_to(file)
     assert found_bytes(file) == file.read_bytes()
     assert found_text(link) == file.read_text(encoding="utf-8") == "<name>\nlämp</name>\n"
+    file.write_bytes(b"\xef\xbb\xbfimport rclpy\n")
+    assert found_text(file) == found_text(file, "replace") == "import rclpy\n"
     file.write_bytes(b"\xff")
     assert found_text(file, "replace") == "\ufffd"
     with pytest.raises(UnicodeDecodeError):

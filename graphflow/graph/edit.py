@@ -38,7 +38,9 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
         if node.name in nodes:
             file = (folder / node.place.file).resolve()
             key = _key_at(file, node.place)
-            if file != top and not isinstance(_load(top.read_text(encoding="utf-8"), plan.file).get("include"), str):
+            if file != top and not isinstance(
+                _load(top.read_text(encoding="utf-8-sig"), plan.file).get("include"), str
+            ):
                 text = (
                     f"{node.name} comes from here, which {plan.file} includes in a block; write it under that override:"
                 )
@@ -49,7 +51,7 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
 
 def _key_at(file: Path, place: Place) -> str:
     """Return the key of `nodes` or `override` on a line."""
-    data = _load(file.read_text(encoding="utf-8"), str(file))
+    data = _load(file.read_text(encoding="utf-8-sig"), str(file))
     for section in ("nodes", "override"):
         nodes = data.get(section)
         if isinstance(nodes, CommentedMap):

@@ -56,6 +56,12 @@ def test_an_included_node_is_changed_under_override(file: Path, tmp_path: Path) 
     assert right.params["rate"].value == 9.0
 
 
+def test_a_byte_order_mark(file: Path) -> None:
+    """It hides no node, as it hides none from the reader."""
+    file.write_text(f"\ufeff{TEXT}", encoding="utf-8")
+    assert node_paths(load(file, []), {"/arm/left"}, Path()) == {"/arm/left": LEFT}
+
+
 def test_nodes_of_blocks(tmp_path: Path) -> None:
     """Where a group, a loop, or an include with arguments has them, they are changed by hand; it is said where."""
     (tmp_path / "base.yaml").write_text("nodes: {/b: {class: x:Y}}\n")

@@ -150,6 +150,8 @@ def test_files_that_use_rclpy_are_told_from_others(tmp_path: Path, text: str, ve
     """By their imports."""
     (tmp_path / "a.py").write_text(text)
     assert uses_ros(tmp_path / "a.py") is verdict
+    (tmp_path / "a.py").write_bytes(b"\xef\xbb\xbf" + (tmp_path / "a.py").read_bytes())  # as some editors save it
+    assert uses_ros(tmp_path / "a.py") is verdict
 
 
 def test_other_entry_points_are_no_executables(tmp_path: Path) -> None:

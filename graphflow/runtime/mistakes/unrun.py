@@ -9,6 +9,7 @@ from pathlib import Path
 
 from graphflow.analysis.uncalled import uncalled
 from graphflow.analysis.user_code import is_installed, is_ours, place_in
+from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 
@@ -61,7 +62,7 @@ def report(file: Path) -> None:
 def advice(file: Path, classes: list[str]) -> str:
     """Return a remark on a file that ended without running a node; "" if that seems intended."""
     try:
-        source = file.read_text(encoding="utf-8")
+        source = found_text(file)
     except (OSError, ValueError):
         return ""
     if file.is_relative_to(Path.cwd()):

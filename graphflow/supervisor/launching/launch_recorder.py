@@ -142,7 +142,7 @@ def _instead(name: str, known: set[str]) -> str:
 
 
 def _tree(path: str) -> ast.Module:
-    with open(path, encoding="utf-8") as file:
+    with open(path, "rb") as file:  # as Python reads it: its encoding may be declared, or marked by a byte order mark
         return ast.parse(file.read(), path)
 
 

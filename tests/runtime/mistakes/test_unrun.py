@@ -58,3 +58,5 @@ def test_advice(tmp_path: Path) -> None:
     assert advice(file, ["A"]) == ""
     file.write_text(TALK)
     assert "graphflow run MODULE:A, or" in advice(file, ["A", "B"])
+    file.write_text("\ufeffdef main():\n    pass\n", encoding="utf-8")
+    assert "main() is defined and never called" in advice(file, []), "a byte order mark is no part of the text"

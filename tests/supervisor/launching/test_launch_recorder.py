@@ -275,6 +275,16 @@ def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> 
     assert problem["message"].startswith(message)
 
 
+@pytest.mark.parametrize("mark", [b"\xef\xbb\xbf", b"# coding: latin-1\n# \xe4\n"])
+def test_an_encoding(tmp_path: Path, mark: bytes) -> None:
+    """It is the one that Python would read the file with."""
+    file = tmp_path / "launch.py"
+    file.write_bytes(
+        mark + b"import launch\ndef generate_launch_description():\n    return launch.LaunchDescription([])\n"
+    )
+    assert record(file)["problems"] == []
+
+
 def test_a_description_of_nothing(tmp_path: Path) -> None:
     """It is let pass, and told."""
     (tmp_path / "a.launch.py").write_text("import launch\ngenerate_launch_description = launch.LaunchDescription\n")
