@@ -173,7 +173,7 @@ class Plan:
     console: dict[str, Any] | None = None
     """The windows and panes of the console at its start, as `console.section` reads them."""
     remarks: tuple[str, ...] = ()
-    """Remarks, each with its place: oddities of ROS launch files, and settings that give others access."""
+    """Remarks, each with its place: oddities of the files, and settings that give others access."""
 
     def only(self, names: Iterable[str]) -> Plan:
         """Return the part of the graph with some nodes and all their predecessors.

@@ -16,6 +16,7 @@ from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.folders import newest_logs
 from graphflow.graph import params_file
 from graphflow.graph.checks.order import ordered
+from graphflow.graph.checks.unused_arguments import unused_arguments
 from graphflow.graph.checks.validation import Problems, example, validated
 from graphflow.graph.expansion.arguments import given_values
 from graphflow.graph.expansion.expand import Expansion
@@ -124,6 +125,9 @@ def _resolve(
     console = console_section(src, problems.add)
     if model.net.allow_control:
         problems.remark(src.key_place(("net", "allow_control")), _ANYBODY)
+    if not problems.launch_files:  # in ROS, launch files may have arguments for the sake of others
+        for unused in unused_arguments(expansion.tops, expansion.followed):
+            problems.remark(*unused)
     problems.raise_any()
     return Plan(
         name=model.name or name,

@@ -72,6 +72,10 @@ class Expansion:
         """Keys of nodes and steps with invalid names, which have been reported."""
         self.files: dict[str, Path] = {}
         """The graph files, by the names that messages have for them."""
+        self.tops: dict[str, Item] = {}
+        """The contents of these files."""
+        self.followed: set[Place] = set()
+        """Places of the includes whose files are among these."""
         self.arguments = Arguments(given, problems)
         self._outside, self._problems, self._describe = outside, problems, describe
         self._values = Values(outside, self.files, problems)
@@ -94,6 +98,7 @@ class Expansion:
     def _file(self, top: Item, path: Path, scope: Scope, fixed: Mapping[str, Item]) -> Mapping[str, Item]:
         """Expand a file; returns its templates."""
         self.files[top.place.file] = path.resolve()
+        self.tops[top.place.file] = top
         if (launch := top.entries.get(FROM_LAUNCH)) is not None:
             self._problems.launch_files.add(top.place.file)
         entries = top.without(FROM_LAUNCH).entries
@@ -163,6 +168,7 @@ class Expansion:
         top = self._read(path, file.place, values)
         if top is None:
             return scope
+        self.followed.add(item.place)
         before = set(self.nodes)  # overrides may change only the nodes of this file
         inner = replace(
             scope,
