@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
+from graphflow.console.subjects import Subject
 from graphflow.errors import NOWHERE, GraphFileError, Place, Problem
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy, GroupChange
 from graphflow.machines.regrouping import Regrouping
@@ -172,6 +173,8 @@ class Plan:
     """Whether nodes may be loaded and unloaded over the network."""
     console: dict[str, Any] | None = None
     """The windows and panes of the console at its start, as `console.section` reads them."""
+    panes: tuple[Subject, ...] = ()
+    """What these panes show; only for checks, and no part of the JSON."""
     remarks: tuple[str, ...] = ()
     """Remarks, each with its place: oddities of the files, and settings that give others access."""
 
@@ -210,7 +213,7 @@ class Plan:
 
     def to_json(self) -> dict[str, Any]:
         """Return the plan as JSON, which `from_json` reads."""
-        return asdict(self)
+        return {key: value for key, value in asdict(self).items() if key != "panes"}
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Plan:

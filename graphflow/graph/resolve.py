@@ -12,6 +12,7 @@ from pathlib import Path
 from shutil import which
 
 from graphflow.console.section import console_section
+from graphflow.console.subjects import subjects
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.folders import newest_logs
 from graphflow.graph import params_file
@@ -142,6 +143,7 @@ def _resolve(
         strategy=model.strategy,
         allow_control=model.net.allow_control,
         console=console,
+        panes=tuple(subjects(src)),
         remarks=tuple(map(str, problems.remarks)),
     )
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from graphflow.errors import Place, Problem
 from graphflow.graph.checks.check import Interfaces, remarks_on_programs, resolver
+from graphflow.graph.checks.panes import odd_panes
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, StepKind
 from graphflow.interface import EndpointKind, Interface, may_make
 from graphflow.names import Kind, nearest
@@ -27,6 +28,14 @@ _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
 _NEEDS_ONE = ("subscription", "client", "action client")
 """Endpoints that do nothing without a counterpart; others may serve clients outside of the graph."""
 _STEPS: Mapping[StepKind, EndpointKind] = {"call": "client", "goal": "action client"}
+_KINDS: Mapping[EndpointKind, str] = {
+    "publisher": "topic",
+    "subscription": "topic",
+    "client": "service",
+    "service": "service",
+    "action client": "action",
+    "action": "action",
+}
 _EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
 """Topics of tools and of every node."""
 
@@ -53,8 +62,17 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
         return classes
     ends = [end for node in plan.nodes for end in _ends(node, interfaces)]
     made = [interface.dynamic_names for interface in known]
-    found = [*_of_steps(plan, ends), *_of_nodes(ends)]
+    found = [*_of_steps(plan, ends), *_of_nodes(ends), *odd_panes(plan.panes, _by_kind(plan, ends))]
     return classes + [problem for name, problem in found if not any(may_make(names, name) for names in made)]
+
+
+def _by_kind(plan: Plan, ends: list[_End]) -> dict[str, dict[str, str]]:
+    """Return the names of the graph with their types, by kind."""
+    found: dict[str, dict[str, str]] = {kind: {} for kind in _KINDS.values()}
+    found["node"] = {node.name: "" for node in plan.nodes}
+    for end in ends:
+        found[_KINDS[end.kind]].setdefault(end.name, end.type)
+    return found
 
 
 def _of_classes(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:

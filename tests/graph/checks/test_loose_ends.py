@@ -134,3 +134,12 @@ def test_a_class_that_the_project_of_an_included_file_has_too(tmp_path: Path) ->
     assert f"ours/nodes/talk.py, not that of this file's project, {tmp_path}/theirs/nodes/talk.py" in problem.message
     (tmp_path / "theirs/nodes/only.py").touch()
     assert loose_ends(plan, imported("theirs")) == []
+
+
+def test_panes_of_the_console() -> None:
+    """A name that a pane misspells is reported, unless a program or a class may have it at run time."""
+    panes = "console: {windows: [{panes: [{log: /l}, {echo: /chater}]}]}\n"
+    graph = "nodes:\n  /talk: {class: a:Talker}\n  /l: {class: a:Listener}\n"
+    assert told(graph + panes) == ["g.yaml:4:48: this graph has no topic /chater; did you mean '/chatter'?"]
+    assert told(f"{graph}  /any: {{class: a:Any}}\n{panes}") == []
+    assert told(f"{graph}  /rviz: {{command: [rviz2]}}\n{panes}") == []
