@@ -86,16 +86,17 @@ def _instead_of(key: str) -> str:
     return f"write {word}: {given.strip()}" if sign and given else "an empty string is ''"
 
 
-def read(path: Path, name: str) -> list[Section]:
+def read(path: Path, name: str, remark: source.Complain | None = None) -> list[Section]:
     """Read the sections of a file.
 
     Args:
         name: The file as messages show it.
+        remark: As for `source.read`.
 
     Raises:
         GraphFileError: The file cannot be read, or is no parameter file; all mistakes, with their places.
     """
-    src = source.read_file(path, name, is_params=True)
+    src = source.read_file(path, name, is_params=True, remark=remark)
     problems: list[Problem] = []
     sections = list(_sections(src, problems))
     if not sections and not problems:

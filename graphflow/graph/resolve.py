@@ -288,7 +288,7 @@ class _ParamsFiles:
             self._problems.add_unless_ros(place, no_file(path))
             return []
         try:
-            return params_file.read(path, shown(path))
+            return params_file.read(path, shown(path), self._problems.remark)
         except GraphFileError as error:
             self._problems += error.problems
             return []

@@ -36,7 +36,7 @@ def read(
         note: Called with remarks on a converted launch file.
         describe: Runs a launch file in Python; such files are refused without.
         values: The arguments with which a launch file in Python is being started; None if it is only converted.
-        remark: Called with each part of a launch file in Python that is left out.
+        remark: Called with each part of a launch file in Python that is left out, and with oddities of YAML.
         number: The position of the file among those of the graph, which makes names of steps unique.
         leave_out: Called with programs of a launch file that are not installed.
 
@@ -57,7 +57,7 @@ def read(
     if path.suffix in (".xml", ".launch"):
         top = xml_source.read_file(path, name)
     else:
-        top = tree(source.read_file(path, name, complain=complain))
+        top = tree(source.read_file(path, name, complain=complain, remark=remark))
     if conversion.is_launch_file(top):
         return conversion.native(unescaped(top), project_root(path), complain, note, number, leave_out)
     if "launch" in top.entries and top.entries["launch"].entries:

@@ -97,12 +97,19 @@ def scalar(text: str) -> Scalar:
     return text
 
 
-def read_file(path: pathlib.Path, name: str, *, is_params: bool = False, complain: Complain | None = None) -> Source:
+def read_file(
+    path: pathlib.Path,
+    name: str,
+    *,
+    is_params: bool = False,
+    complain: Complain | None = None,
+    remark: Complain | None = None,
+) -> Source:
     """Read a YAML file.
 
     Args:
         name: The file as messages show it.
-        is_params, complain: As for `read`.
+        is_params, complain, remark: As for `read`.
 
     Raises:
         GraphFileError: As for `read`; also if the file does not exist, is not a regular one, or is not text.
@@ -112,13 +119,20 @@ def read_file(path: pathlib.Path, name: str, *, is_params: bool = False, complai
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
     try:
-        return read(data.decode("utf-8-sig"), name, is_params=is_params, complain=complain)
+        return read(data.decode("utf-8-sig"), name, is_params=is_params, complain=complain, remark=remark)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
 
 
-def read(text: str, file: str, *, is_params: bool = False, complain: Complain | None = None) -> Source:
+def read(
+    text: str,
+    file: str,
+    *,
+    is_params: bool = False,
+    complain: Complain | None = None,
+    remark: Complain | None = None,
+) -> Source:
     """Read one YAML document.
 
     Args:
@@ -126,6 +140,7 @@ def read(text: str, file: str, *, is_params: bool = False, complain: Complain | 
         is_params: Whether to read it as ROS reads parameter files: every key is text, and mappings under the same key
             are merged.
         complain: Called with each key that is not text, which is then left out; None raises instead.
+        remark: Called with each value in quotes that are none in YAML.
 
     Raises:
         GraphFileError: `text` is not YAML, or uses a refused feature; the first such place.
@@ -138,7 +153,7 @@ def read(text: str, file: str, *, is_params: bool = False, complain: Complain | 
         place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
         raise _error(place, f"the character U+{ord(unprintable[0]):04X} is not allowed in a YAML file; delete it")
     try:
-        return _Builder(text, file, is_params=is_params, complain=complain or _error_at).build()
+        return _Builder(text, file, is_params=is_params, complain=complain or _error_at, remark=remark).build()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         lines = text.splitlines()
@@ -203,8 +218,11 @@ class _Frame:
 class _Builder:
     """The values and places of a document, built from the parser's events."""
 
-    def __init__(self, text: str, file: str, *, is_params: bool, complain: Complain) -> None:
-        self._text, self._file, self._is_params, self._complain = text, file, is_params, complain
+    def __init__(
+        self, text: str, file: str, *, is_params: bool, complain: Complain, remark: Complain | None = None
+    ) -> None:
+        self._text, self._file, self._is_params = text, file, is_params
+        self._complain, self._remark = complain, remark
         self._lines = _LINE_BREAK.split(text)
         self._root: list[Data] = []
         self._places: dict[Path, Place] = {}
@@ -247,6 +265,8 @@ class _Builder:
             if frame is not None and isinstance(frame.container, dict) and frame.key is None:
                 self._begin_entry(event, place, frame, frame.container)
             elif isinstance(event, yaml.ScalarEvent):
+                if self._remark is not None and not event.style and (odd := _odd_quotes(event.value)):
+                    self._remark(place, odd)
                 self._put(_scalar_value(event, place), place)
             else:
                 self._open({} if isinstance(event, yaml.MappingStartEvent) else [], place)
@@ -324,6 +344,16 @@ def _key_fault(event: yaml.ScalarEvent, place: Place, line: str) -> str:
     if slip := yaml_slips.of_number(line, column):
         return slip
     return f"the key {event.value} is not text; write it in quotes: '{event.value}'"
+
+
+def _odd_quotes(text: str) -> str:
+    """Return a remark on a text in typographic quotes; empty for others, as for several quoted words."""
+    if not is_quoted(text) or {text[0], text[-1]} & {*text[1:-1]}:
+        return ""
+    ways = [plain(text)] if plain(text)[0] not in text else []
+    ways += [f"'{text}' to keep them"] if "'" not in text else []
+    way = f"; write {', or '.join(ways)}" if ways else ""
+    return f"{text[0]} and {text[-1]} are not quotes in YAML, and are part of the value{way}"
 
 
 def _scalar_value(event: yaml.ScalarEvent, place: Place) -> Scalar:

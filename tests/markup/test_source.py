@@ -359,3 +359,28 @@ def test_keys_that_are_no_text_can_be_told_together(tmp_path: Path) -> None:
         "f.yaml:1:10: a number is written with a point: 2.0, not 2,0",
         "f.yaml:2:1: the key 3 is not text; write it in quotes: '3'",
     ]
+
+
+QUOTES = "f.yaml:1:{}: {} and {} are not quotes in YAML, and are part of the value; write {}, or '{}' to keep them"
+DOUBLE, SINGLE = "\u201chello\u201d", "\u2018hello\u2019"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f"a: {{b: {DOUBLE}}}", QUOTES.format(8, "\u201c", "\u201d", '"hello"', DOUBLE)),
+        (f"- {SINGLE}", QUOTES.format(3, "\u2018", "\u2019", "'hello'", SINGLE)),
+        (f"a: '{DOUBLE}'", ""),
+        (f'a: "{DOUBLE}"', ""),
+        (f"a: |-\n  {DOUBLE}", ""),
+        (f"a: {DOUBLE} or {DOUBLE}", ""),
+        (f"a: he said {DOUBLE}", ""),
+        ("a: \u201d", ""),
+    ],
+)
+def test_typographic_quotes(text: str, told: str) -> None:
+    """A value in nothing but such quotes gets a remark, unless YAML's own are around them; the value stays."""
+    found: list[str] = []
+    data = read(text, "f.yaml", remark=lambda place, message: found.append(f"{place}: {message}")).data
+    assert found == ([told] if told else [])
+    assert data == read(text, "f.yaml").data
