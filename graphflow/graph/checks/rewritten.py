@@ -4,15 +4,18 @@ params: [{rate: 2.0}]                    ->   params: {rate: 2.0}          (laun
 env: [DISPLAY=:0]                        ->   env: {DISPLAY: ":0"}         (docker-compose)
 remap: [{from: chatter, to: news}]       ->   remap: {chatter: news}       (launch files in XML and YAML)
 command: cd /tmp && ls                   ->   command: [sh, -c, cd /tmp && ls]
+request: "{x: 1.0}"                      ->   request: {x: 1.0}            (the command line)
 """
 
 from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
+
+from graphflow.errors import GraphflowError
 
 MAX_SHOWN = 120
 """Length in characters of a line that is shown; a longer one would hide the message around it."""
@@ -36,7 +39,9 @@ def line_for(key: str, value: object) -> str:
     Args:
         key: The key of the value.
     """
-    made: dict[str, object] | None = None
+    if (inner := _within_quotes(value)) and (line := _line_within(key, inner)):
+        return f"{line}, without quotes"
+    made: Mapping[str, object] | None = None
     if key in _MAPPINGS:
         made = _mapping(value)
     elif key == "nodes" and isinstance(value, list):
@@ -47,11 +52,37 @@ def line_for(key: str, value: object) -> str:
         key, made = "request", value
     elif key == "wait" and isinstance(value, (int, float)) and not isinstance(value, bool):
         return f"delay: {value}"
-    if not made:
-        return ""
+    return _shortened(key, made) if made else ""
+
+
+def _shortened(key: str, made: Mapping[str, object]) -> str:
+    """Return a mapping under a key as one line, if need be with its first entry only; empty if that is too long."""
     line = f"{key}: {flow(made)}"
     if len(line) > MAX_SHOWN and len(made) > 1:
         line = f"{key}: {flow(dict([next(iter(made.items()))]))[:-1]}, ...}}"
+    return line if len(line) <= MAX_SHOWN else ""
+
+
+def _within_quotes(value: object) -> dict[str, object] | list[object] | None:
+    """Parse a text that is a mapping or list in quotes; None for any other value."""
+    from graphflow.markup.source import parse_value
+
+    if not isinstance(value, str) or not value.lstrip().startswith(("{", "[")):
+        return None
+    try:
+        inner = parse_value(value)
+    except GraphflowError:
+        return None
+    return inner if isinstance(inner, (dict, list)) else None  # type: ignore[return-value]
+
+
+def _line_within(key: str, inner: dict[str, object] | list[object]) -> str:
+    """Return the line for a value that was in quotes."""
+    if isinstance(inner, dict):
+        return _shortened(key, inner)
+    if key != "command":
+        return line_for(key, inner)
+    line = f"command: {flow(inner)}"
     return line if len(line) <= MAX_SHOWN else ""
 
 

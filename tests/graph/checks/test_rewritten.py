@@ -26,6 +26,12 @@ from graphflow.graph.checks.rewritten import command_of, in_shell, line_for, she
         ("command", "rviz2 -d 'my robot.rviz'", "command: [rviz2, -d, my robot.rviz]"),
         ("wait", 2.0, "delay: 2.0"),
         ("goal", {"theta": 1.0}, "request: {theta: 1.0}"),
+        ("request", "{x: 1.0, y: 2.0}", "request: {x: 1.0, y: 2.0}, without quotes"),
+        ("params", "{a: 3}", "params: {a: 3}, without quotes"),
+        ("params", "[{a: 3}]", "params: {a: 3}, without quotes"),
+        ("nodes", "{/t: {class: 'a:B'}}", "nodes: {/t: {class: 'a:B'}}, without quotes"),
+        ("command", "[rviz2, -d, a.rviz]", "command: [rviz2, -d, a.rviz], without quotes"),
+        ("command", "[ -f a ] && ls", "command: [sh, -c, '[ -f a ] && ls']"),
     ],
 )
 def test_lines(key: str, value: Any, line: str) -> None:
@@ -35,7 +41,15 @@ def test_lines(key: str, value: Any, line: str) -> None:
 
 @pytest.mark.parametrize(
     ("key", "value"),
-    [("params", 3), ("params", "rate"), ("remap", [1]), ("nodes", [{"class": "a:B"}]), ("env", [f"A={'x' * 200}"])],
+    [
+        ("params", 3),
+        ("params", "rate"),
+        ("params", "{rate"),
+        ("params", "[1]"),
+        ("remap", [1]),
+        ("nodes", [{"class": "a:B"}]),
+        ("env", [f"A={'x' * 200}"]),
+    ],
 )
 def test_values_that_mean_nothing(key: str, value: Any) -> None:
     """They have none, nor have long ones."""
