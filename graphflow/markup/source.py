@@ -46,6 +46,8 @@ _KEYS_ONLY = re.compile(r"\{\s*([-\d.]+)\s*(?:,[^:{}]*)?\}")
 """A mapping of values without names: `{255, 0}`."""
 _APOSTROPHE = re.compile(r"'[^']*\w'\w")
 """A quoted text whose closing quote is followed by a letter: an apostrophe."""
+_WHERE_A_KEY = re.compile("mapping values are not|expected key|expected ':'")
+"""The parser's words for a key where none can be, or the reverse."""
 _COMMA = re.compile(r"(?<![\w.])([-+]?\d+),\Z")
 """The integer part of a number with a decimal comma."""
 _SPECIAL: dict[str, Scalar] = {
@@ -163,6 +165,8 @@ def read(
             place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
         if "nesting depth" in str(error.problem):  # libyaml reads ahead and has a limit of its own
             raise _error(place, f"nested more than {MAX_DEPTH} deep") from None
+        if mark and _WHERE_A_KEY.search(str(error.problem)) and (key := yaml_slips.unspaced_key(lines, mark.line)):
+            raise _error(Place(file, *key[:2]), f"write a space after '{key[2]}:'") from None
         raise _error(place, f"not valid YAML: {error.problem}{_hint(text, error)}") from None
     except yaml.YAMLError as error:
         raise _error(Place(file), f"not valid YAML: {' '.join(str(error).split())}") from None

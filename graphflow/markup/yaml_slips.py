@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 _CLASS = re.compile(r"\b(class\s*:\s*)([A-Za-z_][\w./-]*):\s+([A-Za-z_]\w*)")
 """A class with a space in it: `class: nodes.base: Base`."""
 _KEYS = "class|pkg|exec|command|params|remap|env|template|call|goal|delay|log|default|namespace|file"
 _OPENED = re.compile(rf"\s*(?:- +)?([\w/.-]+): +({_KEYS}): +([^\s{{\[#][^#]*?)\s*(?:#.*)?")
 """A key after a key: `/base: class: nodes.base:Base`."""
+_UNSPACED = re.compile(r"( *(?:- +)?)([A-Za-z_/][\w/.-]*):(?!//)[^\s:#][^\s{}\[\],]*(?:\s+#.*)?")
+"""A key without a space after its colon, which YAML reads as the beginning of a text: `class:nodes.base:Base`."""
 _SEVERAL = re.compile(r"\s*(- +)?(\w+): +([^\s:{}\[\]]+),? +(\w+): +([^\s:{}\[\]]+)\s*")
 """Two keys on a line: `pkg: turtlesim exec: turtlesim_node`."""
 _TUPLE = re.compile(r"\(([^(){}\[\]]*,[^(){}\[\]]*)\)")
@@ -29,6 +32,27 @@ def of_line(line: str) -> str:
     if found := _OPENED.fullmatch(line):
         return f"write {found[1]}: {{{found[2]}: {found[3]}}}, or {found[2]}: on a line of its own, indented"
     return ""
+
+
+def unspaced_key(lines: Sequence[str], refused: int) -> tuple[int, int, str] | None:
+    """Find the keys without a space after their colon above a line that YAML refuses for it.
+
+    YAML reads such a line and the next as one text, in which another colon cannot be.
+
+    Args:
+        refused: Index of the refused line.
+
+    Returns:
+        Line and column of the first such key, counted from 1, and the key; None if there is none right above.
+    """
+    first = None
+    for number in range(refused, 0, -1):
+        line = lines[number - 1]
+        if line.strip() and not line.lstrip().startswith("#"):
+            if (found := _UNSPACED.fullmatch(line.rstrip())) is None:
+                break
+            first = number, len(found[1]) + 1, found[2]
+    return first
 
 
 def of_key(key: str, line: str) -> str:

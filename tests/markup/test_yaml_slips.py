@@ -69,3 +69,28 @@ def test_texts_that_are_meant_as_lists() -> None:
     assert as_list("(a, b)") == "a list is written with brackets: [a, b]"
     assert as_list("a, b") == as_list("1.0") == as_list("[1, 2]") == ""
     assert of_key("2.0)", "x: 2.0)") == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("/a:\n  class:nodes.n:A\n  params:\n    rate: 2.0", "f.yaml:2:3: write a space after 'class:'"),
+        ("/a:\n  class:n:A\n\n  # more\n  after:b  # c\n  params: {}", "f.yaml:2:3: write a space after 'class:'"),
+        ("- class:n:A\n  params: {}", "f.yaml:1:3: write a space after 'class:'"),
+        ("a:1\nb: 2", "f.yaml:1:1: write a space after 'a:'"),
+        ("a: http://x\n  b: 2", "f.yaml:2:4: not valid YAML: mapping values are not allowed"),
+        ("http://x\nb: 2", "f.yaml:2:2: not valid YAML: mapping values are not allowed"),
+        ("class: a:B\n  params: 1", "f.yaml:2:9: not valid YAML: mapping values are not allowed"),
+    ],
+)
+def test_a_key_without_a_space(text: str, told: str) -> None:
+    """The parser refuses a later line; the place is that of the mistake."""
+    with pytest.raises(GraphFileError) as caught:
+        source.read(text, "f.yaml")
+    assert str(caught.value).startswith(told)
+
+
+@pytest.mark.parametrize("text", ["- a:b\n- c: d", "a: b:c\nd: 1", "a:\n  b:c\n", "b:c"])
+def test_texts_with_a_colon(text: str) -> None:
+    """They are left alone where YAML reads them."""
+    source.read(text, "f.yaml")
