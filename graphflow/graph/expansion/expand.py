@@ -418,8 +418,13 @@ class Expansion:
         wanted = item.entries.get("template")
         if wanted is None:
             return item
-        name = self._values.substituted(wanted, scope).value
+        name = self._values.substituted(wanted, scope).plain()
         base = scope.templates.get(name) if isinstance(name, str) else None
+        if isinstance(name, (list, dict)) or name is None:
+            way = f"; write template: {name[0]}" if isinstance(name, list) and len(name) == 1 else ""
+            shown_value = "nothing" if name is None else repr(name)
+            self._problems.add(wanted.place, f"template: expected the name of one template, got {shown_value}{way}")
+            return None
         if base is None:
             near = did_you_mean(str(name), scope.templates) or "; the file has none under templates:"
             self._problems.add(wanted.place, f"there is no template {name!r}{near}")

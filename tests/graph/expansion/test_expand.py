@@ -347,6 +347,14 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
         ("group: {if: 'Yes', nodes: {b: {class: x:Y}}}", "2:13: if: expected true or false, got 'Yes'; write 'true'"),
         ("group: {nodes: {b: {template: t}}}", "2:31: there is no template 't'; the file has none under templates:"),
         (
+            "group: {nodes: {b: {template: [t]}}}",
+            "2:31: template: expected the name of one template, got ['t']; write te",
+        ),
+        (
+            "group: {nodes: {b: {template: [t, u]}}}",
+            "2:31: template: expected the name of one template, got ['t', 'u']",
+        ),
+        (
             "templates: {t: {class: x:Y, template: u}}\ngroup: {nodes: {b: {template: t}}}",
             "2:29: a template cannot use a template; write here what it has",
         ),
