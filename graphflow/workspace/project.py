@@ -76,9 +76,19 @@ def no_file(path: Path) -> str:
     """Return the message for a file that does not exist, with the most similar name."""
     if path.exists():
         return f"{shown(path)} is not a regular file"
+    if hint := home_hint(path):
+        return f"there is no file {shown(path)}{hint}"
     beside = {file.stem: file.name for file in path.parent.glob("*.*")}
     found = beside.get(nearest(path.stem, beside) or "")
     return f"there is no file {shown(path)}" + (f"; did you mean {found!r}?" if found else "")
+
+
+def home_hint(path: Path) -> str:
+    """Return the correction of a path of a graph file that begins with `~`; empty for others."""
+    if "~" not in path.parts:
+        return ""
+    inside = "/".join(path.parts[path.parts.index("~") + 1 :])
+    return f"; ~ is not expanded: write $(env HOME)/{inside}"
 
 
 def shown(path: Path) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.workspace import project
-from graphflow.workspace.project import bundled_graphs, demos_root, module_of, project_root, shown
+from graphflow.workspace.project import bundled_graphs, demos_root, module_of, no_file, project_root, shown
 
 
 @pytest.fixture
@@ -94,3 +94,9 @@ def test_a_file_is_imported_from_its_project(folder: Path, monkeypatch: pytest.M
     monkeypatch.chdir(folder / "b")
     assert module_of(Path("nodes/n.py")) == (folder / "b", "nodes.n")
     assert module_of(folder / "a/nodes/n.py") == (folder / "a", "nodes.n")
+
+
+def test_a_home_folder_that_is_not_expanded(tmp_path: Path) -> None:
+    """The message has the substitution for it."""
+    assert no_file(Path("~", "maps", "a.yaml")).endswith("; ~ is not expanded: write $(env HOME)/maps/a.yaml")
+    assert "~ is not" not in no_file(tmp_path / "a~" / "b.yaml")

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import linecache
+import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.checks import rewritten
+from graphflow.graph.checks.parameter_slips import misplaced_key, value_correction
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, Setting, StepKind
 from graphflow.interface import (
     COMMON_PARAMETERS,
@@ -17,12 +19,11 @@ from graphflow.interface import (
     EndpointKind,
     GroupInfo,
     Interface,
-    Parameter,
     may_make,
 )
-from graphflow.markup import source, yaml_slips
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
+from graphflow.workspace.project import home_hint
 
 ImportFault = Problem
 Interfaces = Mapping[str, Interface | ImportFault]
@@ -53,12 +54,23 @@ def _check_program(node: PlannedNode) -> Iterator[Problem]:
         text = f"there is no package {node.command[2]!r} in the workspace, and no ROS 2 is sourced"
         yield Problem(node.class_place, text)
     else:
-        where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
+        where = _why_not_run(node, program) if "/" in program else "it is not on the PATH"
         if " " in program and shutil.which(program.partition(" ")[0], path=node.env.get("PATH")) is not None:
             where = f"each word is an item of its own: command: {rewritten.command_of(program)}"
         elif rewritten.shell_word(node.command) == program:
             where = f"it is a shell's own: write {_in_shell(node)}"
         yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")
+
+
+def _why_not_run(node: PlannedNode, program: str) -> str:
+    """Return why a file cannot be run, and the correction."""
+    if not os.path.isfile(program):
+        return "it is a folder" if os.path.isdir(program) else f"there is no such file{home_hint(Path(program))}"
+    interpreter = {".py": "python3", ".sh": "sh"}.get(Path(program).suffix)
+    other = ""
+    if interpreter and node.class_place.file.endswith((".yaml", ".yml")):
+        other = f", or write command: {rewritten.flow([interpreter, *node.command])}"
+    return f"it is not executable; make it so with: chmod +x {program}{other}"
 
 
 def _in_shell(node: PlannedNode) -> str:
@@ -133,36 +145,22 @@ def _at(place: Place) -> str:
 
 def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     known = [p.name for p in interface.params]
+    misplaced: set[str] = set()
     for name, setting in node.params.items():
         declared = interface.param(name)
         if declared is None:
-            if interface.dynamic_names is not True and not setting.is_optional:
+            key, way = misplaced_key(name, known)
+            if interface.dynamic_names is not True and not setting.is_optional and key not in misplaced:
                 yield Problem(
-                    setting.place, f"{_class(interface)} has no parameter {name!r}{did_you_mean(name, known)}"
+                    setting.place, f"{_class(interface)} has no parameter {name!r}{way or did_you_mean(name, known)}"
                 )
+            misplaced |= {key} - {""}  # an error for each entry below it would hide the others
             continue
         try:
             declared.fit(setting.value)
         except ParameterError as error:
-            way = _value_correction(declared, setting)
+            way = value_correction(declared, setting)
             yield Problem(setting.place, f"{error}; {way}" if way else str(error))
-
-
-def _value_correction(declared: Parameter, setting: Setting) -> str:
-    """Return the correction of a text as a parameter value: a list in brackets, or the value without quotes."""
-    value, place = setting.value, setting.place
-    if not isinstance(value, str):
-        return ""
-    if declared.type.startswith("list[") and (way := yaml_slips.as_list(value)):
-        return way
-    linecache.checkcache(place.file)
-    if not linecache.getline(place.file, place.line)[place.column - 1 :].startswith((f"'{value}'", f'"{value}"')):
-        return ""  # the quotes are not in the file: the text comes from a substitution
-    try:
-        declared.fit(source.parse_value(value))
-    except GraphflowError:
-        return ""
-    return f"leave out the quotes: {declared.name}: {value.strip()}"
 
 
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:

@@ -122,6 +122,35 @@ def test_what_does_not_fit(line: str, problem: str) -> None:
     assert chaser(line) == [problem]
 
 
+def test_keys_of_a_node_below_params() -> None:
+    """Each is reported once, however many entries it has."""
+    hint = "remap is a key of the node: indent it as params: is"
+    assert chaser("params: {gain: 1.0, remap: {goal: /a, cmd_vel: /b}}") == [
+        f"4:39: Chaser has no parameter 'remap.goal'; {hint}"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("program", "reason"),
+    [
+        ("scripts/rec.py", "it is not executable; make it so with: chmod +x {}, or write command: [python3, {}]"),
+        ("scripts/run", "it is not executable; make it so with: chmod +x {}"),
+        ("scripts", "it is a folder"),
+        ("scripts/none", "there is no such file"),
+        ("~/none", "there is no such file; ~ is not expanded: write $(env HOME)/none"),
+    ],
+)
+def test_a_file_that_cannot_be_run(program: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The reason is given, and the remedy."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scripts").mkdir()
+    for name in ("rec.py", "run"):
+        (tmp_path / "scripts" / name).write_text("print(1)\n")
+    program = f"./{program}" if program == "scripts" else program
+    [told] = check(plan(f"nodes: {{r: {{command: [{program}]}}}}"), {})
+    assert str(told).endswith(f"the program {program!r} cannot be started: {reason.replace('{}', program)}")
+
+
 def test_every_problem_is_told_in_order() -> None:
     """Nodes and steps are all looked at, whatever is wrong with the others."""
     text = """\

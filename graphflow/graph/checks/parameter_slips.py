@@ -1,0 +1,86 @@
+"""Corrections of parameters in graph files: texts meant as other values, and keys of nodes below `params:`."""
+
+from __future__ import annotations
+
+import linecache
+import re
+from collections.abc import Collection
+
+from graphflow.errors import GraphflowError
+from graphflow.graph.model import NodeSpec, keys_of
+from graphflow.graph.plan import Setting
+from graphflow.interface import Parameter
+from graphflow.markup import source, yaml_slips
+from graphflow.markup.expressions import ExpressionError, evaluate
+from graphflow.names import nearest
+
+_ARITHMETIC = re.compile(r"[-+*/%().\w\s]*[\w)]\s*[-+*/%]\s*[-+*/%().\w\s]*\w[-+*/%().\w\s]*")
+"""A text of numbers and names with an operator between two of them."""
+_WRITTEN = re.compile(r"""(?P<quote>['"]?)(?P<text>(?:\$\(var \w+\)|[-+*/%.\w ()])+)(?P=quote)""")
+_VALUE = re.compile(r"\$\(var (\w+)\)")
+
+
+def value_correction(declared: Parameter, setting: Setting) -> str:
+    """Return the correction of a text as a parameter's value: as a list, an expression, or without quotes."""
+    value = setting.value
+    if not isinstance(value, str):
+        return ""
+    if declared.type.startswith("list[") and (way := yaml_slips.as_list(value)):
+        return way
+    if (result := _result(declared, value)) is not None:
+        return f"write {declared.name}: {_expression(setting, result)}"
+    if not _line_at(setting).startswith((f"'{value}'", f'"{value}"')):
+        return ""  # the quotes are not in the file: the text comes from a substitution
+    try:
+        declared.fit(source.parse_value(value))
+    except GraphflowError:
+        return ""
+    return f"leave out the quotes: {declared.name}: {value.strip()}"
+
+
+def _result(declared: Parameter, text: str) -> object:
+    """Return the value of a text that is an expression, if the parameter could have it; else None."""
+    if not _ARITHMETIC.fullmatch(text):
+        return None
+    try:
+        return declared.fit(evaluate(text, {}))
+    except (ExpressionError, GraphflowError):
+        return None
+
+
+def _expression(setting: Setting, result: object) -> str:
+    """Return the expression as a substitution, or its result where none is made: in launch and parameter files."""
+    file = setting.place.file
+    linecache.checkcache(file)
+    is_launch = not file.endswith((".yaml", ".yml")) or ".launch." in file
+    if is_launch or any("ros__parameters:" in line for line in linecache.getlines(file)):
+        return str(result)
+    return f"$(eval {_as_written(setting)})"
+
+
+def _as_written(setting: Setting) -> str:
+    """Return the expression with the names of arguments, if the file has them there, else with their values."""
+    found = _WRITTEN.match(_line_at(setting))
+    if found is None or not _VALUE.search(found["text"]):
+        return str(setting.value).strip()
+    return _VALUE.sub(lambda value: value[1], found["text"]).strip()
+
+
+def _line_at(setting: Setting) -> str:
+    """Return the rest of the line at the place of a setting."""
+    place = setting.place
+    linecache.checkcache(place.file)
+    return linecache.getline(place.file, place.line)[place.column - 1 :]
+
+
+def misplaced_key(name: str, known: Collection[str]) -> tuple[str, str]:
+    """Return the key of a node that an unknown parameter is, and the correction; both empty for others.
+
+    Args:
+        name: Such as `remap.chatter`, for `remap:` below `params:`.
+        known: The parameters of the node.
+    """
+    key = name.partition(".")[0]
+    if key not in keys_of(NodeSpec) or nearest(name, known, cutoff=0.8) is not None:
+        return "", ""
+    return key, f"; {key} is a key of the node: indent it as params: is"
