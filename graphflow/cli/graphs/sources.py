@@ -9,6 +9,7 @@ from pathlib import Path
 
 from graphflow.analysis import deadlock_check
 from graphflow.analysis.deadlock_check import Finding
+from graphflow.analysis.hyphens import hyphen_hint
 from graphflow.analysis.rclpy_check import files_in, findings_in, unfollowed_in
 from graphflow.cli import exits, output
 from graphflow.errors import Place, Problem, UsageFault
@@ -79,7 +80,10 @@ def _unreadable(file: Path) -> Problem | None:
     try:
         ast.parse(found_text(file))
     except SyntaxError as error:
-        return Problem(Place(shown(file), error.lineno or 1, error.offset or 1), f"SyntaxError: {error.msg}")
+        return Problem(
+            Place(shown(file), error.lineno or 1, error.offset or 1),
+            f"SyntaxError: {error.msg}{hyphen_hint(error.text or '')}",
+        )
     except (OSError, ValueError) as error:
         return Problem(Place(shown(file)), f"cannot be read: {error}")
     return None

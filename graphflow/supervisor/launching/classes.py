@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from graphflow.analysis.hiding import hidden
+from graphflow.analysis.hyphens import hyphen_hint
 from graphflow.analysis.user_code import place_in
 from graphflow.errors import DeclarationError, GraphflowError, NoModule
 from graphflow.msgs import registry
@@ -146,7 +147,7 @@ def _where(error: BaseException) -> str:
     if isinstance(error, SyntaxError):
         line = (error.text or "").strip()
         hint = f"; write {plain(line)}" if "invalid character" in error.msg and plain(line) != line else ""
-        return f"{error.filename}:{error.lineno}: {error.msg}{hint}"
+        return f"{error.filename}:{error.lineno}: {error.msg}{hint or hyphen_hint(line)}"
     place = place_in(error)
     explain(error)
     text = str(error)

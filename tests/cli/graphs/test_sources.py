@@ -56,6 +56,7 @@ def test_source_without_mistakes(here: Machine, tmp_path: Path, path: str, told:
     ("old", "new", "told"),
     [
         ("class Other(Node):", "class Other(Node:", "nodes/talk.py:13:17: SyntaxError"),
+        ("std_msgs.msg", "std-msgs.msg", "Python imports no name with a hyphen: rename std-msgs to std_msgs"),
         ('(String, "chatter")', '(String, "chat ter")', "'chat ter' is not a topic or service name"),
         ("import String", "import Strang", "package 'std_msgs' has no msg 'Strang'"),
     ],
