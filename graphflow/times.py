@@ -2,11 +2,32 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, overload
 
 NANOSECONDS = 1_000_000_000
 """Nanoseconds in a second."""
+
+
+SECONDS: Mapping[str, float] = {
+    "ns": 1e-9,
+    **dict.fromkeys(("us", "\u00b5s", "\u03bcs"), 1e-6),
+    **dict.fromkeys(("ms", "msec", "milliseconds"), 1e-3),
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
+    **dict.fromkeys(("m", "min", "mins", "minute", "minutes"), 60.0),
+    **dict.fromkeys(("h", "hr", "hour", "hours"), 3600.0),
+}
+"""Units of time, with their lengths in seconds."""
+_WITH_UNIT = re.compile(r"\s*([-+]?\d+(?:\.\d+)?)\s*([^\W\d]+)\s*")
+
+
+def seconds_in(text: str) -> str:
+    """Return the seconds of a duration with a unit, as a number to write: 0.5 for `500ms`; empty for other texts."""
+    found = _WITH_UNIT.fullmatch(text)
+    factor = SECONDS.get(found[2].lower()) if found else None
+    return "" if found is None or factor is None else f"{float(found[1]) * factor:.9f}".rstrip("0").rstrip(".")
 
 
 def to_ns(seconds: float) -> int:

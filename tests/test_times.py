@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from graphflow.msgs.builtin_interfaces.msg import Duration as DurationMessage
 from graphflow.msgs.builtin_interfaces.msg import Time as TimeMessage
-from graphflow.times import NANOSECONDS, Duration, Time, ago, to_ns
+from graphflow.times import NANOSECONDS, Duration, Time, ago, seconds_in, to_ns
 
 
 @pytest.mark.parametrize(
@@ -149,3 +149,22 @@ def test_fractions_of_a_nanosecond_are_refused(kind: type[Time | Duration], way:
     with pytest.raises(TypeError, match=re.escape(f"{kind.__name__} takes whole nanoseconds, not 1.5; write {way}")):
         kind(cast("int", 1.5))
     assert kind(cast("int", np.int64(5))).nanosec == 5
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("500ms", "0.5"),
+        ("1.5 s", "1.5"),
+        ("2min", "120"),
+        ("1h", "3600"),
+        ("-3 us", "-0.000003"),
+        ("2", ""),
+        ("2 Hz", ""),
+        ("ms", ""),
+        ("10 s more", ""),
+    ],
+)
+def test_durations_with_a_unit(text: str, seconds: str) -> None:
+    """They are converted to the number to write; other texts are not."""
+    assert seconds_in(text) == seconds

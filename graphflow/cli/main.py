@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import re
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -17,6 +16,7 @@ import click
 from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.net_options import apply_reach, reach_options
+from graphflow.cli.numbers import plain_words
 from graphflow.cli.other_words import option_answer
 from graphflow.cli.placing import OF_GRAPHFLOW, before_the_verb
 from graphflow.cli.variables import misspelt
@@ -72,9 +72,6 @@ _VERBS = {
 """Verb -> its module and its line in the help; the module is imported only when the verb is used."""
 
 
-_NO_NUMBER = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?\.")
-_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
-"""Click's message about an invalid number, and the number that the text may begin with, as `10hz` does."""
 ALIKE = 0.55
 """Similarity to an unknown option from which another is suggested."""
 _ALIASES = {"wtf": "doctor"}
@@ -224,17 +221,12 @@ def _improved(error: click.UsageError) -> click.UsageError:
         word = error.option_name.lstrip("-")  # the dashes would make all options similar
         alike = [known for known in error.possibilities if nearest(word, [known.lstrip("-")], cutoff=ALIKE)]
         return click.NoSuchOption(error.option_name, error.message, alike, error.ctx)
-    text = _NO_NUMBER.sub(_number_wanted, error.message)
+    param = error.param if isinstance(error, click.BadParameter) else None
+    about = f"{param.help} {' '.join(param.opts)}" if isinstance(param, click.Option) else ""
+    text = plain_words(error.message, about)
     if text == error.message:
         return error
     return click.UsageError(error.format_message().replace(error.message, text), error.ctx)
-
-
-def _number_wanted(found: re.Match[str]) -> str:
-    """Describe an invalid number; for `10hz`, suggest 10."""
-    number = _NUMBER.match(found[1])
-    meant = f"; write {number[0].replace(',', '.')}" if number else "."
-    return f"{found[1]!r} is not a {'whole ' if found[2] == 'integer' else ''}number{meant}"
 
 
 def _main(args: Sequence[str] | None) -> int:

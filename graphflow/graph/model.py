@@ -22,6 +22,7 @@ from pydantic import (
 from graphflow.interface import DeadlockPolicy, WhenFull
 from graphflow.machines.restarts import BACKOFF, POLICIES
 from graphflow.names import nearest
+from graphflow.times import seconds_in
 
 FROM_GROUPS = " of groups"
 """Suffix of the keys for what a node has from its groups; no file can contain them."""
@@ -81,7 +82,8 @@ def _limit(value: object) -> object:
 
 def _call_timeout(value: object) -> object:
     if value != "never" and (not isinstance(value, (int, float)) or isinstance(value, bool) or not value > 0):
-        raise ValueError(f"call_timeout: expected seconds, or never, got {value!r}")
+        way = f"; write call_timeout: {number}" if isinstance(value, str) and (number := seconds_in(value)) else ""
+        raise ValueError(f"call_timeout: expected seconds, or never, got {value!r}{way}")
     return value
 
 

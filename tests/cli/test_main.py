@@ -116,6 +116,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
             "'-r' / '--rate': '10hz' is not a number; write 10",
         ),
         (["service", "call", "-r", "1,5", "/x", "std_srvs/srv/Empty"], "'1,5' is not a number; write 1.5"),
+        (["bag", "record", "/x", "--duration", "500ms"], "500ms' is not a number; write 0.5, as it is in seconds"),
         (["topic", "hz", "-w", "many", "/x"], "'many' is not a whole number"),
         (["node", "-list"], "no such option '-list'; did you mean 'list'?"),
         (["topic", "--lst"], "no such option '--lst'; did you mean 'list'?"),

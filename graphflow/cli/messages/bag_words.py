@@ -15,6 +15,7 @@ from graphflow.cli.verbs import Verb
 from graphflow.cli.words import pattern_option
 from graphflow.errors import UsageFault
 from graphflow.names import expand
+from graphflow.times import seconds_in
 
 if TYPE_CHECKING:
     from graphflow.bag.topic_choice import Choice
@@ -77,6 +78,8 @@ def moment_option(_: click.Context, __: click.Parameter, value: str | None) -> f
         return float(value)
     except ValueError:
         text = f"{value!r} is not a number of seconds, from the beginning of the bag or since 1970"
+    if seconds := seconds_in(value):
+        text += f"; write {seconds}"
     with suppress(ValueError):
         text += f"; as local time it is {datetime.fromisoformat(value).timestamp():.0f}"
     raise click.BadParameter(text)

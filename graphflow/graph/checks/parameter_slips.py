@@ -27,15 +27,24 @@ def value_correction(declared: Parameter, setting: Setting) -> str:
         return ""
     if declared.type.startswith("list[") and (way := yaml_slips.as_list(value)):
         return way
+    if declared.unit and (number := value.removesuffix(declared.unit).strip()) != value and _fits(declared, number):
+        return f"write {declared.name}: {number}, without the unit"
     if (result := _result(declared, value)) is not None:
         return f"write {declared.name}: {_expression(setting, result)}"
     if not _line_at(setting).startswith((f"'{value}'", f'"{value}"')):
         return ""  # the quotes are not in the file: the text comes from a substitution
-    try:
-        declared.fit(source.parse_value(value))
-    except GraphflowError:
+    if not _fits(declared, value):
         return ""
     return f"leave out the quotes: {declared.name}: {value.strip()}"
+
+
+def _fits(declared: Parameter, text: str) -> bool:
+    """Return whether a text would be a value of the parameter if it were written without quotes."""
+    try:
+        declared.fit(source.parse_value(text))
+    except GraphflowError:
+        return False
+    return True
 
 
 def _result(declared: Parameter, text: str) -> object:

@@ -15,6 +15,7 @@ from graphflow.graph.model import BLOCKS, Fault, GroupBlock, NodeSpec, keys_of
 from graphflow.markup import source
 from graphflow.markup.source import Source
 from graphflow.names import did_you_mean, nearest
+from graphflow.times import seconds_in
 from graphflow.typographic import is_quoted
 
 M = TypeVar("M", bound=BaseModel)
@@ -268,6 +269,8 @@ def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], va
     head = str(value).partition(":")[0]
     if isinstance(value, str) and head in _known_keys(model, (*path, head)):
         return f"{where}: write a space after '{head}:'"
+    if "a number" in wanted and path[-1] in _IN_SECONDS and isinstance(value, str) and (number := seconds_in(value)):
+        return f"{where}: expected {text} of seconds; write {path[-1]}: {number}"
     if line := rewritten.line_for(str(path[-1]), value):
         return f"{where}: expected {text}; write {line}"
     if len(path) == 2 and path[0] == "args" and not isinstance(value, (dict, list)):
@@ -276,6 +279,7 @@ def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], va
     return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
 
 
+_IN_SECONDS = ("delay", "max_delay", "within", "timeout")
 _SHOWN = {None: "nothing", True: "true", False: "false"}
 _EXAMPLES: dict[source.Path, str] = {
     ("args",): "args: {rate: {default: 1.0}}",

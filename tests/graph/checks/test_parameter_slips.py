@@ -56,6 +56,14 @@ def test_expressions_of_other_files(tmp_path: Path) -> None:
     assert value_correction(COUNT, Setting("2*3", Place(str(file), 3, 12))) == "write count: 6"
 
 
+def test_units(tmp_path: Path) -> None:
+    """The unit of the parameter is left out; any other is not converted."""
+    speed = Parameter("speed", "float", 1.0, CODE, unit="m/s")
+    assert correction(tmp_path, speed, "1.5 m/s", "1.5 m/s") == "write speed: 1.5, without the unit"
+    assert correction(tmp_path, speed, "1.5 km/h", "1.5 km/h") == ""
+    assert correction(tmp_path, speed, "fast m/s", "fast m/s") == ""
+
+
 def test_lists(tmp_path: Path) -> None:
     """A list without brackets gets them."""
     assert correction(tmp_path, GAINS, "'1.0, 2.0'", "1.0, 2.0") == "a list is written with brackets: [1.0, 2.0]"

@@ -52,6 +52,13 @@ NODE = "nodes:\n  a: {class: x:Y, concurrency: "
         ("nodes:\n  a: {command: []}", "2:16: command: is empty; write the program and its words: command: [rviz2"),
         ("nodes:\n  a: {pkg: p, exec: ''}", "2:6: an executable has both: pkg: PACKAGE and exec: NAME"),
         ("nodes:\n  a: {class: x:Y}\ncall_timeout: -1", "3:15: call_timeout: expected seconds, or never, got -1"),
+        (
+            "nodes:\n  a: {class: x:Y}\ncall_timeout: 5s",
+            "3:15: call_timeout: expected seconds, or never, got '5s'; write call_timeout: 5",
+        ),
+        ("steps: {s: {delay: 500ms}}", "1:20: delay: expected a number of seconds; write delay: 0.5"),
+        ("steps: {s: {call: /x, timeout: 2min}}", "1:32: timeout: expected a number of seconds; write timeout: 120"),
+        ("steps: {s: {delay: soon}}", "1:20: delay: expected a number, got 'soon'"),
     ],
 )
 def test_one_mistake_is_told_once(text: str, said: str) -> None:
