@@ -21,6 +21,8 @@ _OF_EVERY_NODE = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
 """Packages of the service types that every node offers by itself."""
 TOKENS_BOUND = 100_000
 """Tokens of a domain that are kept, at most."""
+_SHOWN = 3
+"""Most names of a namespace that a message lists."""
 
 
 class GraphChange(NamedTuple):
@@ -138,7 +140,7 @@ class GraphCache:
         return [name for name in self.actions() if f"{name}{ACTION_FEEDBACK}" in topics]
 
     def instead(self, name: str, known: Iterable[str], hidden: Iterable[str] = ()) -> str:
-        """Return the end of a message about an unknown name: the kind of thing that has it, or a similar name.
+        """Return the end of a message about an unknown name: what has it, what is below it, or a similar name.
 
         Args:
             known: Names of the wanted kind, to suggest from; `hidden` are suggested only if they are near.
@@ -147,7 +149,13 @@ class GraphCache:
         for kind, names in (("a topic", topics), ("a service", services), ("an action", actions)):
             if name in names:
                 return f"; it is {kind}, of type {' and '.join(names[name])}"
-        return "; it is a node" if name in self.nodes() else did_you_mean(name, known, hidden)
+        if name in self.nodes():
+            return "; it is a node"
+        known = list(known)
+        if inside := [other for other in known if other.startswith(f"{name.rstrip('/')}/") and name != "/"]:
+            more = f" and {len(inside) - _SHOWN} more" if len(inside) > _SHOWN else ""
+            return f"; it is a namespace, with {', '.join(inside[:_SHOWN])}{more}"
+        return did_you_mean(name, known, hidden)
 
     def unpublished(self, topic: str, known: Iterable[str] | None = None) -> str:
         """Return a message that a topic has no publisher, with a suggestion unless it has subscriptions.

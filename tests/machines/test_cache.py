@@ -181,6 +181,10 @@ def test_a_name_of_another_kind() -> None:
     assert cache.instead("/go", []) == "; it is an action, of type example_interfaces/action/Fibonacci"
     assert cache.instead("/talker", []) == "; it is a node"
     assert cache.instead("/chater", ["/chatter"]) == "; did you mean '/chatter'?"
+    assert (
+        cache.instead("/arm", ["/arm/left", "/arms", "/arm/right"]) == "; it is a namespace, with /arm/left, /arm/right"
+    )
+    assert cache.instead("/arm", [f"/arm/n{i}" for i in range(5)]).endswith("/arm/n0, /arm/n1, /arm/n2 and 2 more")
 
 
 def test_topics_that_nobody_publishes() -> None:

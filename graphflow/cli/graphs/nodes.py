@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.graphs import not_nodes
 from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError, UsageFault
@@ -17,6 +18,7 @@ from graphflow.names import did_you_mean
 from graphflow.supervisor import rundir
 from graphflow.supervisor.control.choosing import choose
 from graphflow.supervisor.control.client import ControlClient
+from graphflow.supervisor.rundir import GraphRun
 from graphflow.supervisor.starts import being_started
 from graphflow.system import host_name
 from graphflow.times import ago
@@ -69,7 +71,7 @@ def status(node: str, name: str | None, as_json: bool) -> int:
     Exit code 0: it has not failed; 1: it has.
     """
     run = choose(name)
-    row = _row(run.socket, _full(node))
+    [row] = _select((node,), node_rows(run.socket), "status", name)
     last = _last_lines(Path(row["log"]))
     is_bad = row["state"] in ("failed", "given_up")
     if as_json:
@@ -124,7 +126,7 @@ def _wait_for(
         rows = _rows_if_any(graph)
         if rows is None and ended:
             return [], exits.OK, ""
-        wanted = _select(nodes, rows) if rows is not None else []
+        wanted = _select(nodes, rows, "wait", graph) if rows is not None else []
         failed = [row for row in wanted if row["state"] in ("failed", "given_up")]
         if failed and not ended:
             text = f"{failed[0]['node']} has failed: {failed[0]['detail']}\n  its log: {failed[0]['log']}"
@@ -152,13 +154,14 @@ def _rows_if_any(graph: str | None) -> list[NodeRow] | None:
         raise
 
 
-def _select(nodes: tuple[str, ...], rows: list[NodeRow]) -> list[NodeRow]:
+def _select(nodes: tuple[str, ...], rows: list[NodeRow], verb: str, graph: str | None) -> list[NodeRow]:
     if not nodes:
         return rows
     known = {row["node"]: row for row in rows}
-    for node in map(_full, nodes):
-        if node not in known:
-            raise SupervisorError(f"the graph has no node {node}{did_you_mean(node, known)}")
+    for word in nodes:
+        if (node := _full(word)) not in known:
+            other = not_nodes.answer(verb, word, choose(graph), known)
+            raise SupervisorError(other or f"the graph has no node {node}{did_you_mean(node, known)}")
     return [known[_full(node)] for node in nodes]
 
 
@@ -167,7 +170,11 @@ def _full(node: str) -> str:
 
 
 def _row(socket: str, node: str) -> NodeRow:
-    return _select((node,), node_rows(socket))[0]
+    """Return the row of a node that the graph has. Raises SupervisorError if it has ended meanwhile."""
+    found = next((row for row in node_rows(socket) if row["node"] == node), None)
+    if found is None:
+        raise SupervisorError(f"the graph has no node {node}")
+    return found
 
 
 def _last_lines(log: Path) -> list[str]:
@@ -188,8 +195,8 @@ def restart_node(node: str, graph: str | None, *, threads: list[str] | None = No
     return _ask("restart", node, graph, **({"threads": threads} if threads else {}))
 
 
-def _ask(what: str, node: str, graph: str | None, **more: object) -> int:
-    node = _full(node)
+def _ask(what: str, word: str, graph: str | None, **more: object) -> int:
+    node = _full(word)
     try:
         run = choose(graph)
     except SupervisorError as error:
@@ -200,7 +207,7 @@ def _ask(what: str, node: str, graph: str | None, **more: object) -> int:
         client.send(do=what, node=node, **more)
         answer = next(client.receive(), {})
     if answer.get("event") == "error":
-        raise SupervisorError(by_itself(node) or answer["message"])
+        raise SupervisorError(by_itself(node) or _not_a_node(what, word, run) or answer["message"])
     try:
         row = _await(run.socket, node, "ended" if what == "stop" else "ready")
     except (SupervisorError, UsageFault):
@@ -216,6 +223,12 @@ def _ask(what: str, node: str, graph: str | None, **more: object) -> int:
         return exits.FAILED
     output.data(f"{node} is running again, process {row['pid']}")
     return exits.OK
+
+
+def _not_a_node(verb: str, word: str, run: GraphRun) -> str:
+    """Describe what a word is, if it is no node of a graph; empty if it is one, or nothing known."""
+    nodes = [row["node"] for row in node_rows(run.socket)]
+    return "" if _full(word) in nodes else not_nodes.answer(verb, word, run, nodes)
 
 
 def by_itself(node: str) -> str:

@@ -79,6 +79,19 @@ def test_the_status_of_a_node(standing: Machine) -> None:
     assert "has no node /tolker; did you mean '/talker'?" in standing.look("status", "tolker", code=1)
 
 
+def test_words_that_are_no_nodes(standing: Machine) -> None:
+    """A topic, a service and the graph itself are told as what they are."""
+    wait = (
+        "/chatter is a topic, and wait waits for nodes; a message is awaited by: graphflow topic echo --once /chatter"
+    )
+    assert wait in standing.look("wait", "chatter", code=1)
+    assert "/chatter is a topic, and stop stops nodes\n" in standing.look("stop", "/chatter", code=1)
+    assert "standing.yaml is a graph file, and stop stops nodes; the whole graph is stopped by" in standing.look(
+        "stop", "standing.yaml", code=1
+    )
+    assert "all is no node, and status is about a node" in standing.look("status", "all", code=1)
+
+
 def test_waiting(standing: Machine) -> None:
     """A ready node is not waited for; one that does not end is reported with its state and exit code 4."""
     standing.look("wait")
