@@ -147,6 +147,11 @@ _OPTIONS = {
     "bag play -u": "--playback-duration limits the seconds to play",
     **dict.fromkeys(("bag play -i", "bag play --immediate"), "graphflow bag burst publishes all at once"),
     **dict.fromkeys(("launch --screen", "launch --log", "launch -v"), "leave it out: nodes' output is always shown"),
+    **dict.fromkeys(
+        ("logs --tail", "logs --last", "logs -t", "logs --num", "logs --count"),
+        "-n 5 shows the last 5 lines of each node",
+    ),
+    **dict.fromkeys(("logs --graph-name", "logs --name"), "--graph NAME chooses the graph"),
     "launch --wait": "leave it out: there is no master to wait for",
 }
 """Options of other tools by our verb, and what to type instead."""
