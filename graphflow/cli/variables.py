@@ -10,7 +10,7 @@ PREFIX = "GRAPHFLOW_"
 KNOWN = (
     *("CONNECT", "DOMAIN", "LOG", "LOOP", "NET", "PORTABLE", "RACES", "RENDEZVOUS", "SHARED_MEMORY", "WIRE"),
     *("PREFIX", "THEME"),  # read by the console
-    *("ENDS_WITH", "PYTHON"),  # set by graphflow for its own processes
+    *("ENDS_WITH", "PARAM_PLACES", "PYTHON"),  # set by graphflow for its own processes
 )
 """Names of the variables, without the prefix."""
 

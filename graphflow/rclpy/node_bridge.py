@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.graph import params_file
+from graphflow.graph.param_places import place_of
 from graphflow.names import Remap, Resolver
 from graphflow.qos import SERVICES
 from graphflow.rclpy.context_state import LOOP, ContextState
@@ -93,7 +95,8 @@ def overrides_for(args: RosArgs, names: Resolver) -> dict[str, tuple[object, str
         for name, setting in params_file.params_for(params_file.read(Path(file), file), names.full_name).items():
             found[name] = (setting.value, str(setting.place))
     known = (None, names.name, names.full_name)
-    return found | {p: (v, source) for node, p, v, source in args.params if node in known}
+    given = ((name, value, source) for node, name, value, source in args.params if node in known)
+    return found | {name: (value, place_of(name, value, os.environ) or source) for name, value, source in given}
 
 
 def open_node(life: ContextState, name: str, namespace: str, remaps: Sequence[Remap], *, rosout: bool) -> HeldNode:

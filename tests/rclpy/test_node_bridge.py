@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -53,13 +54,17 @@ def test_a_node_and_its_endpoints_are_in_the_graph_at_once() -> None:
     life.close()
 
 
-def test_parameters_of_the_command_line_and_of_files(tmp_path: Path) -> None:
-    """For this node by its name, or for all; a file that is none is an error."""
+def test_parameters_of_the_command_line_and_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """For this node by its name, or for all; those of a graph have their places; a file that is none is an error."""
     file = tmp_path / "params.yaml"
     file.write_text("/ns/one: {ros__parameters: {rate: 2, a: {b: x}}}\n/other: {ros__parameters: {rate: 3}}\n")
     words = ["--ros-args", "--params-file", str(file), "-p", "one:gain:=1.5", "-p", "two:gain:=9", "-p", "all:=true"]
     found = node_bridge.overrides_for(parse_only_ros(words), Resolver("one", "/ns", []))
     assert {name: value for name, (value, _) in found.items()} == {"rate": 2, "a.b": "x", "gain": 1.5, "all": True}
+    places = {"all": [True, "t.launch.xml:3"], "gain": [2.5, "t.launch.xml:4"]}
+    monkeypatch.setenv("GRAPHFLOW_PARAM_PLACES", json.dumps(places))
+    found = node_bridge.overrides_for(parse_only_ros(words), Resolver("one", "/ns", []))
+    assert (found["all"], found["gain"]) == ((True, "t.launch.xml:3"), (1.5, "command line"))
     file.write_text("[]")
     with pytest.raises(GraphFileError):
         node_bridge.overrides_for(parse_only_ros(words), Resolver("one", "/ns", []))

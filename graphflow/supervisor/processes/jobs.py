@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from graphflow.graph import param_places
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.supervisor.processes.starter import Start
 from graphflow.supervisor.rundir import log_file
@@ -52,7 +53,7 @@ def worker_start(
 
 def environment_of(nodes: Sequence[PlannedNode]) -> dict[str, str]:
     """Return the variables that a process gets besides the supervisor's own."""
-    return {name: value for node in nodes for name, value in node.env.items()}
+    return {name: value for node in nodes for name, value in (param_places.variable(node) | node.env).items()}
 
 
 def first_starts(plan: Plan, domain: int, logs: Path) -> Iterator[Start]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import linecache
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,10 @@ _SINGLE = {
     Kind.STRING_ARRAY: Kind.STRING,
 }
 """The types of the elements of arrays."""
+_PYTHON = {Kind.BOOL: "bool", Kind.INTEGER: "int", Kind.DOUBLE: "float", Kind.STRING: "str"}
+_TRUE_PYTHON = {"true": "True", "false": "False"}
+_FOLLOWING = 20
+"""Lines after the first one of a node in which a launch file may set its parameters."""
 _TRUTHS = {"1": "true", "true": "true", "0": "false", "false": "false"}
 
 
@@ -40,11 +45,31 @@ def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
     """Describe the source of a value, and its notation for a parameter of some type."""
     written = _written(value, kind)
     if source == "command line":
-        way = f'-p "{name}:={written}"' if set(written) & set(" '[") else f"-p {name}:={written}"
-        where = "on the command line"
+        where, way = "on the command line", f"-p {name}:={written}"
+        if set(written) & set(" '["):
+            way = f'-p "{name}:={written}"'
     else:
-        way, where = f"{name.rpartition('.')[2]}: {written}", f"in {Path(source).name}"
-    return f"{name} is set {where}" + (f": write {way}" if written else "")
+        where, way = f"in {Path(source).name}", _in_file(name, written, source, kind)
+    return f"{name} is set {where}" + (f": write {way}" if written and way else "")
+
+
+def _in_file(name: str, written: str, source: str, kind: Parameter.Type) -> str:
+    """Return a parameter in the form of the file that sets it; empty if a substitution there makes its value."""
+    file, _, place = source.partition(":")
+    last = name.rpartition(".")[2]
+    lines = linecache.getlines(file)
+    number = int(place.partition(":")[0] or 1) if place[:1].isdecimal() else 1
+    if file.endswith(".py"):  # the line is that of the node, whose parameters follow
+        quoted = (f'"{name}"', f"'{name}'")
+        line = next((line for line in lines[number - 1 : number + _FOLLOWING] if any(q in line for q in quoted)), "")
+        if "LaunchConfiguration(" in line and kind in _PYTHON:
+            return f"ParameterValue(LaunchConfiguration(...), value_type={_PYTHON[kind]})"
+        return "" if "(" in line.partition(":")[2] else f'"{name}": {_TRUE_PYTHON.get(written, written)}'
+    if "$(" in (lines[number - 1] if number <= len(lines) else ""):
+        return ""
+    if file.endswith((".xml", ".launch")):
+        return f'value="{written}"'
+    return f"value: {written}" if ".launch." in file else f"{last}: {written}"
 
 
 def _written(value: Any, kind: Parameter.Type) -> str:

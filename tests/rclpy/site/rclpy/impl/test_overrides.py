@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -43,6 +44,29 @@ def test_the_command_line() -> None:
     """A value with spaces or quotes stands in quotes."""
     assert remark("gain", 7, "command line", Kind.DOUBLE) == "gain is set on the command line: write -p gain:=7.0"
     assert remark("name", 7, "command line", Kind.STRING).endswith("""write -p "name:='7'\"""")
+
+
+@pytest.mark.parametrize(
+    ("name", "lines", "way"),
+    [
+        ("t.launch.xml", '<param name="gain" value="7"/>', ': write value="7.0"'),
+        ("t.launch.xml", '<param name="gain" value="$(var gain)"/>', ""),
+        ("t.launch.yaml", "- {name: gain, value: 7}", ": write value: 7.0"),
+        ("t.yaml", "params: {gain: 7}", ": write gain: 7.0"),
+        ("t.yaml", "params: {gain: $(var gain)}", ""),
+        ("t.py", 'Node(parameters=[{"gain": 7}])', ': write "gain": 7.0'),
+        (
+            "t.py",
+            "Node(\n    parameters=[{'gain': LaunchConfiguration('gain')}],\n)",
+            ": write ParameterValue(LaunchConfiguration(...), value_type=float)",
+        ),
+        ("t.py", "Node(\n    parameters=[{'gain': gain_of(3)}],\n)", ""),
+    ],
+)
+def test_files(tmp_path: Path, name: str, lines: str, way: str) -> None:
+    """The correction is in the form of the file; a value that a substitution makes has none there."""
+    (tmp_path / name).write_text(f"{lines}\n")
+    assert remark("gain", 7, f"{tmp_path / name}:1", Kind.DOUBLE) == f"gain is set in {name}:1{way}"
 
 
 def test_a_value_that_no_parameter_has() -> None:
