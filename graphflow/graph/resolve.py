@@ -35,7 +35,7 @@ from graphflow.markup.tree import Item, source_of, tree
 from graphflow.names import Resolver, check_references, expand, split
 from graphflow.workspace.executables import NoExecutable, command_of
 from graphflow.workspace.packages import Workspace, find_workspace
-from graphflow.workspace.project import no_file, project_root, shown
+from graphflow.workspace.project import home_hint, no_file, project_root, shown
 
 _ANYBODY = (
     "allow_control: whoever reaches this graph over the network can load code into its processes; remove it, unless "
@@ -205,7 +205,7 @@ class _Programs:
         """Return the command line of an executable given as a file: a Python script, or any executable file."""
         file = self._files[place.file].parent / spec.exec_
         if not file.is_file():
-            self._problems.add(place, f"exec: there is no file {file}")
+            self._problems.add(place, f"exec: there is no file {file}{home_hint(file)}")
         elif file.suffix != ".py" and not os.access(file, os.X_OK):
             self._problems.add(place, f"exec: {file} is no executable file; to make it one: chmod +x {file}")
         return ("graphflow", "run", str(file)) if file.suffix == ".py" else (str(file),)

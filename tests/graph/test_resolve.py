@@ -748,6 +748,7 @@ def test_an_executable_may_be_a_file(lamps: Path) -> None:
     assert [node.executable for node in found.nodes] == ["shine.py", "bin/run"]
     for node, said in (
         ("{exec: gone.py}", "exec: there is no file"),
+        ("{exec: ~/gone.py}", r"~ is not expanded: write \$\(env HOME\)/gone\.py"),
         ("{exec: bin/not}", "to make it one: chmod \\+x"),
         ("{exec: shine}", "or exec: is a file"),
     ):
