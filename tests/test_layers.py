@@ -177,6 +177,15 @@ def import_graph(files: Mapping[str, str]) -> dict[str, set[str]]:
     return found
 
 
+def at_run_time(text: str) -> str:
+    """A file without what only type checkers read."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = [ast.Pass()]
+    return ast.unparse(tree)
+
+
 def shortest_circle(graph: Mapping[str, set[str]]) -> list[str]:
     """The modules of the shortest circle of imports, in order; empty if there is none."""
     circles = []
@@ -199,13 +208,17 @@ def shortest_circle(graph: Mapping[str, set[str]]) -> list[str]:
 
 @slow
 def test_no_files_import_each_other_in_a_circle() -> None:
-    """Nowhere in the package, whichever way the import is written."""
+    """Nowhere in the package, whichever way the import is written.
+
+    The classes of rclpy name each other in their signatures, as ROS 2's do: there, imports for type checkers do not count.
+    """
     files = {}
     for path in PACKAGE.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
         parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
-        parts = parts[parts.index("site") + 1 :] if "site" in parts else parts  # imported under ROS's names
-        module = ".".join(parts).removesuffix(".__init__")
-        files[module] = path.read_text(encoding="utf-8")
+        if "site" in parts:
+            parts, text = parts[parts.index("site") + 1 :], at_run_time(text)  # imported under ROS's names
+        files[".".join(parts).removesuffix(".__init__")] = text
     circle = shortest_circle(import_graph(files))
     assert not circle, "a circle of imports: " + " -> ".join([*circle, circle[0]])
 

@@ -24,7 +24,7 @@ _FILES = {
 
 @click.group(cls=Verbs)
 def completion() -> None:
-    """Set up TAB completion of verbs, options, live names, types and messages."""
+    """Set up TAB completion of verbs, live names, types and messages."""
 
 
 @completion.command()

@@ -103,7 +103,7 @@ def status(node: str, name: str | None, as_json: bool) -> int:
 @_graph
 @click.option("--json", "as_json", is_flag=True, help="Print the final states of the nodes as JSON, as `ps` does.")
 def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name: str | None, as_json: bool) -> int:
-    """Wait until nodes, or all nodes of a graph, are ready. The graph may not even have been started yet.
+    """Wait until nodes are ready: all nodes of a graph, if none is named. The graph need not have been started yet.
 
     Exit code 0: they are; 1: one has failed; 4: --timeout has passed.
     """

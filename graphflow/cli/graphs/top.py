@@ -31,7 +31,7 @@ HEAD = ("PID", "CPU", "MEM", "THREADS", "LAG", "OUT/S", "IN/S", "DROPPED", "NODE
 @click.option("--once", is_flag=True, help="Print once and end; the default without a terminal.")
 @click.option("--json", "as_json", is_flag=True, help="Print once, as JSON.")
 def top(delay: float, by_memory: bool, once: bool, as_json: bool) -> None:
-    """Show CPU, memory and message rates of the running graph's processes, the busiest first. Ctrl-C ends it.
+    """Show CPU, memory and message rates of running processes. The busiest come first; Ctrl-C ends it.
 
     \b
     PID      8123+2 has two child processes, which are included

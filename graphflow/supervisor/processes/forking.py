@@ -17,7 +17,7 @@ from graphflow.machines.process import Exit
 from graphflow.supervisor.control.channel import Lines
 from graphflow.supervisor.processes import preload, process_tree
 from graphflow.supervisor.processes.guardian import GRACE
-from graphflow.supervisor.processes.starter import Start
+from graphflow.supervisor.processes.jobs import Start
 
 if TYPE_CHECKING:
     from graphflow.supervisor.processes import messages

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.graph import param_places
 from graphflow.graph.plan import Plan, PlannedNode
-from graphflow.supervisor.processes.starter import Start
 from graphflow.supervisor.rundir import log_file
 
 if TYPE_CHECKING:
-    from graphflow.supervisor.processes.messages import NodeJson, WorkerJob
+    from graphflow.supervisor.processes.messages import Job, NodeJson, WorkerJob
 
 MESH_LIMIT = 24
 """Number of processes up to which each is a peer of every other; more are clients of the rendezvous."""
+
+
+class Start(NamedTuple):
+    """One process to be started, as `Starter.spawn` takes it."""
+
+    process: str
+    job: Job
+    log: str
+    """The file that its output is appended to."""
+    env: dict[str, str]
+    """Variables it gets besides the supervisor's own."""
 
 
 def no_mesh(count: int) -> str:

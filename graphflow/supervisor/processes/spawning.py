@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING
 import psutil
 
 from graphflow.supervisor.launching import probe
+from graphflow.supervisor.processes.jobs import Start
 from graphflow.supervisor.processes.preload import sweep
-from graphflow.supervisor.processes.starter import Start
 from graphflow.system import detached
 
 if TYPE_CHECKING:

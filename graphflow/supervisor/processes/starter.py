@@ -4,23 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from graphflow.system import is_portable
 
 if TYPE_CHECKING:
+    from graphflow.supervisor.processes.jobs import Start
     from graphflow.supervisor.processes.messages import InterfacesJson, Job, Order, ProcessEvent
-
-
-class Start(NamedTuple):
-    """One process to be started, as `Starter.spawn` takes it."""
-
-    process: str
-    job: Job
-    log: str
-    """The file that its output is appended to."""
-    env: dict[str, str]
-    """Variables it gets besides the supervisor's own."""
 
 
 class Starter(Protocol):

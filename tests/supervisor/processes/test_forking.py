@@ -15,7 +15,7 @@ import pytest
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.processes import preload
 from graphflow.supervisor.processes.forking import ForkingStarter
-from graphflow.supervisor.processes.starter import Start
+from graphflow.supervisor.processes.jobs import Start
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="nothing is forked there")
 

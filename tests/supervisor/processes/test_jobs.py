@@ -7,9 +7,8 @@ from pathlib import Path
 
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import load
-from graphflow.supervisor.processes.jobs import MESH_LIMIT, first_starts
+from graphflow.supervisor.processes.jobs import MESH_LIMIT, Start, first_starts
 from graphflow.supervisor.processes.messages import WorkerJob
-from graphflow.supervisor.processes.starter import Start
 
 LAB = """
 deadlock: report

@@ -58,7 +58,7 @@ def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], 
             '@graphflow.subscription(String, "b")\ndef callback(self, m): ...',
             ":12: N has another 'callback' in line 10, which is lost",
         ),
-        (f"{SERVICE}\ndef go(self):\n    self.enable = True", ":12: self.enable hides the declaration N.out"),
+        (f"{SERVICE}\ndef go(self):\n    self.enable = True", ":12: self.enable hides the declaration N.enable"),
         (
             'out = Publisher(String, "out")\ndef go(self):\n    self.out = String()',
             ":11: self.out hides the declaration N.out",

@@ -33,7 +33,7 @@ GAIN = "self.gain is the string '5.0': write gain = Param(5.0)"
         ("1.0 < self.gain", GAIN),
         ("math.sin(self.gain)", GAIN),
         ("self.count - 1", "self.count is the string '3': write count = Param(3)"),
-        ("self.limit - 1", "self.limit is the text '1e3': write 1000.0, without quotes"),
+        ("self.limit - 1", "self.limit is the string '1e3': write 1000.0, without quotes"),
         ("self.word - 1", ""),
         ("self.rate - self.word", ""),
         ("self.name * 2.0", ""),
