@@ -91,6 +91,10 @@ MISTAKES = {
         ),
         body("@timer\ndef tick(self): ...", "@timer"),
         body("@timer(0)\ndef tick(self): ...", "@timer(0)"),
+        body(
+            'rate = Param(10.0, unit="Hz")\n@timer(rate)\ndef tick(self): ...',
+            'rate = Param(10.0, unit="Hz"), then @timer(rate)',
+        ),
         body("@timer(hz='fast')\ndef tick(self): ...", "@timer(hz='fast')"),
         body('@subscription("chatter", String)\ndef heard(self, message): ...', '@subscription("chatter", String)'),
         body('@subscription(String, "chatter")\ndef heard(self): ...', "def heard(self): ..."),

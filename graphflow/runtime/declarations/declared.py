@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import ClassVar, Protocol
 
@@ -33,6 +33,7 @@ from graphflow.runtime.declarations.declare import (
     Subscription,
 )
 from graphflow.runtime.declarations.handlers import MARK, Handler
+from graphflow.runtime.declarations.units import of_a_timer
 
 
 class NodeClass(Protocol):
@@ -250,10 +251,15 @@ def _attributes(cls: type) -> list[EndpointInfo]:
     return found
 
 
-def _check_rate(cls: type, attribute: str, handler: Handler, params: Container[str]) -> None:
-    for name in handler.rate.parameters() if handler.rate is not None else ():
+def _check_rate(cls: type, attribute: str, handler: Handler, params: Mapping[str, Parameter]) -> None:
+    if handler.rate is None:
+        return
+    for name in handler.rate.parameters():
         if name not in params:
             text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
+            raise DeclarationError(f"{handler.place}: {text}")
+    for source, taken in handler.rate.sources():
+        if text := of_a_timer(source.parameter, taken):
             raise DeclarationError(f"{handler.place}: {text}")
 
 

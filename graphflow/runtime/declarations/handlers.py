@@ -6,9 +6,9 @@ A decorator sets a mark on the method and returns the method itself.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias, TypeVar, get_args
+from typing import Any, Literal, TypeAlias, TypeVar, get_args
 
 from graphflow.errors import DeclarationError, Place
 from graphflow.executor.clock import period_ns
@@ -79,7 +79,15 @@ class Rate:
 
     def parameters(self) -> list[str]:
         """Return the names of the parameters that determine the rate."""
-        return [source.parameter.name for source in self._sources if isinstance(source, Param)]
+        return [source.parameter.name for source, _ in self.sources()]
+
+    def sources(self) -> Iterator[tuple[Param[Any], Literal["s", "Hz"]]]:
+        """List the parameters that determine the rate, each with the unit that its value is taken in."""
+        period, hz = self._sources
+        if isinstance(period, Param):
+            yield period, "s"
+        if isinstance(hz, Param):
+            yield hz, "Hz"
 
     def period_ns(self, values: Mapping[str, Any] | None = None) -> int:
         """Return the period in nanoseconds, with these parameter values or with the defaults.

@@ -34,6 +34,7 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
 
@@ -66,7 +67,7 @@ def _slips(cls: type) -> Iterator[str]:
                     yield from _wrong_fields(method, file, space)
             found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
             found = (*found, *ineffective(definition), *overridden(parent, definition))
-            found = (*found, *results_passed(definition, is_of_threads=True))
+            found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
             yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
 
