@@ -27,6 +27,7 @@ from graphflow.runtime.endpoints.direct_calls import Switchboard
 from graphflow.runtime.endpoints.intra_process import IntraProcess
 from graphflow.runtime.endpoints.shared_memory import Readers
 from graphflow.runtime.mistakes.network.same_names import Twins
+from graphflow.runtime.mistakes.network.unlatched import Unlatched
 from graphflow.runtime.mistakes.network.unmatched import Unmatched
 from graphflow.transport.base import Closable, Session
 from graphflow.transport.event_loop.daemon_threads import THREADS
@@ -106,6 +107,7 @@ class Context:
         self.on_name("", self.twins.changed)  # tokens of nodes have none of an endpoint
         self.unmatched = Unmatched(self)
         self.on_change(self.unmatched.changed)
+        self.unlatched = Unlatched(self)
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
 
     @classmethod
@@ -311,6 +313,7 @@ class Context:
         self.search.close()
         self.twins.close()
         self.unmatched.close()
+        self.unlatched.close()
         self._inspection.close()
         self.reasons.close()
         if self._link is not None:

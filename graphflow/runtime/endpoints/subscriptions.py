@@ -23,16 +23,15 @@ from graphflow.runtime.endpoints.publishers import alive_key
 from graphflow.runtime.endpoints.shared_memory import RingReading
 from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.mistakes.echoes import Echo
+from graphflow.runtime.mistakes.losses import LOSS_TOLD, Losses
 from graphflow.runtime.part import Host
-from graphflow.transport.inbox import BYTES_BOUND, DeepInbox, Inbox, open_inbox
+from graphflow.transport.inbox import DeepInbox, Inbox, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
 
-LOSS_TOLD = 100
-"""Messages dropped from a full queue before a warning that most are lost."""
 SOURCES_BOUND = 4096
 """Publishers tracked by a subscription."""
 
@@ -50,6 +49,7 @@ class TopicSubscription(Endpoint, Generic[M]):
     """
 
     kind = Kind.SUBSCRIPTION
+    latched_profile = "Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)"
     in_order = False
     """Whether responses sent after a message must not overtake it."""
 
@@ -70,6 +70,8 @@ class TopicSubscription(Endpoint, Generic[M]):
     ) -> None:
         super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
+        self.opened_ns = 0
+        """The wall-clock time of its opening."""
         self.expired = 0
         """Messages dropped because they exceeded the publisher's lifespan or the subscription's."""
         self._callback = callback
@@ -86,7 +88,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, Source] = {}
         self._gaps = 0
-        self._has_told_loss = self._has_told_full = False
+        self._losses = Losses(host, name, self._label)
         self._deadline: SilenceTimer | None = None
         self._echo: Echo | None = None
         self._rings: RingReading | None = None
@@ -104,6 +106,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _open(self, key: str) -> None:
         context = self.host.context
+        self.opened_ns = context.clock.time_ns()
         self._read = context.session.read
         if self._callback is None:
             self._inbox = self._new_inbox()
@@ -210,6 +213,8 @@ class TopicSubscription(Endpoint, Generic[M]):
                 self._watch_lease(other, source)
         if self._deadline is not None:
             self._deadline.start() if self.matched else self._deadline.stop()
+        if alive:
+            self.host.context.unlatched.matched(self, other, self.host.log)
         if alive or was_alive:
             self._liveliness_changed(1 if alive else -1, other.node_name)
         self._follow_echo()
@@ -321,37 +326,10 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _warn_of_losses(self) -> None:
         """Warn once that a deep queue overflowed, or that most messages are lost."""
-        dropped = self.dropped
-        if self._callback is None and not (self._taken or self._waiters):
-            if not self._has_told_loss and (dropped >= LOSS_TOLD or isinstance(self._inbox, DeepInbox)):
-                self._has_told_loss = True
-                text = "nothing has read %s yet, and its messages are lost, %d so far: write "
-                text += "`async for message in ...` in a @task, or put @subscription on a method"
-                self.host.log.warning(text, self.name, dropped)
-            return
-        is_busy = self.runner is not None and self.runner.active
-        where = "; graphflow waits says where it is now" if is_busy else ""
-        if dropped and not self._has_told_full and isinstance(self._inbox, DeepInbox):
-            self._has_told_full = True
-            self.host.log.warning(
-                "%s: its queue was full, and dropped the oldest messages, %d so far: it holds %d messages and %d MB; "
-                "do less in the handler, give it a group of its own, or have less sent%s",
-                self._label,
-                dropped,
-                self._inbox.items.maxlen,
-                BYTES_BOUND >> 20,
-                where,
-            )
-        elif not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
-            self._has_told_loss = True
-            self.host.log.warning(
-                "%s: most messages are lost, %d of %d so far: they come faster than they are handled. Do less in the "
-                "handler, give it a group of its own, or have less sent%s; graphflow doctor goes on counting",
-                self._label,
-                dropped,
-                self.received,
-                where,
-            )
+        is_unread = self._callback is None and not (self._taken or self._waiters)
+        is_busy = self.runner is not None and bool(self.runner.active)
+        deep = self._inbox.items.maxlen if isinstance(self._inbox, DeepInbox) else None
+        self._losses.warn(self.dropped, self.received, deep, is_unread=is_unread, is_busy=is_busy)
 
     def _invoker(self) -> Callable[[Any], Any]:
         """Return `_invoke`, with a fast path for the next message of a known publisher.
@@ -468,6 +446,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             self.runner.cancel()
         if self.entity is not None:
             self.host.context.intra_process.leave(self.entity.data_key, self)
+            self.host.context.unlatched.forget(self)
         if self._deadline is not None:
             self._deadline.stop()
         if self._echo is not None:

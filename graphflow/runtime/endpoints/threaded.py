@@ -81,6 +81,8 @@ class ThreadedSubscription(TopicSubscription[Any]):
         ready: Called by the thread that the bell wakes.
     """
 
+    latched_profile = "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)"
+
     def __init__(
         self,
         host: Host,
