@@ -71,6 +71,9 @@ class Qos:
                 raise ValueError(f"{name} of a Qos cannot be {value!r}; write {name}={kind.__name__}.{one.name}")
         for name in ("depth", *_DURATIONS):
             value = getattr(self, name)
+            if isinstance(value, IntEnum) and type(value) in _POLICIES.values():
+                policy = f"{type(value).__name__}.{value.name}"
+                raise ValueError(f"{name} of a Qos is a whole number; write {type(value).__name__.lower()}={policy}")
             if not isinstance(value, int) or isinstance(value, bool):
                 is_time = isinstance(value, float) and name != "depth"
                 hint = f"; for {value:g} seconds write {name}={round(value * 1e9):_}" if is_time else ""

@@ -83,6 +83,10 @@ def test_a_negative_depth_is_refused() -> None:
         ({"reliability": True}, "reliability of a Qos cannot be True; write reliability=Reliability.RELIABLE"),
         ({"deadline_ns": 0.1}, "is a whole number, not 0.1; for 0.1 seconds write deadline_ns=100_000_000"),
         ({"lifespan_ns": -5}, "lifespan_ns of a Qos cannot be -5; leave it out for none"),
+        (
+            {"depth": Durability.TRANSIENT_LOCAL},
+            "depth of a Qos is a whole number; write durability=Durability.TRANSIENT_LOCAL",
+        ),
         ({"lease_ns": "5"}, "lease_ns of a Qos is a whole number, not '5'"),
         ({"depth": True}, "depth of a Qos is a whole number, not True"),
         ({"depth": 2.5}, "depth of a Qos is a whole number, not 2.5"),

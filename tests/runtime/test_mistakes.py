@@ -30,7 +30,7 @@ PAGE = PROJECT / "docs" / "mistakes.md"
 HEAD = """\
 import asyncio
 import time
-from graphflow import ActionClient, Client, Group, Node, Param, Publisher, Qos, Subscription, Time, Timer
+from graphflow import ActionClient, Client, Durability, Group, Node, Param, Publisher, Qos, Subscription, Time, Timer
 from graphflow import action, service, subscription, task, timer
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
@@ -123,6 +123,12 @@ MISTAKES = {
         body(
             "@subscription(String, 'words', 'best_effort')\ndef heard(self, m): ...",
             "@subscription(..., 'best_effort')",
+        ),
+        body('words = Publisher(String, "words", Durability.TRANSIENT_LOCAL)'),
+        body('words = Publisher(String, "words", Qos(lifespan_ns=500))'),
+        body(
+            'robot = Param("r1")\n@subscription(String, f"{robot}/in")\ndef heard(self, m): ...',
+            'robot = Param("r1"), then @subscription(String, f"{robot}/in")',
         ),
         body("@Subscription(String, 'words')\ndef heard(self, m): ...", "@Subscription(String, 'words')"),
         body("@Timer(0.5)\ndef tick(self): ...", "@Timer(0.5)"),

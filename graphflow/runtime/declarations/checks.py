@@ -15,10 +15,13 @@ from graphflow.interface import OnError
 from graphflow.msgs import base
 from graphflow.msgs.base import Message
 from graphflow.names import expand
-from graphflow.qos import Qos
+from graphflow.qos import Durability, History, Liveliness, Qos, Reliability
+from graphflow.runtime.declarations.params_in_names import refuse_param
 
 DEPTH = 10
 """Default depth of a queue."""
+SHORTEST_NS = 10_000
+"""A shorter deadline, lifespan or lease is a number of another unit: a message takes longer even within a process."""
 
 
 def check_node(node: object) -> None:
@@ -68,6 +71,7 @@ def _kind_hint(type_: object, kind: type) -> str:
 def check_text(name: object, what: str, place: Place) -> str:
     """Return the argument `name` if it is text."""
     if not isinstance(name, str):
+        refuse_param(name, what, place)
         raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is not a name")
     return name
 
@@ -75,6 +79,7 @@ def check_text(name: object, what: str, place: Place) -> str:
 def check_name(name: object, what: str, place: Place) -> None:
     """Check that a name is legal."""
     text = check_text(name, what, place)
+    refuse_param(text, what, place)
     try:
         expand(text, "/", "node")
     except InvalidName as error:
@@ -86,15 +91,25 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
     if depth is not None and qos != DEPTH:
         raise DeclarationError(f"{place}: give a Qos or a depth, not both: Qos(depth={depth!r}, ...) is both in one")
     asked = qos if depth is None else depth
+    if isinstance(asked, (Durability, History, Liveliness, Reliability)):
+        policy = f"{type(asked).__name__}.{asked.name}"
+        few = "depth=1, " if asked is Durability.TRANSIENT_LOCAL else ""
+        way = f"as in Qos({few}{type(asked).__name__.lower()}={policy})"
+        raise DeclarationError(f"{place}: give a Qos or a queue depth such as 10, not {policy}, {way}")
     if not isinstance(asked, (Qos, int)):
         hint = "; a callback goes under @subscription" if callable(asked) else ""
         if isinstance(asked, str):
             hint = ", as in Qos(reliability=Reliability.BEST_EFFORT)" if not asked.isdecimal() else ", without quotes"
         raise DeclarationError(f"{place}: give a Qos or a queue depth such as 10, not {asked!r}{hint}")
     try:
-        return Qos.of(asked)
+        profile = Qos.of(asked)
     except ValueError as error:
         raise DeclarationError(f"{place}: {error}") from None
+    for name in ("deadline_ns", "lifespan_ns", "lease_ns"):
+        if (value := getattr(profile, name)) < SHORTEST_NS:
+            way = f"for {value} ms write {name}={value * 1_000_000:_}"
+            raise DeclarationError(f"{place}: {name}={value} is in nanoseconds, too short for any message; {way}")
+    return profile
 
 
 def positional(fn: Callable[..., object]) -> tuple[list[str], int] | None:

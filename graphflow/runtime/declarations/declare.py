@@ -305,6 +305,9 @@ class Param(Held, Generic[V]):
             text = str(error).replace("parameter 'unnamed'", "the default")
             raise DeclarationError(f"{self.place}: {text}") from None
 
+    def __repr__(self) -> str:
+        return f"<Param {self.parameter.default!r} of {self.place}>"
+
     def _choices(self, choices: Sequence[object]) -> tuple[object, ...]:
         """Convert the choices to the declared type. Raises ParameterError if they do not fit it."""
         if not isinstance(choices, (list, tuple)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from enum import IntEnum
 from typing import Any
 
 import pytest
@@ -13,10 +14,14 @@ from graphflow.msgs import base
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.qos import SENSOR_DATA, Qos
+from graphflow.qos import SENSOR_DATA, Durability, Qos, Reliability
 from graphflow.runtime.declarations import checks
 
 HERE = Place("robot.py", 7)
+
+
+class _Depths(IntEnum):
+    FEW = 3
 
 
 def test_what_is_right_passes() -> None:
@@ -41,6 +46,9 @@ def test_what_is_right_passes() -> None:
         (3, None, Qos(depth=3)),
         (10, 3, Qos(depth=3)),
         (SENSOR_DATA, None, SENSOR_DATA),
+        (_Depths.FEW, None, Qos(depth=3)),
+        (Qos(lifespan_ns=100_000), None, Qos(lifespan_ns=100_000)),
+        (Qos(deadline_ns=0), None, Qos()),
     ],
 )
 def test_one_profile_comes_of_qos_and_depth(qos: Qos | int, depth: int | None, profile: Qos) -> None:
@@ -49,6 +57,15 @@ def test_one_profile_comes_of_qos_and_depth(qos: Qos | int, depth: int | None, p
 
 
 WRONG: list[tuple[Any, str]] = [
+    (
+        lambda: checks.check_qos(Durability.TRANSIENT_LOCAL, None, HERE),
+        "not Durability.TRANSIENT_LOCAL, as in Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)",
+    ),
+    (lambda: checks.check_qos(10, Reliability.BEST_EFFORT, HERE), "as in Qos(reliability=Reliability.BEST_EFFORT)"),
+    (
+        lambda: checks.check_qos(Qos(lease_ns=20), None, HERE),
+        "lease_ns=20 is in nanoseconds, too short for any message; for 20 ms write lease_ns=20_000_000",
+    ),
     (
         lambda: checks.check_type("std_msgs/msg/String", base.Message, "Publisher", HERE),
         "not 'std_msgs/msg/String'; write from graphflow.msgs.std_msgs.msg import String, and then String without",
