@@ -23,7 +23,9 @@ from graphflow.runtime.endpoints.publishers import alive_key
 from graphflow.runtime.endpoints.shared_memory import RingReading
 from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.mistakes.echoes import Echo
+from graphflow.runtime.mistakes.expiry import Expiry
 from graphflow.runtime.mistakes.losses import LOSS_TOLD, Losses
+from graphflow.runtime.mistakes.shared_reading import SharedReading
 from graphflow.runtime.part import Host
 from graphflow.transport.inbox import DeepInbox, Inbox, open_inbox
 from graphflow.wire import attachment
@@ -72,8 +74,8 @@ class TopicSubscription(Endpoint, Generic[M]):
         self.type = type_
         self.opened_ns = 0
         """The wall-clock time of its opening."""
-        self.expired = 0
-        """Messages dropped because they exceeded the publisher's lifespan or the subscription's."""
+        self._expiry = Expiry(host, name)
+        self._reading: SharedReading | None = None
         self._callback = callback
         self._takes_info = takes_info
         self._ignore_local = ignore_local
@@ -170,6 +172,11 @@ class TopicSubscription(Endpoint, Generic[M]):
     def dropped(self) -> int:
         """Messages lost to a full queue (`qos.depth`)."""
         return self._inbox.dropped if self._inbox is not None else 0
+
+    @property
+    def expired(self) -> int:
+        """Messages dropped because they exceeded the publisher's lifespan or the subscription's."""
+        return self._expiry.count
 
     @property
     def lost(self) -> int:
@@ -281,7 +288,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         if arrival.__class__ is Handed:
             if self._is_fresh(*arrival.fields):
                 return arrival.take(), arrival.fields
-            self.expired += 1
+            self._expire(*arrival.fields)
             return None
         payload, beside = self._read(arrival)
         try:
@@ -290,7 +297,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             fields = _NO_INFO
         else:
             if not self._is_fresh(*fields):
-                self.expired += 1
+                self._expire(*fields)
                 return None
         try:
             return self._codec.decode(payload), fields
@@ -314,6 +321,11 @@ class TopicSubscription(Endpoint, Generic[M]):
         if source.lifespan_ns == INFINITE_NS:
             return True
         return self.host.context.clock.time_ns() - source_ns <= source.lifespan_ns
+
+    def _expire(self, _: int, source_ns: int, gid: bytes) -> None:
+        taken = self._taken if self.runner is None else self.runner.runs
+        lifespan_ns = self._sources[gid].lifespan_ns
+        self._expiry.add(taken, lifespan_ns, self.host.context.clock.time_ns() - source_ns - lifespan_ns)
 
     def _count_missing(self, missing: int) -> None:
         """Count messages lost in transit, excluding those that the full queue dropped: both leave gaps."""
@@ -388,6 +400,9 @@ class TopicSubscription(Endpoint, Generic[M]):
     def __aiter__(self) -> AsyncIterator[M]:
         if self._callback is not None:
             raise ClosedError(f"{self.name}: this subscription has a callback; make another one to iterate over")
+        if self._reading is None:
+            self._reading = SharedReading(self.host, self.name, self._waiters)
+        self._reading.begins()
         return self
 
     async def __anext__(self) -> M:
@@ -451,6 +466,8 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._deadline.stop()
         if self._echo is not None:
             self._echo.stop()
+        if self._reading is not None:
+            self._reading.stop()
         for source in self._sources.values():
             self._end(source)
         self._sources.clear()
