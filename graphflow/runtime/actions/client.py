@@ -8,7 +8,7 @@ from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import AsyncIterator, Coroutine
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Generic, TypeAlias
+from typing import Any, Generic, TypeAlias
 
 from graphflow.errors import (
     CallError,
@@ -31,6 +31,7 @@ from graphflow.machines.goal import CancelCode, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.actions.sending import Sending
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.serialized import RawSubscription
 from graphflow.runtime.endpoints.service_client import DISCOVERY_GRACE, ServiceClient
@@ -38,7 +39,6 @@ from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.mistakes.network.other_domains import alone_here
 from graphflow.runtime.mistakes.network.unserved import Unserved, nobody_acts
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
-from graphflow.runtime.mistakes.unentered import Unentered
 from graphflow.runtime.part import Host, Part
 from graphflow.times import to_ns
 from graphflow.wire.attachment import MessageInfo
@@ -170,35 +170,6 @@ class ClientGoalHandle(AttributeHints, PendingGoal, Generic[Goal, Result, Feedba
                     news.set_result(None)
 
 
-class Sending(Unentered["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goal, Result, Feedback]):
-    """The context manager that `GoalClient.send` returns: a goal for the length of a block."""
-
-    def __init__(
-        self, client: GoalClient[Goal, Result, Feedback], goal: Goal, timeout: float | None, *, detach: bool
-    ) -> None:
-        super().__init__("`async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`")
-        self._client, self._goal, self._timeout, self._detach = client, goal, timeout, detach
-        self._sent: ClientGoalHandle[Goal, Result, Feedback] | None = None
-
-    async def __aenter__(self) -> ClientGoalHandle[Goal, Result, Feedback]:
-        self._is_known = True
-        self._sent = await self._client.send_goal(self._goal, timeout=self._timeout)
-        return self._sent
-
-    async def __aexit__(self, *_: object) -> None:
-        assert self._sent is not None
-        if not self._detach and not self._sent.done:
-            await self._client.leave(self._sent)
-
-    if not TYPE_CHECKING:  # type checkers must keep reporting unknown attributes
-
-        def __getattr__(self, name: str) -> object:
-            """Raise AttributeError: the goal has not been sent yet."""
-            self._is_known = True
-            text = f"the goal is not sent yet, and has no {name!r}: write `async with client.send(goal) as sent:`"
-            raise AttributeError(text, name=name, obj=self)
-
-
 class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     """An action client."""
 
@@ -291,7 +262,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     def send(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
-    ) -> Sending[Goal, Result, Feedback]:
+    ) -> Sending[ClientGoalHandle[Goal, Result, Feedback]]:
         """Send a goal for the length of a block; the goal is cancelled if the block exits before it has ended.
 
             async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal:
