@@ -58,7 +58,9 @@ class _InterfaceFinder:
             module.__doc__ = f"The interfaces of ROS 2's package {package}."
             return
 
-        def make(name: str) -> type:
+        def make(name: str) -> type | list[str]:
+            if name == "__all__":  # asked for by `from ... import *` only
+                return registry.names_in(package, kind)
             if name.startswith("__"):
                 raise AttributeError(name)
             try:

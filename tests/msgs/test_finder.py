@@ -129,7 +129,17 @@ def test_real_modules_are_left_alone() -> None:
 
 def test_dunder_names_are_never_interfaces() -> None:
     """Python's own attributes are not looked up as interfaces."""
-    assert not hasattr(module("std_msgs.msg"), "__all__")
+    assert not hasattr(module("std_msgs.msg"), "__wrapped__")
+
+
+def test_all_names_of_a_package(save: Save) -> None:
+    """`from ... import *` gives them, and they are listed without building the classes."""
+    save("find_all/msg/Sound", "float64 x")
+    save("find_all/msg/Wrong", "float64 X")
+    assert module("find_all.msg").__all__ == ["Sound", "Wrong"]
+    space: dict[str, Any] = {}
+    exec("from graphflow.msgs.std_msgs.msg import *", space)
+    assert space["Int16"] is registry.interface_class("std_msgs/msg/Int16")
 
 
 def test_the_finder_is_installed_once() -> None:
