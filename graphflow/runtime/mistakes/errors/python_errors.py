@@ -185,7 +185,7 @@ _OURS = ("ServiceClient", "GoalClient", "TopicPublisher")
 
 OF_VALUES = (
     Remark(
-        "^assignment destination is read-only",
+        r"\b(assignment destination|array) is read-only",
         "",
         "arrays of a message that was received cannot be written to: change a copy, as in message.data.copy()",
     ),

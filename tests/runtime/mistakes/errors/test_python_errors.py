@@ -122,6 +122,8 @@ def test_the_line_and_the_words_of_several_versions(
     ("use", "remark"),
     [
         (lambda: UInt8MultiArray.from_bytes(UInt8MultiArray(data=[1, 2]).to_bytes()).data.__setitem__(0, 3), "a copy"),
+        (lambda: UInt8MultiArray.from_bytes(UInt8MultiArray(data=[1, 2]).to_bytes()).data.__imul__(2), "data.copy()"),
+        (lambda: UInt8MultiArray.from_bytes(UInt8MultiArray(data=[1, 2]).to_bytes()).data.sort(), "data.copy()"),
         (lambda: bool(UInt8MultiArray(data=[1, 2]).data), "len(...) > 0"),
         (lambda: UInt8MultiArray().data.append(1), "fill a list"),  # type: ignore[attr-defined]
     ],
