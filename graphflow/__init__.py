@@ -256,7 +256,14 @@ def __getattr__(name: str) -> object:
         if name in names:
             from importlib import import_module
 
-            value: object = getattr(import_module(home), name)
+            try:
+                value: object = getattr(import_module(home), name)
+            except Exception as error:
+                from graphflow.analysis.hidden_stdlib import hiding_file
+
+                if text := hiding_file(error):
+                    raise ImportError(text) from None  # without the frames below, which are not the user's
+                raise
             globals()[name] = value
             return value
     from graphflow.runtime.mistakes.rclpy_words import translation
