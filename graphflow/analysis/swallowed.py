@@ -37,10 +37,15 @@ def _swallowing(code: CodeType | None) -> list[Place]:
 def _lines(function: ast.AST) -> Iterator[int]:
     for node in ast.walk(function):
         if isinstance(node, ast.ExceptHandler):
-            if _catches(node.type) and not any(isinstance(inner, ast.Raise) for inner in ast.walk(node)):
+            if catching(node) and not any(isinstance(inner, ast.Raise) for inner in ast.walk(node)):
                 yield node.lineno
         elif isinstance(node, ast.Call) and last_name(node.func) == "suppress" and any(map(_catches, node.args)):
             yield node.lineno
+
+
+def catching(handler: ast.ExceptHandler) -> bool:
+    """Whether an `except` catches CancelledError."""
+    return _catches(handler.type)
 
 
 def caught_in_vain(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:

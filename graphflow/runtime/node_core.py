@@ -39,6 +39,7 @@ from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.repeats import Repeats
 from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.mistakes.source.slips import slips
+from graphflow.runtime.mistakes.unended import unended
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_options import unused_remaps
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
@@ -394,14 +395,15 @@ class NodeCore:
 
     async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[object]]) -> None:
         """Cancel runs and tasks, and give them `STOP_LIMIT` seconds to clean up."""
-        ending: dict[asyncio.Future[Any], str] = {r.cancel(): r.name for r in runners if r is not None}
+        cancelled = [runner for runner in runners if runner is not None]
+        ending: dict[asyncio.Future[Any], str] = {runner.cancel(): runner.name for runner in cancelled}
         for task in {*tasks} - {asyncio.current_task()}:
             task.cancel()
             ending[task] = task.get_name()
         if ending:
             _, stuck = await asyncio.wait(ending, timeout=STOP_LIMIT)
             if stuck:
-                names = ", ".join(ending[future] for future in stuck)
+                names = unended(stuck, ending, cancelled)
                 self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
 
     async def _finish(self) -> None:
