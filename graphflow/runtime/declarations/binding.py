@@ -18,6 +18,7 @@ from graphflow.runtime.declarations.declare import ActionClient, Client, Held, P
 from graphflow.runtime.declarations.handlers import Handler, Rate
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.failures import ErrorBudget
+from graphflow.runtime.mistakes.source.copies import kept
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
 from graphflow.runtime.part import Host
 from graphflow.times import to_ns
@@ -78,6 +79,8 @@ class Binding:
         self._timers: list[tuple[Rate, Timer]] = []
         self._hooks = declared.param_hooks(self._class)
         self._followers: dict[str, _Follower] = {}
+        self._settled = {*COMMON_PARAMETERS}
+        """Parameters whose attributes need no check when they are set, or have had it."""
 
     def bind_parameters(self) -> None:
         """Declare the parameters; they come first, since the periods of timers may refer to them."""
@@ -86,6 +89,7 @@ class Binding:
         for attribute, item in declared.held(self._class).items():
             if isinstance(item, Param):
                 self.held[attribute] = self._parameters.declare(item.parameter)
+                self._settled.add(item.parameter.name)
         self._parameters.check(self._check)
         self._parameters.observe(self._changed)
 
@@ -167,6 +171,11 @@ class Binding:
                     raise ParameterError(f"parameter {name!r} is not set: {attribute} returned {answer!r}; {text}")
 
     def _changed(self, changes: Mapping[str, ParameterChange]) -> None:
+        for name, (old, new) in changes.items() if self._host.is_running else ():
+            if old is not None and name not in self._settled:
+                self._settled.add(name)
+                if text := kept(self._node, name, old, new):
+                    self._host.log.warning("%s", text)
         for rate, timer in self._timers:
             if changes.keys() & rate.parameters():
                 timer.period = self._period_ns(rate, {}) / 1e9
