@@ -37,7 +37,8 @@ def kept(node: object, name: str, old: object, new: object) -> str:
         return ""
     return (
         f"{copy.place}: self.{copy.attribute} keeps the value that {name!r} had at the start, and the node goes on "
-        f'with {old!r}; read self.parameters.get("{name}") where it is used, or declare {name} = Param(...) in the class'
+        f'with {old!r}; read self.parameters.get("{name}") where it is used, or declare {name} = Param(...) in the '
+        "class"
     )
 
 

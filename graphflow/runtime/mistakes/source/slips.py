@@ -11,20 +11,17 @@ import ast
 import logging
 import re
 import sys
-from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.swallowed import caught_in_vain
 from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
 from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.analysis.user_code import is_installed, is_users_module
-from graphflow.errors import EncodeError, Place
-from graphflow.msgs.base import Message, no_field
+from graphflow.errors import Place
 from graphflow.names import nearest
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
@@ -34,6 +31,7 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
@@ -64,7 +62,8 @@ def _slips(cls: type) -> Iterator[str]:
             yield from _changed_in_place(cls, definition, file)
             for method in definition.body:
                 if isinstance(method, FunctionNode):
-                    yield from _wrong_fields(method, file, space)
+                    handler = declared.handlers(parent).get(method.name)
+                    yield from wrong_fields(method, handler, file, space)
             found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
             found = (*found, *ineffective(definition), *overridden(parent, definition))
             found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
@@ -141,26 +140,10 @@ _DECORATORS = {"message": '@subscription(Type, "topic")', "request": '@service(T
 
 def _received(argument: ast.arg, space: dict[str, object]) -> str:
     """Return the annotation of an argument if it is a message or request, else ""."""
-    type_ = _message(argument.annotation, space)
+    type_ = message_of(argument.annotation, space)
     if type_ is None:
         return ""
     return "request" if type_.__name__ == "Request" or type_.SCHEMA.name.endswith("_Request") else "message"
-
-
-def _resolved(expression: ast.expr | None, space: dict[str, object]) -> object:
-    """Return the value of a possibly dotted name in a module."""
-    match expression:
-        case ast.Name(id=name):
-            return space.get(name)
-        case ast.Attribute(value=value, attr=name):
-            owner = _resolved(value, space)
-            if isinstance(owner, ModuleType) and owner.__name__.startswith("graphflow.msgs"):
-                return getattr(owner, name, None)  # message classes are built on access
-            # Other attributes may be properties, which would run user code.
-            return vars(owner).get(name) if isinstance(owner, (ModuleType, type)) else None
-        case ast.Constant(value=str(text)):
-            return space.get(text)
-    return None
 
 
 def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str]) -> Iterator[str]:
@@ -198,7 +181,7 @@ def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, o
         for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
             match node:
                 case ast.Attribute(value=owner, attr=name, ctx=ast.Store()) if name in names:
-                    if _resolved(owner, space) in cls.__mro__ or ast.unparse(owner) in _OWN_CLASS:
+                    if resolved(owner, space) in cls.__mro__ or ast.unparse(owner) in _OWN_CLASS:
                         text = f"{ast.unparse(node)} replaces what the class declares, for all of its nodes"
                         yield f"{Place(file, node.lineno)}: {text}; write self.{name}"
 
@@ -221,53 +204,3 @@ def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterato
 
 _CHANGING = ("append", "extend", "insert", "remove", "pop", "clear", "sort", "reverse")
 _OWN_CLASS = ("type(self)", "self.__class__")
-
-
-def _wrong_fields(method: FunctionNode, file: str, space: dict[str, object]) -> Iterator[str]:
-    """Find fields of messages that their type does not have, and literals that do not fit them."""
-    bound = {a.arg: {_message(a.annotation, space)} for a in method.args.args}
-    times: Counter[str] = Counter()
-    for node in ast.walk(method):
-        match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                bound.setdefault(name, set()).add(_type_made(value, space))
-                times[name] -= 1
-            case ast.Name(id=name, ctx=ast.Store()):
-                times[name] += 1
-    # A name with several meanings, or bound by a loop, is treated as unknown.
-    made = {
-        name: type_
-        for name, types in bound.items()
-        if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
-    }
-    for node in ast.walk(method):
-        match node:
-            case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
-                text = _misfit(made[name], field, value)
-                if text:
-                    yield f"{Place(file, node.lineno)}: {text}"
-
-
-def _type_made(value: ast.expr, space: dict[str, object]) -> type[Message] | None:
-    """Return the message class that an expression instantiates, as in `String()`."""
-    return _message(value.func, space) if isinstance(value, ast.Call) else None
-
-
-def _message(expression: ast.expr | None, space: dict[str, object]) -> type[Message] | None:
-    """Return the message class that an expression names."""
-    type_ = _resolved(expression, space)
-    return type_ if isinstance(type_, type) and issubclass(type_, Message) else None
-
-
-def _misfit(type_: type[Message], field: str, value: ast.expr) -> str:
-    if field not in {f.name for f in type_.SCHEMA.fields}:
-        return "" if hasattr(type_, field) else no_field(type_, field)
-    try:
-        literal = ast.literal_eval(value)
-    except (ValueError, TypeError, SyntaxError):
-        return ""
-    try:
-        type_(**{field: literal}).to_bytes()
-    except EncodeError as error:
-        return str(error)
-    return ""

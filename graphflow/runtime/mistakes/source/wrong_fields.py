@@ -1,0 +1,136 @@
+"""Fields of messages that their type does not have: `message.pos` for `message.pose`, set or read."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from types import ModuleType
+
+from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.errors import EncodeError, Place
+from graphflow.msgs.base import Message, no_field
+from graphflow.runtime.declarations.handlers import Handler
+
+
+def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]) -> Iterator[str]:
+    """Find fields of messages that their type does not have, and literals that do not fit them.
+
+    Args:
+        handler: What the class declares the method to be.
+    """
+    bound = _received(method, handler, space)
+    times: Counter[str] = Counter()
+    for node in ast.walk(method):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                bound.setdefault(name, set()).add(_type_made(value, space))
+                times[name] -= 1
+            case (
+                ast.Name(id=name, ctx=ast.Store())
+                | ast.ExceptHandler(name=str(name))
+                | ast.MatchAs(name=str(name))
+                | ast.MatchStar(name=str(name))
+            ):
+                times[name] += 1
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.Lambda() if node is not method:
+                times.update(argument.arg for argument in ast.walk(node.args) if isinstance(argument, ast.arg))
+            case ast.Call(func=ast.Name(id="isinstance" | "hasattr"), args=[ast.Name(id=name), *_]):
+                times[name] += 1  # its type is looked at
+    # A name with several meanings, or bound by a loop, is treated as unknown.
+    made = {
+        name: type_
+        for name, types in bound.items()
+        if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
+    }
+    for node, parents in walk(method):
+        match node:
+            case ast.Attribute(ctx=ast.Load(), attr=field) if type_ := _type_of(node.value, made):
+                if not (_has(type_, field) or any(map(_expects, parents))):
+                    yield f"{Place(file, node.lineno)}: {no_field(type_, field)}"
+            case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
+                text = _misfit(made[name], field, value)
+                if text:
+                    yield f"{Place(file, node.lineno)}: {text}"
+
+
+def _type_made(value: ast.expr, space: dict[str, object]) -> type[Message] | None:
+    """Return the message class that an expression instantiates, as in `String()`."""
+    return message_of(value.func, space) if isinstance(value, ast.Call) else None
+
+
+def message_of(expression: ast.expr | None, space: dict[str, object]) -> type[Message] | None:
+    """Return the message class that an expression names."""
+    type_ = resolved(expression, space)
+    return type_ if isinstance(type_, type) and issubclass(type_, Message) else None
+
+
+def _misfit(type_: type[Message], field: str, value: ast.expr) -> str:
+    if field not in {f.name for f in type_.SCHEMA.fields}:
+        return "" if _has(type_, field) else no_field(type_, field)
+    try:
+        literal = ast.literal_eval(value)
+    except (ValueError, TypeError, SyntaxError):
+        return ""
+    try:
+        type_(**{field: literal}).to_bytes()
+    except EncodeError as error:
+        return str(error)
+    return ""
+
+
+def _received(
+    method: FunctionNode, handler: Handler | None, space: dict[str, object]
+) -> dict[str, set[type[Message] | None]]:
+    """Return the message classes of a method's arguments, by their annotations or by its decorator."""
+    given: list[type[Message] | None] = []
+    if handler is not None and handler.kind == "subscription":
+        given = [None, handler.type]
+    elif handler is not None and handler.kind == "service":
+        given = [None, handler.type.Request, handler.type.Response]
+    found: dict[str, set[type[Message] | None]] = {}
+    for number, argument in enumerate(method.args.args):
+        of_decorator = given[number] if number < len(given) and argument.annotation is None else None
+        found[argument.arg] = {of_decorator or message_of(argument.annotation, space)}
+    return found
+
+
+def _type_of(expression: ast.expr, made: Mapping[str, type[Message]]) -> type[Message] | None:
+    """Return the message class of a name, or of a field that is a message itself."""
+    if isinstance(expression, ast.Name):
+        return made.get(expression.id)
+    if not isinstance(expression, ast.Attribute) or (type_ := _type_of(expression.value, made)) is None:
+        return None
+    if expression.attr not in {field.name for field in type_.SCHEMA.fields}:
+        return None
+    value = getattr(type_(), expression.attr, None)
+    return type(value) if isinstance(value, Message) else None
+
+
+def _has(type_: type[Message], field: str) -> bool:
+    return field in {f.name for f in type_.SCHEMA.fields} or hasattr(type_, field) or field.startswith("__")
+
+
+def _expects(parent: ast.AST) -> bool:
+    """Whether the statement expects that an attribute may be missing."""
+    for handler in parent.handlers if isinstance(parent, ast.Try) else ():
+        caught = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+        if any(c is None or last_name(c) in ("AttributeError", "Exception", "BaseException") for c in caught):
+            return True
+    return False
+
+
+def resolved(expression: ast.expr | None, space: dict[str, object]) -> object:
+    """Return the value of a possibly dotted name in a module."""
+    match expression:
+        case ast.Name(id=name):
+            return space.get(name)
+        case ast.Attribute(value=value, attr=name):
+            owner = resolved(value, space)
+            if isinstance(owner, ModuleType) and owner.__name__.startswith("graphflow.msgs"):
+                return getattr(owner, name, None)  # message classes are built on access
+            # Other attributes may be properties, which would run user code.
+            return vars(owner).get(name) if isinstance(owner, (ModuleType, type)) else None
+        case ast.Constant(value=str(text)):
+            return space.get(text)
+    return None

@@ -1,0 +1,81 @@
+"""Fields of messages that their type does not have."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import sys
+from pathlib import Path
+
+import pytest
+
+from graphflow import Node
+from graphflow.runtime.mistakes.source.slips import slips
+
+HEAD = """\
+from graphflow import Node, action, service, subscription
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.geometry_msgs.msg import PoseStamped, Twist
+
+
+class Robot(Node):
+"""
+_numbers = itertools.count()
+
+
+def _told(folder: Path, body: str) -> list[str]:
+    name = f"fields_{next(_numbers)}"
+    file = folder / f"{name}.py"
+    file.write_text(HEAD + "".join(f"    {line}\n" for line in body.splitlines()))
+    spec = importlib.util.spec_from_file_location(name, file)
+    assert spec is not None
+    assert spec.loader is not None
+    sys.modules[name] = module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    cls: type[Node] = module.Robot
+    return [text.partition(".py:")[2] for text in slips(cls)]  # type: ignore[arg-type]
+
+
+POSE = '@subscription(PoseStamped, "p")\ndef heard(self, m):\n    '
+ADD = '@service(AddTwoInts, "add")\ndef add(self, request, response):\n    '
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (POSE + "print(m.pos.position)", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
+        (POSE + "print(m.pose.positon.x)", "10: Pose has no field 'positon'; did you mean 'position'?"),
+        (POSE + "m.pos = 1", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
+        (ADD + "return AddTwoInts.Response(sum=request.c)", "10: AddTwoInts.Request has no field 'c'"),
+        (ADD + "response.result = 1\n    return response", "10: AddTwoInts.Response has no field 'result'"),
+        (
+            "def go(self, t: Twist):\n    print(t.liner.x)\nasync def on_start(self):\n    self.go(Twist())",
+            "9: Twist has no field 'liner'; did you mean 'linear'?",
+        ),
+    ],
+)
+def test_a_field_that_is_not_there(tmp_path: Path, body: str, told: str) -> None:
+    """Is told with its line: it is set or read, in an argument that the decorator or an annotation types."""
+    (text,) = _told(tmp_path, body)
+    assert text.startswith(told)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        POSE + "print(m.pose.position.x, m.header.stamp, m.to_bytes(), m.SCHEMA, m.__class__)",
+        POSE + "try:\n        print(m.pos)\n    except AttributeError:\n        pass",
+        POSE + "print(m.pos if hasattr(m, 'pos') else m.pose)",
+        POSE + "m = m.pose\n    print(m.position)",
+        POSE + "for m in [m.pose]:\n        print(m.position)",
+        POSE + "print(list(map(lambda m: m.real, [1])))",
+        POSE + "if isinstance(m, Twist):\n        print(m.linear)",
+        '@subscription(PoseStamped, "p")\ndef heard(self, m: object):\n    print(m.pos)',
+        ADD + "response.sum = request.a + request.b\n    return response",
+        '@action(Fibonacci, "f")\nasync def count(self, goal):\n    return Fibonacci.Result(sequence=[goal.request.x])',
+    ],
+)
+def test_other_attributes(tmp_path: Path, body: str) -> None:
+    """Are not told: fields, attributes of messages and of other objects, and those that may be missing."""
+    assert _told(tmp_path, body) == []
