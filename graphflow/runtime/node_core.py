@@ -39,7 +39,6 @@ from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.repeats import Repeats
 from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.mistakes.source.slips import slips
-from graphflow.runtime.mistakes.unended import unended
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_options import unused_remaps
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
@@ -403,6 +402,8 @@ class NodeCore:
         if ending:
             _, stuck = await asyncio.wait(ending, timeout=STOP_LIMIT)
             if stuck:
+                from graphflow.runtime.mistakes.unended import unended  # most programs never need it
+
                 names = unended(stuck, ending, cancelled)
                 self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from graphflow.runtime.mistakes.left_early import left_early
 from graphflow.runtime.mistakes.unentered import Unentered
 
 
@@ -49,8 +48,11 @@ class Sending(Unentered[H]):
     async def __aexit__(self, kind: type[BaseException] | None, *_: object) -> None:
         assert self._sent is not None
         if not self._detach and not self._sent.done:
-            if kind is None and (text := left_early(self._place)):
-                self._client.host.log.warning("%s", text)
+            if kind is None:
+                from graphflow.runtime.mistakes.left_early import left_early  # most programs never need it
+
+                if text := left_early(self._place):
+                    self._client.host.log.warning("%s", text)
             await self._client.leave(self._sent)
 
     if not TYPE_CHECKING:  # type checkers must keep reporting unknown attributes

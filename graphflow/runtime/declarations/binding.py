@@ -18,7 +18,6 @@ from graphflow.runtime.declarations.declare import ActionClient, Client, Held, P
 from graphflow.runtime.declarations.handlers import Handler, Rate
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.failures import ErrorBudget
-from graphflow.runtime.mistakes.source.copies import kept
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
 from graphflow.runtime.part import Host
 from graphflow.times import to_ns
@@ -174,6 +173,8 @@ class Binding:
         for name, (old, new) in changes.items() if self._host.is_running else ():
             if old is not None and name not in self._settled:
                 self._settled.add(name)
+                from graphflow.runtime.mistakes.source.copies import kept  # most nodes never need it
+
                 if text := kept(self._node, name, old, new):
                     self._host.log.warning("%s", text)
         for rate, timer in self._timers:
