@@ -135,9 +135,11 @@ def _after(function: ast.AST, line: int) -> tuple[ast.Call | None, list[ast.stmt
     later: list[ast.stmt] = []
     block: list[ast.stmt] = function.body  # type: ignore[attr-defined]
     while True:
-        at = next((i for i, one in enumerate(block) if one.lineno <= line <= (one.end_lineno or 0)), None)
-        if at is None:
+        in_line = [i for i, one in enumerate(block) if one.lineno <= line <= (one.end_lineno or 0)]
+        if not in_line:
             return None, []
+        # Of `rclpy.init(); rclpy.spin(node)` in one line, the second is meant.
+        at = next((i for i in in_line if len(in_line) > 1 and "spin" in ast.unparse(block[i])), in_line[0])
         statement = block[at]
         later = [*block[at + 1 :], *later]
         inner = next((b for b in _blocks(statement) if b[0].lineno <= line <= (b[-1].end_lineno or 0)), None)

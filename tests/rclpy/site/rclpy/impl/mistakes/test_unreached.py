@@ -153,6 +153,7 @@ def test_a_node_that_is_made_after_a_spin(told: Callable[[str], list[str]]) -> N
 @pytest.mark.parametrize(
     "body",
     [
+        "rclpy.ok(); rclpy.spin(Asker())",
         "rclpy.spin(node)\nnode.save()\nprint(node.get_name())\nnode.destroy_node()\nrclpy.shutdown()",
         "try:\n  rclpy.spin(node)\nexcept KeyboardInterrupt:\n  node.ask()\nfinally:\n  node.ask()",
         "try:\n  rclpy.spin(node)\nexcept Exception:\n  pass\nnode.ask()",
