@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import get_args
 
+from graphflow.analysis.user_code import is_users
 from graphflow.errors import DeclarationError, InvalidName, Place
 from graphflow.interface import OnError
 from graphflow.msgs import base
@@ -106,7 +107,8 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
     except ValueError as error:
         raise DeclarationError(f"{place}: {error}") from None
     for name in ("deadline_ns", "lifespan_ns", "lease_ns"):
-        if (value := getattr(profile, name)) < SHORTEST_NS:
+        # Commands take on the profiles of publishers, whatever these are.
+        if (value := getattr(profile, name)) < SHORTEST_NS and is_users(place.file):
             way = f"for {value} ms write {name}={value * 1_000_000:_}"
             raise DeclarationError(f"{place}: {name}={value} is in nanoseconds, too short for any message; {way}")
     return profile

@@ -56,6 +56,12 @@ def test_one_profile_comes_of_qos_and_depth(qos: Qos | int, depth: int | None, p
     assert checks.check_qos(qos, depth, HERE) == profile
 
 
+def test_profiles_of_commands() -> None:
+    """They may have any durations, which are those of publishers."""
+    short = Qos(deadline_ns=5)
+    assert checks.check_qos(short, None, Place(checks.__file__, 1)) == short
+
+
 WRONG: list[tuple[Any, str]] = [
     (
         lambda: checks.check_qos(Durability.TRANSIENT_LOCAL, None, HERE),
