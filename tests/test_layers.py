@@ -210,7 +210,7 @@ def shortest_circle(graph: Mapping[str, set[str]]) -> list[str]:
 def test_no_files_import_each_other_in_a_circle() -> None:
     """Nowhere in the package, whichever way the import is written.
 
-    The classes of rclpy name each other in their signatures, as ROS 2's do: there, imports for type checkers do not count.
+    The classes of rclpy name each other in signatures, as ROS 2's do: there, imports for type checkers do not count.
     """
     files = {}
     for path in PACKAGE.rglob("*.py"):

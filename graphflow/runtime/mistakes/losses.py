@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from graphflow.runtime.part import Host
-from graphflow.transport.base import BYTES_BOUND
+from graphflow.transport.inbox import BYTES_BOUND
 
 LOSS_TOLD = 100
 """Messages dropped from a full queue before a warning that most are lost."""
