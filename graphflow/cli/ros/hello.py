@@ -17,6 +17,7 @@ HELLO = "hello, it's me "
 HOSTS_BOUND = 200
 """Most machines that are counted."""
 NAME_BOUND = 255
+"""Characters of a machine's name; the rest is cut."""
 
 
 def greet(topic: str, emit_period: float, print_period: float, *, once: bool) -> int:
@@ -33,12 +34,7 @@ async def _greet(node: Node, topic: str, emit_period: float, print_period: float
     publisher = node.create_publisher(String, topic, 10)
     heard: Counter[str] = Counter()
 
-    def listen(message: String) -> None:
-        host = message.data.removeprefix(HELLO)[:NAME_BOUND]
-        if host in heard or len(heard) < HOSTS_BOUND:
-            heard[host] += 1
-
-    node.create_subscription(String, topic, listen, 10, ignore_local=True)
+    node.create_subscription(String, topic, lambda message: _count(heard, message.data), 10, ignore_local=True)
     sent = 0
 
     async def publish() -> None:
@@ -59,6 +55,13 @@ async def _greet(node: Node, topic: str, emit_period: float, print_period: float
             sent = 0
     finally:
         publishing.cancel()
+
+
+def _count(heard: Counter[str], greeting: str) -> None:
+    """Count the greeting of a machine, unless too many others are counted."""
+    host = greeting.removeprefix(HELLO)[:NAME_BOUND]
+    if host in heard or len(heard) < HOSTS_BOUND:
+        heard[host] += 1
 
 
 def _print_table(topic: str, sent: int, heard: Counter[str], print_period: float) -> None:
