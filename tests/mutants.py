@@ -5,22 +5,27 @@
     python -m tests.mutants wire machines/cache   # those of some packages or modules
 
 A bound is a constant of a module whose name ends with `BOUND` or begins with `LONGEST`. Its mutant reads a number
-without limit wherever the module's functions read the constant; tests see the constant as it is. A check is a text of
-`CHECKS`, replaced by another. Each mutant is tried on the tests of its module and on those that name it. A survivor is
-printed, and makes the exit code 1.
+without limit wherever one module reads the constant; tests see the constant as it is. A check is a text of
+`CHECKS`, replaced by another. Each mutant is tried on the tests of its module, and on those that name its constant. A
+survivor is printed, and makes the exit code 1.
 """
 
 from __future__ import annotations
 
 import ast
+import os
 import re
 import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import cache
+from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
+
+import pytest
 
 PROJECT = Path(__file__).parents[1]
 PACKAGE = PROJECT / "graphflow"
@@ -28,6 +33,7 @@ BOUND = re.compile(r"_?([A-Z_]*BOUND|LONGEST[A-Z_]*)\Z")
 BEYOND = "(1 << 62)"
 MOST_SECONDS, MOST_MEMORY = 60, 6 << 30
 """What the tests of one mutant may take; one that takes more is seen."""
+_PASSED = (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
 
 CHECKS: dict[str, tuple[tuple[str, str], ...]] = {}
 """Security checks by their files: the text of each, and what takes its place."""
@@ -57,58 +63,101 @@ def mutants_of(file: Path) -> Iterator[Mutant]:
 
 
 def _bounds(source: str) -> list[str]:
-    found = []
-    for node in ast.parse(source).body:
-        if isinstance(node, ast.Assign):
-            targets = node.targets[0].elts if isinstance(node.targets[0], ast.Tuple) else node.targets
-            found += [t.id for t in targets if isinstance(t, ast.Name) and BOUND.match(t.id)]
-    return [name for name in found if _reads(source, name)]
+    """The bounds that a file reads, its own and those of other modules."""
+    nodes = list(ast.walk(ast.parse(source)))
+    found = {n.id for n in nodes if isinstance(n, ast.Name)} | {n.attr for n in nodes if isinstance(n, ast.Attribute)}
+    return sorted(name for name in found if BOUND.match(name) and _reads(ast.parse(source), name))
 
 
-def _reads(source: str, name: str) -> list[ast.Name]:
-    """Where functions read a constant."""
-    functions = [
-        n for n in ast.walk(ast.parse(source)) if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-    ]
-    names = [n for function in functions for n in ast.walk(function) if isinstance(n, ast.Name) and n.id == name]
-    return list({(n.lineno, n.col_offset): n for n in names}.values())
+def _reads(tree: ast.AST, name: str, *, in_text: bool = False) -> list[ast.expr]:
+    """Where a constant is read, also as `module.NAME`, except to compute another constant."""
+    if isinstance(tree, ast.JoinedStr) and not in_text:  # its parts have wrong places before Python 3.12
+        return [tree] if _reads(tree, name, in_text=True) else []
+    if isinstance(tree, ast.Assign) and all(isinstance(t, ast.Name) and BOUND.match(t.id) for t in tree.targets):
+        return []
+    if isinstance(tree, ast.Name) and tree.id == name and isinstance(tree.ctx, ast.Load):
+        return [tree]
+    if isinstance(tree, ast.Attribute) and tree.attr == name and isinstance(tree.value, ast.Name):
+        return [tree]
+    return [read for part in ast.iter_child_nodes(tree) for read in _reads(part, name, in_text=in_text)]
 
 
 def _without(source: str, name: str) -> str:
-    lines = [line.encode() for line in source.splitlines(keepends=True)]
-    for read in sorted(_reads(source, name), key=lambda n: (n.lineno, n.col_offset), reverse=True):
-        line, at = lines[read.lineno - 1], read.col_offset
-        lines[read.lineno - 1] = line[:at] + BEYOND.encode() + line[at + len(name) :]
-    return b"".join(lines).decode()
+    text = source.encode()
+    starts = [0, *accumulate(len(line) + 1 for line in text.split(b"\n"))]
+    for read in sorted(_reads(ast.parse(source), name), key=lambda n: (n.lineno, n.col_offset), reverse=True):
+        assert read.end_lineno is not None
+        assert read.end_col_offset is not None
+        begin, end = starts[read.lineno - 1] + read.col_offset, starts[read.end_lineno - 1] + read.end_col_offset
+        other = re.sub(rf"(\w+\.)?\b{name}\b", BEYOND, text[begin:end].decode())
+        text = text[:begin] + other.encode() + text[end:]
+    return text.decode()
 
 
 def tests_of(mutant: Mutant) -> list[str]:
-    """The test of the module, and those that name the constant together with the module."""
+    """The test of the module, and of a bound those that name it together with the module."""
     own = Path("tests", *mutant.file.parts[1:-1], f"test_{mutant.file.name}")
     found = {own.as_posix()} if (PROJECT / own).exists() else set()
-    word = mutant.name if BOUND.match(mutant.name) else mutant.file.stem
-    for path in (PROJECT / "tests").rglob("test_*.py"):
-        text = path.read_text("utf-8")
-        if word in text and mutant.file.stem in text:
-            found.add(path.relative_to(PROJECT).as_posix())
+    if BOUND.match(mutant.name):
+        for path in (PROJECT / "tests").rglob("test_*.py"):
+            text = path.read_text("utf-8")
+            if mutant.name in text and mutant.file.stem in text:
+                found.add(path.relative_to(PROJECT).as_posix())
     return sorted(found)
 
 
 def is_seen(mutant: Mutant, copy: Path) -> bool:
-    """Whether a test fails, or does not end, with the change in a copy of the project."""
+    """Whether a test fails, or does not end, with the change in a copy of the project; it must pass without it."""
     file = copy / mutant.file
     before = file.read_bytes()
     file.write_text(mutant.text, "utf-8")
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", *tests_of(mutant)]
+    tests = tests_of(mutant)
+    cases = "few"
     try:
-        run = subprocess.run(
-            command, cwd=copy, capture_output=True, timeout=MOST_SECONDS, check=False, preexec_fn=_limit_memory
-        )
-    except subprocess.TimeoutExpired:
-        return True
+        code, out = _run(tests, copy, cases)
+        if code in _PASSED:  # of a test with many cases, only some are tried by default
+            cases = "full"
+            code, out = _run(tests, copy, cases)
     finally:
         file.write_bytes(before)
-    return run.returncode == 1
+    if code in _PASSED:
+        return False
+    failed = re.search(r"^(?:FAILED|ERROR) ([^\s:]+)", out, re.MULTILINE)
+    _sound((failed[1],) if failed else tuple(tests), copy, cases)
+    return True
+
+
+@cache
+def _sound(tests: tuple[str, ...], copy: Path, cases: str) -> None:
+    """Check that tests pass without a change."""
+    code, out = _run(tests, copy, cases)
+    if code:
+        sys.exit(f"{' '.join(tests)} must pass, and within {MOST_SECONDS} s, without a mutant:\n{out[-2000:]}")
+
+
+def _run(tests: Sequence[str], copy: Path, cases: str) -> tuple[int | None, str]:
+    """Run tests in a copy; the exit code is None if they do not end."""
+    if not tests:  # pytest would run all
+        return 0, ""
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", *tests]
+    environment = os.environ | {
+        "PYTHONPATH": str(copy),
+        "GRAPHFLOW_CASES": cases,
+    }  # the path for processes that tests start
+    try:
+        run = subprocess.run(
+            command,
+            cwd=copy,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=MOST_SECONDS,
+            check=False,
+            preexec_fn=_limit_memory,
+        )
+    except subprocess.TimeoutExpired:
+        return None, ""
+    return run.returncode, run.stdout
 
 
 def _limit_memory() -> None:
