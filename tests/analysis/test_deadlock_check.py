@@ -221,3 +221,30 @@ def test_a_source_that_is_parsed_while_another_thread_parses(tmp_path: Path, mon
 
     monkeypatch.setattr(ast, "parse", disturbed)
     assert len(_module(str(file)).body) == 1
+
+
+ENDLESS = """
+from graphflow import Client, Group, Node, service, timer
+from graphflow.msgs.std_srvs.srv import Trigger
+
+
+class Asker(Node):
+    many = Group(None)
+    again = Client(Trigger, "again")
+
+    @timer(1.0)
+    async def tick(self):
+        await self.again.call(Trigger.Request())
+
+    @service(Trigger, "again", group=many)
+    async def answer(self, request):
+        return await self.again.call(Trigger.Request())
+"""
+
+
+def test_a_service_that_calls_itself_in_a_group_without_limit(tmp_path: Path) -> None:
+    """No group is ever full, and the chain of calls is followed only so far."""
+    (tmp_path / "endless_cases.py").write_text(ENDLESS)
+    (tmp_path / "g.yaml").write_text("nodes: {/n: {class: endless_cases:Asker}}")
+
+    assert found(tmp_path / "g.yaml") == []

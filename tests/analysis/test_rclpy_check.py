@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.analysis.rclpy_check import findings_in
+from graphflow.analysis import rclpy_check
+from graphflow.analysis.rclpy_check import files_in, findings_in
 
 HEAD = """
 import rclpy
@@ -245,3 +246,11 @@ def test_a_future_that_others_may_end(tmp_path: Path, given: str) -> None:
     lines = ["future = self.client.call_async(Trigger.Request())", "rclpy.spin_until_future_complete(self, future)"]
     assert len(found(tmp_path, tick=TICK + "\n        ".join(lines))) == 1
     assert found(tmp_path, tick=TICK + "\n        ".join([lines[0], given, lines[1]])) == []
+
+
+def test_a_folder_of_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only so many are read."""
+    monkeypatch.setattr(rclpy_check, "FILES_BOUND", 2)
+    for name in "abc":
+        (tmp_path / f"{name}.py").write_text("")
+    assert [file.name for file in files_in(tmp_path)] == ["a.py", "b.py"]

@@ -11,6 +11,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
+from graphflow.bag import reader
 from graphflow.bag.formats.mcap_file import McapFile
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError
@@ -142,3 +143,12 @@ def test_files_of_a_bag_that_are_none(tmp_path: Path) -> None:
     os.mkfifo(folder / "metadata.yaml")
     with pytest.raises(BagError, match=r"metadata\.yaml: it is not a regular file"):
         Bag(folder)
+
+
+def test_metadata_that_name_too_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the names, only so many are looked for."""
+    monkeypatch.setattr(reader, "_FILES_BOUND", 1)
+    names = "rosbag2_bagfile_information: {relative_file_paths: [a.mcap, b.mcap]}"
+    text(tmp_path / "metadata.yaml", names)
+    with pytest.raises(BagError, match=r"names a\.mcap$"):
+        Bag(tmp_path)

@@ -17,6 +17,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from graphflow.cli import words
 from graphflow.cli.ros.param import set_
 from graphflow.cli.ros.topic import pub
 from graphflow.cli.words import message_values, messages_in, repair, split_values
@@ -312,3 +313,12 @@ def test_quotes_that_the_shell_takes_away(text: str, name: str) -> None:
 def test_values_that_are_there(text: str) -> None:
     """An empty text is a value, and an explicit null is not reported as a lost one."""
     message_values([text])
+
+
+def test_a_file_of_messages_that_is_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused before it fills the memory."""
+    file = tmp_path / "said.yaml"
+    file.write_text("data: a\n")
+    monkeypatch.setattr(words, "_MESSAGES_BOUND", 7)
+    with pytest.raises(UsageFault, match="it has more than 7 bytes"):
+        messages_in(file)

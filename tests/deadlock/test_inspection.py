@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from graphflow import Group, Node, service, subscription, timer
+from graphflow.deadlock import inspection
 from graphflow.deadlock.inspection import LOOKS, MOVES, groups_of
 from graphflow.errors import RemoteError
 from graphflow.executor.groups import GROUPS_BOUND
@@ -237,3 +238,12 @@ async def test_closing_it(graph: Graph) -> None:
 
     assert graph.network.reports == {}
     assert not any(graph.network.servers.get(answer_key(0, GROUPS, node.context.session.zid), []))
+
+
+async def test_a_request_that_is_too_long(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused unread."""
+    monkeypatch.setattr(inspection, "MOVE_BOUND", 20)
+    node = await start(graph)
+    answer = await ask(graph, node, wanted())
+    assert answer.is_error
+    assert b"names no handler" in answer.payload

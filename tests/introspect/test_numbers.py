@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from graphflow.introspect import numbers as numbers_module
 from graphflow.introspect.numbers import REPLY_BOUND, Flow, Numbers
 
 
@@ -72,3 +73,15 @@ def test_numbers_that_are_none(number: str) -> None:
     for key in ('"lag": X, "nodes": {"/a": {}}', '"lag": 0, "nodes": {"/a": {"publisher /b": {"published": X}}}'):
         numbers.take([f"{{{key.replace('X', number)}}}".encode()], 1.0)
         numbers.take([f"{{{key.replace('X', number)}}}".encode()], 2.0)
+
+
+def test_answers_that_are_too_long_or_have_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first are left out, and of the others only so many endpoints are kept."""
+    monkeypatch.setattr(numbers_module, "NODES_BOUND", 1)
+    numbers = Numbers()
+    for now in (1.0, 2.0):
+        numbers.take([reply(int(10 * now))], now)
+    assert list(numbers.rates) == [Flow("/a", "publisher", "/pose")]
+    monkeypatch.setattr(numbers_module, "REPLY_BOUND", 10)
+    numbers.take([reply(30)], 3.0)
+    assert (numbers.rates, numbers.lags) == ({}, {})

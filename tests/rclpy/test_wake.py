@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import os
+import queue
 import signal
 import threading
+from typing import Any, ClassVar
 
+import pytest
+
+from graphflow.rclpy import wake as wake_module
 from graphflow.rclpy.wake import SharedWake, Wake
 
 
@@ -68,3 +73,22 @@ def test_all_who_wait_are_woken() -> None:
     with shared.for_one() as wake:
         assert wake is shared
         assert wake.wait(0)
+
+
+def test_a_wait_that_is_longer_than_a_system_call_may_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes several, of which none is longer than the limit."""
+
+    class Queue:
+        asked: ClassVar[list[float]] = []
+
+        def get(self, timeout: float) -> None:
+            self.asked.append(timeout)
+            if len(self.asked) < 3:
+                raise queue.Empty
+
+    wake = Wake()
+    made: Any = Queue()
+    monkeypatch.setattr(wake_module, "LONGEST", 2.0)
+    wake._queue = made
+    assert wake.wait(1e9)
+    assert made.asked == [2.0, 2.0, 2.0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 import pytest
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosedError, InvalidStatus
 
 from graphflow import Node, Publisher
 from graphflow.errors import TransportError
@@ -14,7 +14,7 @@ from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.qos import CLOCK
 from graphflow.testing import Graph
 from graphflow.viewer import bridge as bridge_module
-from graphflow.viewer import client
+from graphflow.viewer import client, protocol
 from graphflow.viewer.bridge import Bridge
 from graphflow.viewer.protocol import control_message
 from tests.cases import slow
@@ -217,3 +217,24 @@ async def test_a_clock_that_comes_later(graph: Graph, caplog: pytest.LogCaptureF
                 await graph.settle()
             await seen.until(lambda: seen.times == [7_000_000_000])
     assert not [record for record in caplog.records if record.levelname == "ERROR"]
+
+
+async def test_a_message_that_is_too_long(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its sender is disconnected."""
+    monkeypatch.setattr(bridge_module, "MESSAGE_BOUND", 1000)
+    async with served(graph) as lab, viewer(lab.port) as seen:
+        await seen.say("x" * 1001)
+        await seen.until(seen._reading.done)
+        with pytest.raises(ConnectionClosedError, match="1009"):
+            seen._reading.result()
+
+
+async def test_more_parameters_than_a_viewer_may_follow(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that it names over time count together."""
+    monkeypatch.setattr(protocol, "ENTRIES_BOUND", 1)
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        for name in ("/robot.gain", "/robot.title"):
+            assert seen.statuses == []
+            await seen.send("subscribeParameterUpdates", parameterNames=[name])
+        await seen.until(lambda: seen.statuses)
+        assert "a viewer cannot follow more than 1 parameters" in seen.statuses[0]

@@ -7,6 +7,7 @@ import pytest
 from graphflow import Node, service
 from graphflow.msgs.std_srvs.srv import SetBool, Trigger
 from graphflow.testing import Graph
+from graphflow.viewer import services
 from tests.viewer.cast import Robot, served, viewer
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -41,3 +42,12 @@ async def test_a_name_may_have_several_types(graph: Graph) -> None:
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         both = {("/power", "std_srvs/srv/SetBool"), ("/power", "std_srvs/srv/Trigger")}
         await seen.until(lambda: both <= seen.offers)
+
+
+async def test_only_so_many_are_shown(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each is described to every viewer, and others may announce any number of them."""
+    monkeypatch.setattr(services, "BOUND", 1)
+    await graph.start(Forger())
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        await seen.until(lambda: seen.offers)
+        assert len(lab.bridge._services._shown) + len(lab.bridge._services._pending) == 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.wire.net import NetToken, parse, token
+from graphflow.wire.net import TOKEN_BOUND, NetToken, parse, token
 
 
 def test_there_and_back() -> None:
@@ -46,3 +46,10 @@ def test_patterns_of_strangers_cost_little() -> None:
     assert NetToken("f", (pattern,)).passes(f"{name}/x")
     assert NetToken("f", ("/a/**/c/*/**",)).passes("/a/b/c/c/d/e")
     assert not NetToken("f", ("/a/**/c/*",)).passes("/a/b/c")
+
+
+def test_a_token_that_is_too_long() -> None:
+    """It is none: reading it would take time in proportion."""
+    text = token(5, "abc", "x" * TOKEN_BOUND, ())
+    assert parse(text) is None
+    assert parse(text[: text.rindex("/") - 100] + "/") is not None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.workspace import package_share
 from graphflow.workspace.package_share import share_folder
 from graphflow.workspace.packages import Package
 
@@ -139,3 +140,12 @@ def test_several_processes_make_it_at_once(package: Package) -> None:
     share = share_folder(package)
     assert (share / "a.yaml").read_text() == "params/a.yaml"
     assert not (share / "config" / "a.yaml").exists()
+
+
+def test_too_many_files(package: Package, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only the first are found at their installed places."""
+    (package.folder / "setup.py").write_text(SETUP)
+    found = [*package_share._installed(package)]
+    assert len(found) > 2
+    monkeypatch.setattr(package_share, "FILES_BOUND", 3)
+    assert [*package_share._installed(package)] == found[:2]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.workspace import packages
 from graphflow.workspace.executables import package_folder
 from graphflow.workspace.package_share import share_folder
 from graphflow.workspace.packages import find_workspace, uses_ros
@@ -415,3 +416,19 @@ def test_a_line_that_was_copied_and_has_the_function_of_another(tmp_path: Path) 
 def test_lines_that_have_one_function_by_right(tmp_path: Path, lines: list[str], files: dict[str, str]) -> None:
     """An alias, a module that another starts or imports, and one that has nothing to start."""
     assert copied(tmp_path / "arm", lines, **files) == []
+
+
+def test_too_many_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only so many are read: any folder may be taken for a workspace."""
+    monkeypatch.setattr(packages, "PACKAGES_BOUND", 2)
+    for name in "abc":
+        package(tmp_path / name, name)
+    assert sorted(packages.read_workspace(tmp_path, tmp_path).packages) == ["a", "b"]
+
+
+def test_variables_that_multiply(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their values are cut, so that ten lines cannot fill the memory."""
+    monkeypatch.setattr(packages, "_VALUE_BOUND", 10)
+    folder = package(tmp_path / "a", "a")
+    (folder / "CMakeLists.txt").write_text("set(x 12345678)\nset(y ${x}${x}${x})\n${y}")
+    assert packages.cmake_text(packages.Package("a", folder)).endswith("\n1234567812")

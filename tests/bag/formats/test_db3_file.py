@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.bag.formats import db3_file
 from graphflow.bag.formats.db3_file import Db3File
 from graphflow.errors import BagError
 from graphflow.qos import Durability, Reliability
@@ -120,3 +121,10 @@ def test_one_that_was_not_closed(tmp_path: Path, rest: str) -> None:
     path.with_name(f"a.db3{rest}").touch()
     with pytest.raises(BagError, match=r"it was not closed; let sqlite3 take in its -\w+ file"):
         Db3File(path)
+
+
+def test_many_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those beyond the limit are left out, with their messages."""
+    monkeypatch.setattr(db3_file, "_TOPICS_BOUND", 1)
+    file = Db3File(old(tmp_path / "a.db3"))
+    assert file.contents.counts == {"/a": 2}

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, IndexType, Writer
 
+from graphflow.bag.formats import mcap_file
 from graphflow.bag.formats.mcap_file import McapFile
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError
@@ -138,3 +139,20 @@ def test_what_a_chunk_may_cost(tmp_path: Path) -> None:
         assert tracemalloc.get_traced_memory()[1] < 20_000_000
     finally:
         tracemalloc.stop()
+
+
+def test_a_definition_that_is_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Is left out, as one in another language is."""
+    path = plain_mcap(tmp_path / "a.mcap", [1])
+    monkeypatch.setattr(mcap_file, "DEFINITION_BOUND", 12)
+    assert McapFile(path).contents.topics["/chatter"].definition == "string data\n"
+    monkeypatch.setattr(mcap_file, "DEFINITION_BOUND", 11)
+    assert McapFile(path).contents.topics["/chatter"].definition == ""
+
+
+def test_too_many_channels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are refused, since each takes memory."""
+    path = plain_mcap(tmp_path / "a.mcap", [1])
+    monkeypatch.setattr(mcap_file, "CHANNELS_BOUND", 0)
+    with pytest.raises(BagError, match=r"a\.mcap: it has more than 0 channels"):
+        McapFile(path)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 import yaml
 
+from graphflow.bag.formats import metadata
 from graphflow.bag.formats.metadata import as_text, plain, profiles
+from graphflow.errors import BagError
 from graphflow.qos import PROFILES, Durability, History, Liveliness, Qos, Reliability
 
 SETTLED = [qos for name, qos in PROFILES.items() if name != "best_available"]
@@ -49,3 +53,15 @@ def test_what_is_no_profile(said: object) -> None:
 def test_what_a_profile_leaves_open(row: dict[str, object]) -> None:
     """Or says wrongly, is as in the default one."""
     assert profiles([row]) == (Qos(),)
+
+
+def test_files_and_texts_that_are_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Such a file is refused, and such a text of profiles is cut."""
+    (tmp_path / metadata.FILE).write_text("rosbag2_bagfile_information: {version: 9}\n")
+    assert metadata.read(tmp_path) == {"version": 9}
+    text = as_text([Qos(depth=7), Qos(depth=8)])
+    monkeypatch.setattr(metadata, "BOUND", text.index("- ", 1))
+    with pytest.raises(BagError, match=r"metadata\.yaml"):
+        (tmp_path / metadata.FILE).write_text("rosbag2_bagfile_information: {version: 9}\n" + "#" * len(text))
+        metadata.read(tmp_path)
+    assert profiles(text) == (Qos(depth=7),)

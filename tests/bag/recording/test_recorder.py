@@ -506,3 +506,21 @@ async def test_a_name_that_is_none(graph: Graph, session: Session, caplog: pytes
     await session.until(lambda: recorder.topics == 1)
     assert "cannot be recorded" in caplog.text
     await session.end()
+
+
+async def test_too_many_publishers_to_count_for(
+    graph: Graph, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The gaps of those beyond the limit are not counted; their messages are recorded."""
+    monkeypatch.setattr(recorder_module, "SENDERS_BOUND", 1)
+    first, second = await speaker(graph, "/a"), await speaker(graph, "/b")
+    recorder = await session.start()
+    first.publish(String())
+    await session.until(lambda: recorder.recorded == 1)
+    for publisher in (second, first):
+        publisher.publish(String())
+        publisher._order.number += 5
+        publisher.publish(String())
+    await session.until(lambda: recorder.recorded == 5)
+    assert recorder.lost == 5
+    await session.end()

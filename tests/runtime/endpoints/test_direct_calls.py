@@ -10,11 +10,12 @@ import pytest
 
 from graphflow import Node, ServerLost, service
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.runtime.endpoints import direct_calls
 from graphflow.runtime.endpoints.direct_calls import EARLY_BOUND, ServerLines
 from graphflow.runtime.endpoints.service_client import ServiceClient
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
-from graphflow.transport.inbox import Inbox
+from graphflow.transport.inbox import REQUESTS_BOUND, Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -282,3 +283,28 @@ def test_a_request_has_a_number_that_counts_up(sequence: int) -> None:
     server._heard(b"", attachment.pack(1, 0, client.gid), 1, client.gid)
     server._heard(b"", attachment.pack(sequence, 0, client.gid), sequence, client.gid)
     assert len(asked) == 1
+
+
+def test_a_hello_that_is_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is cut, and so opens nothing and takes little memory."""
+    monkeypatch.setattr(direct_calls, "_WHERE_BOUND", 10)
+    board, server = lines()
+    hello(server, client_entity(1), "x" * 1000)
+    assert [*server._early.values()] == ["x" * 10]
+    assert board.opened == []
+
+
+async def test_how_much_may_wait(graph: Graph) -> None:
+    """Requests as many as in other queues, and ten times as many answers."""
+    node, _, _ = await asker(graph)
+    board: Any = node.context.switchboard
+    for what, depth in (("ask", REQUESTS_BOUND), ("answer", 10 * REQUESTS_BOUND)):
+        board.listen(what, client_entity(1), lambda *_: None)
+        assert board._inboxes[what].depth == depth
+
+
+def test_what_was_refused_is_told_with_the_limit(caplog: pytest.LogCaptureFixture) -> None:
+    """In megabytes."""
+    inbox: Any = SimpleNamespace(dropped=3, depth=7)
+    direct_calls.warn_of_refused(inbox, "requests")
+    assert "requests: 3 were refused so far, since 7 of them, or 256 MB, waited" in caplog.text

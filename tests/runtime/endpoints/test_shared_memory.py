@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,15 +16,16 @@ import pytest
 from graphflow import EncodeError, Node, Qos
 from graphflow.domain import rendezvous_endpoint
 from graphflow.msgs.sensor_msgs.msg import Image
-from graphflow.qos import Durability
+from graphflow.qos import Durability, History
 from graphflow.runtime.context import Context
-from graphflow.runtime.endpoints import raw
+from graphflow.runtime.endpoints import raw, shared_memory
 from graphflow.runtime.node_core import core_of
 from graphflow.system import is_portable
 from graphflow.testing import Graph
 from graphflow.transport.config import config, open_session
 from graphflow.transport.rendezvous import free_endpoint
 from graphflow.wire.liveliness import Entity, Kind
+from graphflow.wire.shared_memory import Reader, reader_token
 from tests.conftest import LIMIT
 
 shares = pytest.mark.skipif(is_portable(), reason="memory cannot be shared here")
@@ -302,3 +304,27 @@ async def test_a_loan_without_memory(graph: Graph) -> None:
         image.data[:] = 3
     await graph.settle()
     assert [m.data.tolist() for m in heard] == [[3] * 100_000]
+
+
+def test_only_so_many_readers_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever is announced."""
+    monkeypatch.setattr(shared_memory, "READERS_BOUND", 2)
+    session: Any = SimpleNamespace(is_neighbour=lambda *_: True)
+    readers = shared_memory.Readers(session, 0)
+    for eid in range(5):
+        readers._token(reader_token(0, Reader("abc", eid, 1, 3)), True)
+    assert readers._known == {("abc", 0), ("abc", 1)}
+
+
+def test_the_queues_of_readers() -> None:
+    """A subscription that keeps all has a limit, too; others keep as many as they say."""
+    session: Any = SimpleNamespace(is_neighbour=lambda *_: True)
+    readers = shared_memory.Readers(session, 0)
+    who = [
+        Entity(0, "abc", 0, n, Kind.SUBSCRIPTION, "/", "n", "/t", "a/msg/B", "", qos)
+        for n, qos in enumerate((Qos(history=History.KEEP_ALL), Qos(depth=3)))
+    ]
+    assert readers.of(who) is None
+    for entity in who:
+        readers._token(reader_token(0, Reader("abc", entity.eid, 1, 3)), True)
+    assert readers.of(who) == {("abc", 0): 10_000, ("abc", 1): 3}

@@ -22,6 +22,7 @@ from graphflow.executor.runner import BURST
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import INFINITE_NS, Durability, History
+from graphflow.runtime.endpoints import subscriptions
 from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.node_core import core_of
@@ -577,3 +578,14 @@ async def test_a_subscription_that_is_paused_leaves_out_what_comes(graph: Graph)
     publisher.publish(String(data="day"))
     await graph.settle()
     assert heard == ["day"]
+
+
+async def test_messages_of_any_number_of_senders(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All are heard, and only so many of their senders are remembered."""
+    monkeypatch.setattr(subscriptions, "SOURCES_BOUND", 2)
+    node, log = Node("n"), Log()
+    listening = node.create_subscription(String, "x", lambda message: log(message.data))
+    await graph.start(node)
+    for number in range(4):
+        assert listening._is_fresh(1, 0, bytes([number]) * 16)
+    assert len(listening._sources) == 2

@@ -10,8 +10,10 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from graphflow import ClosedError, MessageInfo, Node, WrongThread, subscription
+from graphflow.errors import Place
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Trigger
+from graphflow.runtime.mistakes import other_threads
 from graphflow.runtime.mistakes.other_threads import report_foreign_calls
 from graphflow.system import is_portable
 from graphflow.testing import Graph
@@ -141,3 +143,12 @@ def test_what_a_thread_does_to_the_loop(monkeypatch: pytest.MonkeyPatch, caplog:
 
     with asyncio.Runner(loop_factory=new_event_loop) as runner:
         runner.run(main())
+
+
+def test_only_so_many_lines_are_remembered(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    """Beyond them, nothing is told."""
+    monkeypatch.setattr(other_threads, "PLACES_BOUND", 1)
+    reported = set[Place]()
+    other_threads._report(reported, sys._getframe())
+    other_threads._report(reported, sys._getframe())
+    assert len(caplog.messages) == len(reported) == 1

@@ -81,3 +81,10 @@ def test_a_goal_that_is_sent_by_the_other_name(
     unawaited.report(coroutine)
     coroutine.close()
     assert caplog.messages[0].endswith("is a coroutine function; write send instead of send_goal")
+
+
+def test_only_so_many_lines_are_remembered(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    """Beyond them, nothing is told: code that is made anew at each call would have any number."""
+    monkeypatch.setattr(unawaited, "PLACES_BOUND", 0)
+    forgets()
+    assert caplog.messages == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import socket
@@ -19,6 +20,7 @@ from graphflow.supervisor.control import server as control_server
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.control.clients import Clients
 from graphflow.supervisor.control.server import ControlServer
+from graphflow.system import is_portable
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
@@ -129,3 +131,36 @@ async def test_a_stop_that_comes_late(portable: bool, tmp_path: Path) -> None:
 
     assert await asyncio.wait_for(asyncio.to_thread(take_down), 5.0) == ["note", "end"]
     await server.close()
+
+
+def test_a_reason_that_is_too_long() -> None:
+    """It is cut, since it goes to every client and into every log."""
+    line = json.dumps({"do": "down", "reason": "x" * 10_000}).encode()
+    assert control_server._Request.parse(line).reason == "x" * 200
+
+
+@pytest.mark.skipif(is_portable(), reason="a port has a token instead")
+@pytest.mark.parametrize(("uid", "is_served"), [(None, True), (os.getuid(), True), (os.getuid() + 1, False)])
+async def test_another_user_is_not_served(
+    uid: int | None, is_served: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even if the socket's permissions let it in; who is unknown has passed them."""
+    monkeypatch.setattr(control_server, "_peer_uid", lambda _: uid)
+    server = ControlServer(Graph())
+    address = await server.open(tmp_path / "server.sock")
+    reader, writer = await asyncio.open_unix_connection(address)
+    writer.write(b'{"do": "ps"}\n')
+    answer = b""
+    with contextlib.suppress(ConnectionResetError):
+        answer = await reader.read()
+    writer.close()
+    await server.close()
+    assert bool(answer) is is_served
+
+
+@pytest.mark.skipif(is_portable(), reason="a port has no user")
+def test_the_user_at_the_other_end() -> None:
+    """As the kernel knows it."""
+    mine, its = socket.socketpair()
+    with mine, its:
+        assert control_server._peer_uid(mine) == os.getuid()

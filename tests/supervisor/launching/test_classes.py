@@ -218,3 +218,11 @@ def test_classes_whose_nodes_cannot_be_made(project: Path) -> None:
     [problem] = read_interfaces(interfaces(["machines.needy:Needy"])).values()
     assert isinstance(problem, Problem)
     assert problem.message.startswith(f"{project}/machines/needy.py:2: Needy.__init__ needs port, and nodes are made")
+
+
+def test_a_root_with_too_many_folders(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only the first are searched for a module of a similar name."""
+    assert classes.nearest_module("robto", str(project)) == "machines.robot"
+    monkeypatch.setattr(classes, "_FOLDERS_BOUND", 1)
+    (project / "a").mkdir()
+    assert classes.nearest_module("robto", str(project)) is None

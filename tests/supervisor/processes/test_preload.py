@@ -9,10 +9,12 @@ import socket
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from graphflow.supervisor.processes import preload
 from graphflow.supervisor.processes.preload import (
     ORDER_BOUND,
     PROBE_LIMIT,
@@ -142,3 +144,15 @@ def test_a_supervisor_that_is_killed_before_it_has_read_all(monkeypatch: pytest.
         with pytest.raises(SystemExit):
             find_out(_Preload(its, -1))
         its.close()
+
+
+@pytest.mark.skipif(is_portable(), reason="the portable way has no preload process")
+def test_an_order_that_a_pipe_does_not_take() -> None:
+    """It is refused with its size."""
+    read, write = os.pipe()
+    order: Any = {"order": 1, "text": "x" * ORDER_BOUND}
+    assert preload._write_order(write, order).endswith(f"bytes long, and a process takes {ORDER_BOUND}")
+    order["text"] = "x"
+    assert preload._write_order(write, order) == ""
+    os.close(read)
+    os.close(write)

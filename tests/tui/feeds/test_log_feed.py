@@ -157,3 +157,11 @@ def test_a_line_without_end_is_bounded(tmp_path: Path, monkeypatch: pytest.Monke
     found = [r for _ in range(200) for r in file.read()]
     assert found
     assert all(len(r.text) <= log_feed.LINE_BOUND for r in found)
+
+
+def test_a_long_line_is_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is beyond the limit is not shown."""
+    monkeypatch.setattr(log_feed, "LINE_BOUND", 10)
+    path = tmp_path / "talker.log"
+    path.write_text("x" * 100 + "\n")
+    assert [r.text for r in LogFile(path, ("/talker",)).read()] == ["x" * 10]

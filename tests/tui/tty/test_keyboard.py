@@ -7,6 +7,7 @@ from textual import events
 from textual.widgets import Input
 
 from graphflow.tui.panes import Content
+from graphflow.tui.tty import keyboard
 from tests.tui.stage import Stage, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -54,3 +55,13 @@ async def test_focus_that_was_lost() -> None:
         s.console.screen.set_focus(None)
         await s.press("s")
         await s.until("Stop /")
+
+
+async def test_more_keys_than_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The oldest are dropped, as when something has fallen on the keyboard."""
+    monkeypatch.setattr(keyboard, "QUEUE_BOUND", 2)
+    async with stage(Content("nodes")) as s:
+        queue = keyboard.Keyboard(s.console, s.console.on_event, lambda _: None)._queue
+        for key in "abc":
+            queue.append(events.Key(key, key))
+        assert [each.key for each in queue if isinstance(each, events.Key)] == ["b", "c"]

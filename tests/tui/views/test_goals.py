@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 from textual.widgets import Input
 
+from graphflow import Node
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from graphflow.tui.views import goals
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
@@ -26,7 +28,7 @@ async def test_a_goal_of_somebody_else(graph: Graph) -> None:
         await graph.settle()
         await s.until("◐ executing")
         assert "sequence: [0, 1, 1]" in s.text
-        assert "1 running" in s.text
+        await s.until("1 running")
         await s.press("c")
         await s.until("○ canceled")
         assert sent.done
@@ -54,3 +56,16 @@ async def test_sending(graph: Graph) -> None:
         await s.press("ctrl+up")
         await s.until("1 of 1 sent before")
         assert next(i for i in s.view.query(Input) if i.name == "order").value == "7"
+
+
+async def test_only_so_many_actions_are_watched(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each takes two subscriptions, and others may announce any number of them."""
+    monkeypatch.setattr(goals, "ACTIONS_BOUND", 1)
+    await graph.start(Talker())
+    node = Node("second")
+    await graph.start(node)
+    node.create_action_client(Fibonacci, "/another")
+    async with stage(Content("goals"), graph=graph) as s:
+        await s.until("1 action, 0 running")
+        assert s.console.hub.live is not None
+        assert len(s.console.hub.live.cache.actions()) == 2

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.tui.panes import Content
+from graphflow.tui.views import source
 from graphflow.tui.views.source import find_file
 from tests.tui.stage import stage
 
@@ -76,3 +77,25 @@ def test_files_by_their_name_alone(tmp_path: Path) -> None:
     assert find_file("nodes/arm.py", [tmp_path]) == file
     assert find_file(str(file), []) is None or find_file(str(file), [Path("/")]) == file
     assert find_file("leg.py", [tmp_path]) is None
+
+
+async def test_a_long_file_is_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Colouring it takes time in proportion."""
+    monkeypatch.setattr(source, "LONGEST", 12)
+    (tmp_path / "a.py").write_text("first = 1\nsecond = 2\n")
+    async with stage(Content("source", f"{tmp_path / 'a.py'}:1")) as s:
+        await s.until("first = 1")
+        assert "second" not in s.text
+
+
+def test_a_file_among_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search for a name alone gives up."""
+    for name in ("a", "b", "c"):
+        (tmp_path / f"{name}.py").write_text("")
+    last = [*tmp_path.rglob("*.py")][-1]
+    assert find_file(last.name, [tmp_path]) == last
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    last.rename(inner / last.name)
+    monkeypatch.setattr(source, "FILES_BOUND", -1)
+    assert find_file(last.name, [tmp_path]) is None

@@ -6,6 +6,7 @@ import pytest
 from textual.geometry import Region
 
 from graphflow.tui.panes import Content
+from graphflow.tui.widgets import canvas as module
 from graphflow.tui.widgets.canvas import DEFAULT_PEN, RECENT, Dots, Drawing, TurtleCanvas, read_picture
 from nodes.turtle_canvas import Pen
 from nodes.turtle_picture import svg
@@ -118,3 +119,34 @@ async def test_names_of_turtles_that_are_near_each_other() -> None:
         drawing.moved("bob", 7.0, 2.0, 0.0, jump=1.0)
         canvas.redraw()
         assert canvas._placed["bob"].name_row == canvas._placed["bob"].row - 1
+
+
+def test_a_picture_that_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its first strokes are drawn."""
+    stroke = '<polyline points="0.5,499.5 14.0,499.5" stroke="#ff0000" stroke-width="3"/>'
+    monkeypatch.setattr(module, "PICTURE_BOUND", 2 * len(stroke))
+    assert len(read_picture(stroke * 3)) == 2
+
+
+def test_a_name_that_is_too_long() -> None:
+    """It takes up so many cells."""
+    assert len(module.Placed(0, 0, "▲", 1).named("x" * 1000)) == module.LONGEST
+
+
+async def test_a_long_name_that_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only its cells are drawn again."""
+    monkeypatch.setattr(module, "LONGEST", 3)
+    drawing = Drawing()
+    drawing.moved("x" * 40, 1.0, 2.0, 0.0, jump=1.0)
+    async with stage(Content("nodes"), size=(80, 30)) as s:
+        canvas = TurtleCanvas(drawing)
+        await s.view.mount(canvas)
+        await s.pilot.pause()
+        canvas.redraw()
+        asked: list[Region] = []
+        canvas.refresh = lambda *regions, **_: asked.extend(regions)  # type: ignore[method-assign,assignment]
+        drawing.moved("x" * 40, 1.5, 2.0, 0.0, jump=1.0)
+        canvas.redraw()
+        at = canvas._placed["x" * 40]
+        assert any(region.contains(at.column + 3, at.name_row) for region in asked)
+        assert not any(region.contains(at.column + 10, at.name_row) for region in asked)

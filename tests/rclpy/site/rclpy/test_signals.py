@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import _thread
 import logging
 import os
 import signal
+import sys
 import threading
 import time
 
@@ -84,3 +86,17 @@ def test_outside_the_main_thread_nothing_is_handled() -> None:
     thread.join()
     assert rclpy.ok()
     assert signals.get_current_signal_handlers_options() is SignalHandlerOptions.NO
+
+
+def test_a_signal_is_not_put_off_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Logging itself may be what never ends."""
+    started: list[object] = []
+    monkeypatch.setattr(signals, "PUT_OFF_BOUND", 3)
+    monkeypatch.setattr(signals, "_put_off", {})
+    monkeypatch.setattr(signals, "_is_in_logging", lambda _: True)
+    monkeypatch.setattr(signals, "_former", {})
+    monkeypatch.setattr(_thread, "start_new_thread", lambda fn, _: started.append(fn))
+    for _ in range(4):
+        signals._caught(signal.SIGINT, sys._getframe())
+    assert started == [signals._again] * 3
+    assert signals._put_off == {}
