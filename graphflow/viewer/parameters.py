@@ -17,7 +17,7 @@ from graphflow.introspect.parameters import as_declared
 from graphflow.msgs.base import Request, Response, Service
 from graphflow.msgs.rcl_interfaces.msg import Parameter, ParameterEvent, ParameterValue
 from graphflow.msgs.rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
-from graphflow.names import did_you_mean, is_hidden
+from graphflow.names import did_you_mean
 from graphflow.qos import PARAMETER_EVENTS
 from graphflow.runtime.node import Node
 from graphflow.runtime.parameters.values import from_message, to_message
@@ -53,14 +53,14 @@ class Parameters:
         node.create_subscription(ParameterEvent, "/parameter_events", self._changed, PARAMETER_EVENTS)
 
     async def get(self, names: Sequence[str]) -> list[ParameterFields]:
-        """Return the existing parameters of these names; all if there are none."""
+        """Return the existing parameters of these names; all if there are none. Those of hidden nodes do not count."""
         of_node: dict[str, list[str]] = defaultdict(list)
         for name in names:
             node, _, parameter = name.partition(".")
             of_node[node].append(parameter)
         services = self._node.context.cache.services()
         nodes = {name.removesuffix(_LIST) for name in services if name.endswith(_LIST)}
-        nodes = {node for node in nodes if not is_hidden(node) and (not names or node in of_node)}
+        nodes = {node for node in nodes if not names or node in of_node}
         parameters = await asyncio.gather(*(self._read(node, of_node[node]) for node in sorted(nodes)))
         return list(itertools.chain.from_iterable(parameters))
 
