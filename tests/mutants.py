@@ -1,7 +1,7 @@
 """Mutants: bounds and security checks are taken out of the source, one at a time, and a test must see each.
 
     python -m tests.mutants                       # all of them; takes half an hour
-    python -m tests.mutants --changed             # those of files that the last commit changed
+    python -m tests.mutants --changed             # those of files that the last commit changed, or their tests
     python -m tests.mutants wire machines/cache   # those of some packages or modules
 
 A bound is a constant of a module whose name ends with `BOUND` or begins with `LONGEST`. Its mutant reads a number
@@ -35,7 +35,88 @@ MOST_SECONDS, MOST_MEMORY = 60, 6 << 30
 """What the tests of one mutant may take; one that takes more is seen."""
 _PASSED = (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
 
-CHECKS: dict[str, tuple[tuple[str, str], ...]] = {}
+CHECKS: dict[str, tuple[tuple[str, str], ...]] = {
+    "graphflow/bag/formats/metadata.py": (('raise ValueError("it has aliases")', "pass"),),
+    "graphflow/bag/reader.py": (("Path(_text(name)).name", "Path(_text(name))"),),
+    "graphflow/cli/output.py": (
+        ('_write(f"{harmless(text)}\\n")', '_write(f"{text}\\n")'),
+        ('_write(f"{harmless(text)}\\n", flush=False)', '_write(f"{text}\\n", flush=False)'),
+        ("{harmless(head)}", "{head}"),
+        ("{uncoloured(text)}", "{text}"),
+        ("\\x1b[2K{harmless(text)}", "\\x1b[2K{text}"),
+        ("print(harmless(text), file=sys.stderr", "print(text, file=sys.stderr"),
+    ),
+    "graphflow/errors.py": (
+        ("return harmless(text[:LONGEST_TEXT])", "return text[:LONGEST_TEXT]"),
+        ("if text.isprintable():", "if True:"),
+    ),
+    "graphflow/folders.py": (
+        ("mode=0o700", "mode=0o755"),
+        ("found.st_uid != user_id() or ", ""),
+    ),
+    "graphflow/machines/cache.py": (
+        ("if e.type.startswith(_OF_EVERY_NODE) or is_hidden(e.name)", "if e.type.startswith(_OF_EVERY_NODE)"),
+    ),
+    "graphflow/msgs/registry.py": (
+        (
+            """    name = _SAME_DEFINITIONS.get(package, package)
+    if not name.isidentifier():""",
+            """    name = _SAME_DEFINITIONS.get(package, package)
+    if False:""",
+        ),
+    ),
+    "graphflow/reading.py": (
+        ("_refuse_others(os.stat(path), path)", "os.stat(path)"),
+        ("        _refuse_others(about, path)\n", ""),
+        ("not stat.S_ISREG(about.st_mode)", "False"),
+    ),
+    "graphflow/runtime/endpoints/shared_memory.py": (
+        ("self._session.is_neighbour(reader.zid, reader.pid, reader.fd)", "True"),
+    ),
+    "graphflow/supervisor/control/clients.py": (
+        ("printable(name[:TEXT_BOUND])", "name"),
+        ("printable(text[:TEXT_BOUND])", "text"),
+        ("printable(by[:TEXT_BOUND])", "by"),
+    ),
+    "graphflow/supervisor/control/server.py": (
+        ("os.umask(0o177)", "os.umask(0)"),
+        ('_peer_uid(writer.get_extra_info("socket")) in (None, user_id())', "True"),
+        ("if not hmac.compare_digest(request.token.encode(), self._token.encode()):", "if False:"),
+    ),
+    "graphflow/supervisor/processes/worker.py": (('if job["allow_control"]:', "if True:"),),
+    "graphflow/supervisor/rundir.py": (('node.strip("/").replace("/", ".")', "node"),),
+    "graphflow/transport/rendezvous.py": (("parts[2] in here and parts[3] != str(user_id())", "False"),),
+    "graphflow/transport/shared_memory/ring.py": (
+        ('os.readlink(path) == f"/memfd:{_PROOF_NAME} {zid} (deleted)"', "os.path.exists(path)"),
+        ("is_named and os.stat(path).st_uid == os.geteuid()", "is_named"),
+        ("    if not _is_ring(path):\n        return None\n    try:\n        fd", "    try:\n        fd"),
+        ("found.st_uid == os.geteuid() and ", ""),
+        ("fcntl.fcntl(self._fd, fcntl.F_ADD_SEALS, _seals())", "_seals()"),
+        ("fcntl.fcntl(fd, fcntl.F_GET_SEALS) & _seals() != _seals()", "False"),
+    ),
+    "graphflow/tui/feeds/log_feed.py": (('_ESCAPES.sub("", text).expandtabs(4)', "text.expandtabs(4)"),),
+    "graphflow/viewer/bridge.py": (
+        ("if self._is_read_only:", "if False:"),
+        ("printable(origin[:200])", "origin"),
+        ("origin not in self._pages and not PAGES.fullmatch(origin)", "False"),
+        ("if not (is_hidden(entity.name) or is_hidden(entity.node_name)):", "if not is_hidden(entity.node_name):"),
+        ("is_hidden(entity.name) or is_hidden(entity.node_name)", "is_hidden(entity.name)"),
+    ),
+    "graphflow/viewer/parameters.py": (("cache.services()", "cache.services(hidden=True)"),),
+    "graphflow/viewer/topics.py": (("if not is_hidden(entity.name):", "if True:"),),
+    "graphflow/wire/described.py": (
+        ("if digest and actual != digest:", "if False:"),
+        ('len(type_.split("/")) != 3 or ', ""),
+    ),
+    "graphflow/wire/liveliness.py": ((" or not token.isprintable()", ""),),
+    "graphflow/wire/net.py": (
+        ("printable(unquote(parts[4]))", "unquote(parts[4])"),
+        ("printable(unquote(parts[5]))", "unquote(parts[5])"),
+    ),
+    "graphflow/wire/process.py": ((" and text.isprintable()", ""),),
+    "graphflow/wire/shared_memory.py": ((" and token.isprintable()", ""),),
+    "graphflow/workspace/package_share.py": ((' and ".." not in parts', ""),),
+}
 """Security checks by their files: the text of each, and what takes its place."""
 SURVIVORS: dict[str, str] = {}
 """Mutants that no test sees, and why that is right: `file CONSTANT` or `file text`."""
@@ -96,7 +177,7 @@ def _without(source: str, name: str) -> str:
 
 def tests_of(mutant: Mutant) -> list[str]:
     """The test of the module, and of a bound those that name it together with the module."""
-    own = Path("tests", *mutant.file.parts[1:-1], f"test_{mutant.file.name}")
+    own = _test_of(mutant.file)
     found = {own.as_posix()} if (PROJECT / own).exists() else set()
     if BOUND.match(mutant.name):
         for path in (PROJECT / "tests").rglob("test_*.py"):
@@ -104,6 +185,10 @@ def tests_of(mutant: Mutant) -> list[str]:
             if mutant.name in text and mutant.file.stem in text:
                 found.add(path.relative_to(PROJECT).as_posix())
     return sorted(found)
+
+
+def _test_of(file: Path) -> Path:
+    return Path("tests", *file.parts[1:-1], f"test_{file.name}")
 
 
 def is_seen(mutant: Mutant, copy: Path) -> bool:
@@ -168,9 +253,12 @@ def chosen() -> list[Path]:
     """The files that the command line names."""
     files = [p.relative_to(PROJECT) for p in sorted(PACKAGE.rglob("*.py"))]
     if "--changed" in sys.argv:
-        diff = ["git", "diff", "--name-only", "HEAD^", "--", "graphflow"]
-        changed = subprocess.run(diff, cwd=PROJECT, capture_output=True, text=True, check=False).stdout.split()
-        return [file for file in files if file.as_posix() in changed]
+        diff = ["git", "diff", "--name-only", "HEAD^", "--", "graphflow", "tests"]
+        run = subprocess.run(diff, cwd=PROJECT, capture_output=True, text=True, check=False)
+        if run.returncode:
+            sys.exit(f"--changed compares with the commit before the last: {run.stderr.strip()}")
+        changed = set(run.stdout.split())
+        return [file for file in files if changed & {file.as_posix(), _test_of(file).as_posix()}]
     words = [f"graphflow/{word.removeprefix('graphflow/')}" for word in sys.argv[1:]]
     return [file for file in files if not words or any(file.as_posix().startswith(word) for word in words)]
 
@@ -186,7 +274,7 @@ def main() -> int:
         packed = subprocess.run(pack, cwd=PROJECT, input=tracked, capture_output=True, check=True).stdout
         subprocess.run(["tar", "-x", "-C", folder], input=packed, check=True)
         for mutant in mutants:
-            name = f"{mutant.file.relative_to('graphflow')} {mutant.name}"
+            name = f"{mutant.file.relative_to('graphflow')} {' '.join(mutant.name.split())}"
             seen = is_seen(mutant, copy)
             why = "" if seen else SURVIVORS.get(name, "NO TEST SEES IT")
             survived += why == "NO TEST SEES IT"

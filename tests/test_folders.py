@@ -48,3 +48,11 @@ def test_the_newest_logs_are_where_a_run_puts_them(monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     made = rundir.open_logs("lab", "2026-01-01-00-00-00-1")
     assert made.parent == folders.newest_logs("lab").parent
+
+
+def test_a_folder_of_another_user(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What is kept there could be read or replaced."""
+    folders.make_private(tmp_path / "own", "A")
+    monkeypatch.setattr(folders, "user_id", lambda: os.getuid() + 1)
+    with pytest.raises(SupervisorError, match="own belongs to another user; set A to a folder of your own"):
+        folders.make_private(tmp_path / "own", "A")

@@ -53,3 +53,17 @@ def test_a_file_of_great_size(tmp_path: Path) -> None:
     assert found_bytes(file, 5) == bytes(5)
     with pytest.raises(OSError, match="more than 4 bytes"):
         found_bytes(file, 4)
+
+
+def test_another_file_is_not_even_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Opening a device may have effects; and what takes a file's place in between is refused, too."""
+    fifo, file = tmp_path / "fifo", tmp_path / "file"
+    os.mkfifo(fifo)
+    file.touch()
+    real = os.open
+    monkeypatch.setattr(os, "open", lambda *_: pytest.fail("it was opened"))
+    with pytest.raises(OSError, match="it is not a regular file"):
+        found_bytes(fifo)
+    monkeypatch.setattr(os, "open", lambda _, flags: real(fifo, flags))
+    with pytest.raises(OSError, match="it is not a regular file"):
+        found_bytes(file)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -32,3 +33,19 @@ def test_json_of_what_json_does_not_know(capsys: pytest.CaptureFixture[str]) -> 
     out, err = capsys.readouterr()
     assert (out.count("\n"), err) == (1, "")
     assert json.loads(out) == {"array": [1.5, 2.0], "bytes": [1, 255], "error": "no"}
+
+
+def test_no_foreign_text_commands_the_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever a text is printed by; colours are graphflow's own."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    bad, shown = "a\x1b[31m\x07", "a\\x1b[31m\\x07"
+    output.data(bad)
+    output.lines([bad])
+    output.colored(bad, 32, [bad])
+    output.talk(bad)
+    output.progress(bad)
+    out, err = capsys.readouterr()
+    assert out == f"{shown}\n{shown}\n\x1b[32m{shown}\x1b[0ma\\x07\n"
+    assert err == f"{shown}\n\r\x1b[2K{shown}"

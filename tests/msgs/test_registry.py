@@ -350,3 +350,22 @@ def test_a_definition_that_is_not_called_as_interfaces_are(tmp_path: Path, monke
         registry.full_name("reg_snake/action/Drive")
     assert registry.misplaced("reg_snake", "Other") == ""
     assert registry.camel("set_goal") == registry.camel("setGoal") == registry.camel("SetGoal") == "SetGoal"
+
+
+def test_a_package_is_no_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names come from other processes: none leads out of the folders with definitions."""
+    monkeypatch.setattr(registry, "_roots", [tmp_path / "interfaces"])
+    (tmp_path / "interfaces" / "inner" / "msg").mkdir(parents=True)
+    (tmp_path / "msg").mkdir()
+    assert registry.package_folders("inner")
+    for name in ("..", str(tmp_path), "inner/../.."):
+        assert registry.package_folders(name) == []
+
+
+def test_how_much_a_message_of_a_foreign_type_may_have(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Less than one of an installed type: somebody else has chosen its fields. So has the answer with a definition."""
+    monkeypatch.setattr(registry, "VALUES_BOUND", 7)
+    monkeypatch.setattr(registry, "_foreign", {"p/msg/A": ""})
+    for name in ("p/msg/A", "type_description_interfaces/srv/GetTypeDescription_Response"):
+        assert registry._types_for(name, "list").values == 7
+    assert registry._types_for("std_msgs/msg/String", "list").values != 7

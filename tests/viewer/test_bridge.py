@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosedError, InvalidStatus
@@ -15,7 +17,7 @@ from graphflow.qos import CLOCK
 from graphflow.testing import Graph
 from graphflow.viewer import bridge as bridge_module
 from graphflow.viewer import client, protocol
-from graphflow.viewer.bridge import Bridge
+from graphflow.viewer.bridge import Bridge, connections
 from graphflow.viewer.protocol import control_message
 from tests.cases import slow
 from tests.viewer.cast import Robot, served, viewer
@@ -238,3 +240,28 @@ async def test_more_parameters_than_a_viewer_may_follow(graph: Graph, monkeypatc
             await seen.send("subscribeParameterUpdates", parameterNames=[name])
         await seen.until(lambda: seen.statuses)
         assert "a viewer cannot follow more than 1 parameters" in seen.statuses[0]
+
+
+async def test_hidden_names_in_the_graph(graph: Graph) -> None:
+    """Neither hidden topics nor hidden nodes are part of the connection graph."""
+    robot, tool = Robot(), Robot("_tool")
+    await graph.start(robot, tool)
+    robot.create_publisher(Twist, "/a/_hidden")
+    tool.create_publisher(Twist, "/of_tool")
+    await graph.settle()
+    published = connections(robot.context.cache)["publishedTopics"]
+    assert published["/speed"] == ["/robot"]
+    assert not {"/a/_hidden", "/of_tool"} & {*published}
+
+
+async def test_the_origin_of_a_page_that_is_refused(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """It is told, and commands no terminal."""
+    connection: Any = SimpleNamespace(respond=lambda status, _: status)
+    request: Any = SimpleNamespace(headers={"Origin": "https://\x1b[31m" + "x" * 10_000})
+    async with served(graph) as lab:
+        refusal: Any = lab.bridge._admit(connection, request)
+    assert refusal == 403
+    [message] = [text for text in caplog.messages if "a web page of" in text]
+    assert "\\x1b[31m" in message
+    assert "\x1b" not in message
+    assert len(message) < 1000

@@ -65,3 +65,12 @@ async def test_numbers_that_json_has_not(graph: Graph) -> None:
         await seen.say('{"op": "setParameters", "parameters": [{"name": "/robot.gain", "value": 1' + "0" * 400 + "}]}")
         await seen.until(lambda: seen.statuses)
         assert robot.gain == 1.0
+
+
+async def test_hidden_nodes(graph: Graph) -> None:
+    """Their parameters are not listed."""
+    await graph.start(Robot("_tool"))
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        await seen.send("getParameters", parameterNames=[], id="all")
+        await seen.until(lambda: "/robot.gain" in seen.parameters)
+        assert not [name for name in seen.parameters if "_tool" in name]

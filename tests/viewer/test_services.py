@@ -51,3 +51,13 @@ async def test_only_so_many_are_shown(graph: Graph, monkeypatch: pytest.MonkeyPa
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         await seen.until(lambda: seen.offers)
         assert len(lab.bridge._services._shown) + len(lab.bridge._services._pending) == 1
+
+
+async def test_hidden_services(graph: Graph) -> None:
+    """They are not shown."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        for name in ("/a/_hidden", "/shown"):
+            robot.create_service(Trigger, name, lambda _: Trigger.Response())
+        await seen.until(lambda: "/shown" in seen.services)
+        assert "/a/_hidden" not in seen.services

@@ -101,3 +101,13 @@ async def test_bounds(graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pyt
         other.create_publisher(Twist, "/more")
         await seen.until(lambda: "only 1 topics are shown" in caplog.text)
         assert "/more" not in seen.channels
+
+
+async def test_hidden_topics(graph: Graph) -> None:
+    """They are not shown."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        robot.create_publisher(Twist, "/a/_hidden")
+        robot.create_publisher(Twist, "/shown")
+        await seen.until(lambda: "/shown" in seen.channels)
+        assert "/a/_hidden" not in seen.channels

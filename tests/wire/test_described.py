@@ -142,6 +142,7 @@ def test_the_largest_that_are_not_refused(text: str) -> None:
         ({"p/msg/A": "", **{f"p/msg/A{n}": "" for n in range(500)}}, "is too large"),
         ({"p/msg/A": "", "../../etc": ""}, "has an illegal type name"),
         ({"p/msg/A": "", "p/exe/A": ""}, "has an illegal type name"),
+        ({"p/msg/A": "", "p/msg/../A": ""}, "has an illegal type name"),
         ({"p/msg/A": "", "p/msg/a b": ""}, "type name 'a b'"),
     ],
 )

@@ -53,3 +53,9 @@ def test_a_token_that_is_too_long() -> None:
     text = token(5, "abc", "x" * TOKEN_BOUND, ())
     assert parse(text) is None
     assert parse(text[: text.rindex("/") - 100] + "/") is not None
+
+
+def test_what_a_terminal_would_obey() -> None:
+    """Any process may announce a profile, whose names are printed."""
+    found = parse(token(5, "abc", "lab\x1b[31m.yaml", ("/a\x07",)))
+    assert found == NetToken("lab\\x1b[31m.yaml", ("/a\\x07",))

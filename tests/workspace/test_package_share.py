@@ -69,6 +69,7 @@ def test_files_that_are_put_elsewhere(package: Package) -> None:
     assert (share / "launch" / "a.launch.py").read_text() == "launch/a.launch.py"
     assert (share / "meshes" / "left" / "arm.stl").is_file()
     assert not (share.parent / "up").exists()
+    assert not [there for there, _ in package_share._installed(package) if ".." in there.parts]
     (package.folder / "launch" / "a.launch.py").write_text("changed")
     assert (share / "a.launch.py").read_text() == "changed"
 

@@ -65,3 +65,9 @@ def test_files_and_texts_that_are_too_long(tmp_path: Path, monkeypatch: pytest.M
         (tmp_path / metadata.FILE).write_text("rosbag2_bagfile_information: {version: 9}\n" + "#" * len(text))
         metadata.read(tmp_path)
     assert profiles(text) == (Qos(depth=7),)
+
+
+def test_aliases_are_refused() -> None:
+    """A few of them can expand beyond any memory."""
+    with pytest.raises(ValueError, match="it has aliases"):
+        metadata.loaded("a: &a [x]\nb: *a")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.cli.ros import launch
 from graphflow.cli.ros.launch import _files_below
 from graphflow.graph.resolve import load
 from tests.cases import slow
@@ -163,3 +164,12 @@ def test_a_package_without_a_file(machine: Machine, tmp_path: Path) -> None:
     told = machine.look("launch", "b.launch.py", "lamp", "a:=1", cwd=tmp_path, code=2)
     assert told == "error: the package comes first: graphflow launch lamp b.launch.py a:=1\n"
     assert "lamb: there is no such file" in machine.look("launch", "lamb", cwd=tmp_path, code=2)
+
+
+def test_a_folder_with_too_many_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only so many are searched."""
+    monkeypatch.setattr(launch, "FOLDERS_BOUND", 2)
+    for name in ("a", "a/b", "a/b/c"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "file").touch()
+    assert [*_files_below(tmp_path)] == [tmp_path / "a" / "file"]

@@ -328,3 +328,11 @@ def test_the_queues_of_readers() -> None:
     for entity in who:
         readers._token(reader_token(0, Reader("abc", entity.eid, 1, 3)), True)
     assert readers.of(who) == {("abc", 0): 10_000, ("abc", 1): 3}
+
+
+def test_a_reader_without_proof() -> None:
+    """It may be on another machine, or another user's."""
+    session: Any = SimpleNamespace(is_neighbour=lambda *_: False)
+    readers = shared_memory.Readers(session, 0)
+    readers._token(reader_token(0, Reader("abc", 1, 1, 3)), True)
+    assert readers._known == set()

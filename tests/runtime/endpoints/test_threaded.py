@@ -11,7 +11,7 @@ import pytest
 from graphflow.errors import ClosedError, ServerLost
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.qos import Qos
+from graphflow.qos import SERVICES, Qos
 from graphflow.runtime.endpoints.service_events import ServiceEvent
 from graphflow.runtime.endpoints.threaded import (
     ThreadedClient,
@@ -22,7 +22,7 @@ from graphflow.runtime.endpoints.threaded import (
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
-from graphflow.transport.inbox import Inbox
+from graphflow.transport.inbox import REQUESTS_BOUND, Inbox
 
 
 class Ring:
@@ -118,3 +118,12 @@ async def test_introspection_tells_requests_and_responses(graph: Graph) -> None:
     await until(lambda: events)
     assert events[0].request[0].a == 1
     assert events[0].info.event_type == ServiceEvent.REQUEST_RECEIVED
+
+
+async def test_how_many_requests_may_wait(graph: Graph) -> None:
+    """As many as for a service of the event loop."""
+    node = Node("n")
+    await graph.start(node)
+    core = core_of(node)
+    server: Any = core.add(ThreadedService(core, AddTwoInts, "/add", SERVICES, Ring(), nothing))
+    assert server.inbox.depth == REQUESTS_BOUND

@@ -46,6 +46,12 @@ def test_names_and_announcements_are_bounded_and_printable() -> None:
     clients.join("\x1b[31m" + "x" * 1000)
     assert len(clients.consoles[0]["name"]) <= TEXT_BOUND + 10
     assert "\x1b" not in clients.consoles[0]["name"]
+    heard: list[Any] = []
+    clients.subscribe(heard.append, replay=False)
+    clients.announce("\x1b[31m" + "x" * 1000, "\x07" + "y" * 1000)
+    assert heard == [
+        {"event": "announced", "text": "\\x1b[31m" + "x" * (TEXT_BOUND - 5), "by": "\\x07" + "y" * (TEXT_BOUND - 1)}
+    ]
 
 
 @pytest.mark.parametrize("layout", [None, [], "x", {"windows": "x" * LAYOUT_BOUND}])

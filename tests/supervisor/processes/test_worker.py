@@ -220,3 +220,14 @@ def test_an_error_that_was_raised_in_the_users_code() -> None:
     line = f"{__file__}:{caught.tb.tb_lineno}"
     assert _one_line(caught.value) == f"ValueError: no camera ({line})"
     assert _one_line(GraphflowError(f"{line}: no").with_traceback(caught.tb)) == f"{line}: no"
+
+
+@pytest.mark.real
+def test_nobody_loads_nodes_over_the_network(machine: Machine, project: Path) -> None:
+    """Unless the graph file allows it."""
+    for head, is_offered in (("", False), ("net: {allow_control: true}\n", True)):
+        machine.run("up", "-d", write(project, f"{head}nodes:\n  /a: {{class: nodes.lab:Good}}\n"), cwd=project)
+        services = machine.look("service", "list", "--include-hidden-services")
+        assert "/a/ask" in services
+        assert ("_container/load_node" in services) is is_offered
+        machine.look("down")

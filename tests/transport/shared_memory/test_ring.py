@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -335,3 +336,40 @@ class TestProcesses:
         reader.forget_ended()
         assert reader.take(place) is None
         assert set(bytes(kept)) == {0}
+
+
+def test_the_proof_of_a_session(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is a file of this user that has the session's name."""
+    fd, other = ring.open_proof("abc"), os.memfd_create("other")
+    try:
+        assert ring.is_proved("abc", os.getpid(), fd)
+        assert not ring.is_proved("abd", os.getpid(), fd)
+        assert not ring.is_proved("abc", os.getpid(), other)
+        monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
+        assert not ring.is_proved("abc", os.getpid(), fd)
+    finally:
+        os.close(fd)
+        os.close(other)
+
+
+def test_the_size_of_a_ring_is_sealed(writer: Ring) -> None:
+    """Nobody can be made to read beyond its end."""
+    for size in (0, writer.bytes + 1):
+        with pytest.raises(PermissionError):
+            os.ftruncate(writer._fd, size)
+
+
+def test_what_is_no_ring(writer: Ring, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of another user, another file, or of a size that may change."""
+    path, number = f"/proc/{os.getpid()}/fd/{writer._fd}", writer._number
+    assert ring._map(path, number) is not None
+    assert ring._map(path, number + 1) is None
+    content = os.pread(writer._fd, writer.bytes, 0)
+    for name, seals in ((ring._RING_NAME, 0), ("other", ring._seals())):
+        fd = os.memfd_create(name, os.MFD_ALLOW_SEALING)
+        os.write(fd, content)
+        fcntl.fcntl(fd, fcntl.F_ADD_SEALS, seals)
+        assert ring._map(f"/proc/{os.getpid()}/fd/{fd}", number) is None
+        os.close(fd)
+    monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
+    assert ring._map(path, number) is None
