@@ -127,3 +127,12 @@ def test_patience(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPa
         a.send(ms)
         b.send(ms + 1)
     assert caplog.messages == []
+
+
+def test_long_queues(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However long they are, only so many stamps are kept, and only so many messages are waited for."""
+    monkeypatch.setattr(unmatched_stamps, "KEPT_BOUND", 200)
+    monkeypatch.setattr(unmatched_stamps, "ENOUGH_BOUND", 50)
+    watch = unmatched_stamps.Unmatched("TimeSynchronizer", "a.py:1", ["/a", "/b"], 10_000, 0)
+    assert [stamps.maxlen for stamps in watch._stamps] == [200, 200]
+    assert watch._enough == 50
