@@ -258,7 +258,7 @@ def __getattr__(name: str) -> object:
 
             try:
                 value: object = getattr(import_module(home), name)
-            except Exception as error:
+            except Exception as error:  # whatever a file of the user's raises that hides a module of Python
                 from graphflow.analysis.hidden_stdlib import hiding_file
 
                 if text := hiding_file(error):

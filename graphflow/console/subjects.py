@@ -12,7 +12,7 @@ from graphflow.markup.source import Data, Source
 
 
 class Subject(NamedTuple):
-    """What a pane shows."""
+    """The subject of a pane."""
 
     kind: str
     """As in `ViewForm.about`: `topic`."""

@@ -174,7 +174,7 @@ class Plan:
     console: dict[str, Any] | None = None
     """The windows and panes of the console at its start, as `console.section` reads them."""
     panes: tuple[Subject, ...] = ()
-    """What these panes show; only for checks, and no part of the JSON."""
+    """The subjects of these panes; only for checks, and not part of the JSON."""
     remarks: tuple[str, ...] = ()
     """Remarks, each with its place: oddities of the files, and settings that give others access."""
 

@@ -20,7 +20,8 @@ from graphflow.machines.near_topics import is_everybodys
 from graphflow.names import is_hidden
 from graphflow.qos import INFINITE_NS, Durability, Qos
 from graphflow.times import to_ns
-from graphflow.transport.base import Closable, Inbox
+from graphflow.transport.base import Closable
+from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
 
