@@ -55,7 +55,8 @@ def test_a_folder_that_hides_a_package(
     """It is named where the package has the module; a module that neither has is another mistake."""
     (tmp_path / name).mkdir()
     beside(tmp_path, f"{name}/__init__", "", monkeypatch)
-    monkeypatch.delitem(sys.modules, name, raising=False)
+    for module in [m for m in sys.modules if m == name or m.startswith(f"{name}.")]:
+        monkeypatch.delitem(sys.modules, module)
     with pytest.raises(ModuleNotFoundError) as caught:
         exec(line, {})
     text = f"{tmp_path / name} hides the package {name}: rename it, as in my_{name}"

@@ -55,7 +55,7 @@ LAB = Topic(
     "/things",
     "bag_lab_msgs/msg/Thing",
     "",
-    f"FileWriter part\nuint8 x\n{'=' * 80}\nMSG: bag_lab_msgs/FileWriter\nint32[2] y\n",
+    f"Part part\nuint8 x\n{'=' * 80}\nMSG: bag_lab_msgs/Part\nint32[2] y\n",
 )
 """Of a type that is nowhere installed."""
 THING = b"\0\1\0\0" + b"\1\0\0\0\2\0\0\0\7"

@@ -80,9 +80,12 @@ def test_times_and_sizes(tmp_path: Path) -> None:
         ("output_bags: [{uri: a, topics: /x}]", "topics: '/x' is not a list of names"),
         ("output_bags: [{uri: a, regex: 1}]", "regex: 1 is not a text"),
         ("output_bags: [{uri: a, all: 1}]", "all: 1 is not true or false"),
-        ("output_bags: [{uri: a, start_time_ns: -1}]", "start_time_ns: -1 is not a whole number"),
+        ("output_bags: [{uri: a, start_time_ns: -1}]", "start_time_ns: -1 is not a non-negative integer"),
         ("output_bags: [{uri: a, storage_preset_profile: best}]", "'best' is not one of none, fastwrite, zstd_fast"),
-        ("output_bags: [{uri: a, compression_mode: file, compression_format: xz}]", "'xz' is not there; write zstd"),
+        (
+            "output_bags: [{uri: a, compression_mode: file, compression_format: xz}]",
+            "'xz' is not available; write zstd",
+        ),
         ("output_bags: [{uri: a, compression_mode: all}]", "'all' is not one of none, file, message"),
     ],
 )

@@ -29,6 +29,7 @@ from graphflow import (
     subscription,
     timer,
 )
+from graphflow.deadlock import reporting
 from graphflow.deadlock import search as detector
 from graphflow.interface import DeadlockPolicy, GroupChange
 from graphflow.machines.waits.reduction import deadlocked
@@ -480,7 +481,8 @@ class Juggler(Node):
 @slow
 async def test_churn(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Hundreds of calls that cross each other make no phantom, however often somebody looks (row 23)."""
-    monkeypatch.setattr(detector, "PROBE_AFTER", 0.004)
+    for module in (detector, reporting):
+        monkeypatch.setattr(module, "PROBE_AFTER", 0.004)
     monkeypatch.setattr(detector, "PROBE_LONGEST", 0.005)
     a, b = Juggler("a", "b"), Juggler("b", "a")
     await graph.start(a, b)

@@ -103,7 +103,7 @@ def test_values_for_one_node() -> None:
         (["-r", "__node=x"], "'__node=x' is not a remap rule; write it as from:=to: __node:=x"),
         (
             ["--ros-args", "-r", "__node:=my", "turtle"],
-            "'turtle' is not a ROS argument; a value with a space in it goes",
+            "'turtle' is not a ROS argument; quote a value that contains a space",
         ),
         (["--ros-args", "-p", "a:=b", "c"], "contains a space: -p 'a:=b c'"),
         (["--ros-args", "—p", "a:=1"], "'—p' is not a ROS argument; write -p"),

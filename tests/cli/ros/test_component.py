@@ -58,7 +58,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
         (("load", "tutorial", "composition", "composition::Talkr"), 2, "did you mean 'talker'?"),
         (("unload", "tutorial", "/taker"), 1, "process 'tutorial' has no node /taker; did you mean '/talker'?"),
         (("unload", "tutorial", "7"), 1, "tutorial has no component 7; there is 1 /talker, 2 /listener"),
-        (("unload", "/alone", "1"), 1, "to end it: graphflow stop /alone"),
+        (("unload", "/alone", "1"), 1, "to stop it: graphflow stop /alone"),
         (("list", "/alon"), 1, "did you mean '/alone'?"),
         (("types", "compositon"), 2, "did you mean 'composition'?"),
         (("standalone", "compositon", "b"), 2, "did you mean 'composition'?"),

@@ -51,7 +51,7 @@ def test_the_old_way(program: Callable[[str], Any], capfd: pytest.CaptureFixture
     ("words", "told"),
     [
         (["--frame-id", "map"], "--frame-id and --child-frame-id are required"),
-        ([*FRAMES, "--yaw", "1", "--qw", "1"], "and not some of both"),
+        ([*FRAMES, "--yaw", "1", "--qw", "1"], "but not both"),
         ([*FRAMES, "--x", "one"], "argument --x: 'one' is not a finite number"),
         ([*FRAMES, "--yaw", "inf"], "argument --yaw: 'inf' is not a finite number"),
         ([*FRAMES, "--x"], "argument --x: expected one argument"),
