@@ -9,16 +9,17 @@ import pytest
 from graphflow.cli.graphs.node_rows import graph_rows, node_rows
 from graphflow.errors import SupervisorError
 from tests.conftest import Machine
+from tests.supervisor.running import supervisor_of
 
 
 @pytest.mark.real
 def test_rows_of_a_running_graph(standing: Machine) -> None:
     """All nodes with their states, and no console; the same rows by either function."""
-    [socket] = standing.run_directory.rglob("control.sock")
-    rows = graph_rows(str(socket))
+    socket = supervisor_of(standing)["socket"]
+    rows = graph_rows(socket)
     assert {row["state"] for row in rows["nodes"]} == {"ready"}
     assert rows["consoles"] == []
-    assert node_rows(str(socket)) == rows["nodes"]
+    assert node_rows(socket) == rows["nodes"]
 
 
 def test_no_supervisor(tmp_path: Path) -> None:
