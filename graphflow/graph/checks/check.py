@@ -10,7 +10,6 @@ from pathlib import Path
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.checks import rewritten
-from graphflow.graph.checks.parameter_slips import misplaced_key, value_correction
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, Setting, StepKind
 from graphflow.interface import (
     COMMON_PARAMETERS,
@@ -149,6 +148,9 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     for name, setting in node.params.items():
         declared = interface.param(name)
         if declared is None:
+            # Imported here: workers check too, and a graph without mistakes does without the models of files.
+            from graphflow.graph.checks.parameter_slips import misplaced_key
+
             key, way = misplaced_key(name, known)
             if interface.dynamic_names is not True and not setting.is_optional and key not in misplaced:
                 yield Problem(
@@ -159,6 +161,8 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
         try:
             declared.fit(setting.value)
         except ParameterError as error:
+            from graphflow.graph.checks.parameter_slips import value_correction
+
             way = value_correction(declared, setting)
             yield Problem(setting.place, f"{error}; {way}" if way else str(error))
 
