@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -18,7 +19,7 @@ _WANTED = os.environ.get(VARIABLE, "few")
 
 def count(few: int, full: int) -> int:
     """The number of cases to try."""
-    return {"few": few, "full": full}.get(_WANTED) or int(_WANTED)
+    return {"few": few, "full": max(few, full // 2)}.get(_WANTED) or int(_WANTED)
 
 
 def cases(number: int) -> settings:
@@ -37,14 +38,14 @@ def sample(names: Sequence[T], step: int = 4) -> Sequence[T]:
     return names[::step] if _WANTED == "few" else names
 
 
-MANY, MANY_REAL = 4, 2
-"""Cases of one test that are run by default, where there are more; of one that starts processes."""
+MANY, MANY_REAL = {"few": (3, 2), "full": (100, 6)}.get(_WANTED, (sys.maxsize, sys.maxsize))
+"""Cases of one test that are run, where there are more; of one that starts processes."""
 
 
 def few_of_many(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
-    """The tests to run, and those to leave to CI: of a test with many cases, some at equal distances are run.
+    """The tests to run, and those to leave out: of a test with many cases, some at equal distances are run.
 
-    With `--cases full`, all are.
+    With `--cases full`, these are most; with a number, all are.
     """
     kept: list[pytest.Item] = []
     left: list[pytest.Item] = []
@@ -54,7 +55,7 @@ def few_of_many(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[p
     chosen: set[int] = set()
     for same in cases_of.values():
         many = MANY if same[0].get_closest_marker("real") is None else MANY_REAL
-        step = -(-len(same) // many) if _WANTED == "few" else 1
+        step = -(-len(same) // many)
         chosen.update(map(id, same[::step]))
     for item in items:
         (kept if id(item) in chosen else left).append(item)
