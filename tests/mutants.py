@@ -32,7 +32,7 @@ PACKAGE = PROJECT / "graphflow"
 BOUND = re.compile(r"_?([A-Z_]*BOUND|LONGEST[A-Z_]*)\Z")
 BEYOND = "(1 << 62)"
 MOST_SECONDS, MOST_MEMORY = 60, 6 << 30
-"""What the tests of one mutant may take; one that takes more is seen."""
+"""Limits of one mutant's tests in seconds and bytes; tests that exceed them have seen it."""
 _PASSED = (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
 
 CHECKS: dict[str, tuple[tuple[str, str], ...]] = {

@@ -51,7 +51,7 @@ def test_the_newest_logs_are_where_a_run_puts_them(monkeypatch: pytest.MonkeyPat
 
 
 def test_a_folder_of_another_user(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """What is kept there could be read or replaced."""
+    """It is refused: its owner could read or replace the files."""
     folders.make_private(tmp_path / "own", "A")
     monkeypatch.setattr(folders, "user_id", lambda: os.getuid() + 1)
     with pytest.raises(SupervisorError, match="own belongs to another user; set A to a folder of your own"):

@@ -1,4 +1,4 @@
-"""What tests of readers of source share."""
+"""Fixtures of tests that read source."""
 
 from __future__ import annotations
 

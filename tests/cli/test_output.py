@@ -38,7 +38,7 @@ def test_json_of_what_json_does_not_know(capsys: pytest.CaptureFixture[str]) -> 
 def test_no_foreign_text_commands_the_terminal(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever a text is printed by; colours are graphflow's own."""
+    """Every way of printing escapes foreign control characters; colours are graphflow's own."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     bad, shown = "a\x1b[31m\x07", "a\\x1b[31m\\x07"
     output.data(bad)

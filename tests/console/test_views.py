@@ -11,7 +11,7 @@ def test_a_view_that_must_be_told_something_says_what() -> None:
 
 
 def test_the_known_views_begin_with_those_of_graphflow() -> None:
-    """Those of other packages follow in order."""
+    """Views of other packages follow in order."""
     known = known_views()
     assert known[: len(VIEWS)] == list(VIEWS)
     assert known[len(VIEWS) :] == sorted(known[len(VIEWS) :])

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from graphflow.graph.resolve import resolve
 from graphflow.machines.process import Need
 from graphflow.markup import source
 from graphflow.supervisor.processes.process import Process
-from graphflow.supervisor.start_order import needs_of_up, start_order
+from graphflow.supervisor.start_order import needs_of_up, restarted_with, start_order
 
 TEXT = """
 nodes:
@@ -32,3 +34,20 @@ def test_needs_are_those_of_processes(tmp_path: Path) -> None:
         "step reset": frozenset({Need("both", "ready")}),
     }
     assert needs_of_up(order, names) == {Need("both"), Need("step reset", "done")}
+
+
+@pytest.mark.parametrize(
+    ("strategy", "others"), [("one_for_one", []), ("one_for_all", ["/b", "/c", "/d"]), ("rest_for_one", ["/b", "/c"])]
+)
+def test_the_strategy_chooses_what_is_restarted(tmp_path: Path, strategy: str, others: list[str]) -> None:
+    """None, all others, or those that come after the failed one, directly or not."""
+    nodes = [
+        "/a: {class: 'n:A'}",
+        "/b: {class: 'n:A', after: /a}",
+        "/c: {class: 'n:A', after: /b}",
+        "/d: {class: 'n:A'}",
+    ]
+    plan = resolve(source.read("nodes:\n  " + "\n  ".join(nodes), "g.yaml"), tmp_path / "g.yaml")
+    processes = [Process(name, nodes, "log") for name, nodes in plan.processes().items()]
+    names = [process.name for process in processes]
+    assert restarted_with("/a", strategy, start_order(plan, processes), names) == others

@@ -128,7 +128,7 @@ class Worker(Node):
 
 @pytest.mark.parametrize("seed", range(count(few=8, full=20)))
 def test_a_group_never_has_more_runs_than_slots(seed: int) -> None:
-    """Whatever the order of arrivals, failures and releases; at the end all slots are free."""
+    """At the end all slots are free, whatever the order of arrivals, failures and releases."""
 
     async def story(world: World) -> None:
         await world.start(Counter(), worker := Worker(world.random))

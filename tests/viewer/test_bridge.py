@@ -232,7 +232,7 @@ async def test_a_message_that_is_too_long(graph: Graph, monkeypatch: pytest.Monk
 
 
 async def test_more_parameters_than_a_viewer_may_follow(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those that it names over time count together."""
+    """Parameters of several requests count together."""
     monkeypatch.setattr(protocol, "ENTRIES_BOUND", 1)
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         for name in ("/robot.gain", "/robot.title"):

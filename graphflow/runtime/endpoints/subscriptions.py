@@ -24,7 +24,7 @@ from graphflow.runtime.endpoints.shared_memory import RingReading
 from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.mistakes.echoes import Echo
 from graphflow.runtime.mistakes.expiry import Expiry
-from graphflow.runtime.mistakes.losses import LOSS_TOLD, Losses
+from graphflow.runtime.mistakes.losses import MANY_LOSSES, Losses
 from graphflow.runtime.mistakes.shared_reading import SharedReading
 from graphflow.runtime.part import Host
 from graphflow.transport.inbox import DeepInbox, Inbox, open_inbox
@@ -126,7 +126,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             )
             self.runner = self.host.runner(spec, self._inbox.items, self._group)
             self._inbox.ready = self.runner.wake
-        self._inbox.tell_losses(self._warn_of_losses, 1 if isinstance(self._inbox, DeepInbox) else LOSS_TOLD)
+        self._inbox.tell_losses(self._warn_of_losses, 1 if isinstance(self._inbox, DeepInbox) else MANY_LOSSES)
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)
         # Publishers of this process deliver by `hand`, unless `ignore_local` excludes them.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from graphflow.runtime.part import Host
 from graphflow.transport.inbox import BYTES_BOUND
 
-LOSS_TOLD = 100
+MANY_LOSSES = 100
 """Messages dropped from a full queue before a warning that most are lost."""
 
 
@@ -18,7 +18,7 @@ class Losses:
 
     def __init__(self, host: Host, name: str, label: str) -> None:
         self._host, self._name, self._label = host, name, label
-        self._has_told_loss = self._has_told_full = False
+        self._has_warned_of_loss = self._has_warned_of_full = False
 
     def warn(self, dropped: int, received: int, deep: int | None, *, is_unread: bool, is_busy: bool) -> None:
         """Warn that a deep queue overflowed, or that most messages are lost.
@@ -29,15 +29,15 @@ class Losses:
             is_busy: Whether the handler runs.
         """
         if is_unread:
-            if not self._has_told_loss and (dropped >= LOSS_TOLD or deep is not None):
-                self._has_told_loss = True
+            if not self._has_warned_of_loss and (dropped >= MANY_LOSSES or deep is not None):
+                self._has_warned_of_loss = True
                 text = "nothing has read %s yet, and its messages are lost, %d so far: write "
                 text += "`async for message in ...` in a @task, or put @subscription on a method"
                 self._host.log.warning(text, self._name, dropped)
             return
         where = "; graphflow waits says where it is now" if is_busy else ""
-        if dropped and not self._has_told_full and deep is not None:
-            self._has_told_full = True
+        if dropped and not self._has_warned_of_full and deep is not None:
+            self._has_warned_of_full = True
             self._host.log.warning(
                 "%s: its queue was full, and dropped the oldest messages, %d so far: it holds %d messages and %d MB; "
                 "do less in the handler, give it a group of its own, or have less sent%s",
@@ -47,8 +47,8 @@ class Losses:
                 BYTES_BOUND >> 20,
                 where,
             )
-        elif not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= received:
-            self._has_told_loss = True
+        elif not self._has_warned_of_loss and dropped >= MANY_LOSSES and 2 * dropped >= received:
+            self._has_warned_of_loss = True
             self._host.log.warning(
                 "%s: most messages are lost, %d of %d so far: they come faster than they are handled. Do less in the "
                 "handler, give it a group of its own, or have less sent%s; graphflow doctor goes on counting",

@@ -124,7 +124,7 @@ def test_one_that_was_not_closed(tmp_path: Path, rest: str) -> None:
 
 
 def test_many_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those beyond the limit are left out, with their messages."""
+    """Topics beyond the limit are left out, with their messages."""
     monkeypatch.setattr(db3_file, "_TOPICS_BOUND", 1)
     file = Db3File(old(tmp_path / "a.db3"))
     assert file.contents.counts == {"/a": 2}

@@ -71,7 +71,7 @@ def test_constants(text: str, is_constant: bool) -> None:
 
 
 def test_functions() -> None:
-    """Those of `math`, and built-in ones unless the module has its own."""
+    """Functions of `math` are known, and built-in ones unless the module has its own."""
     scope = Scope({}, frozenset(), {"math": math, "sum": print}, set())
     found = [scope.is_mathematics(expression(text)) for text in ("math.hypot", "abs", "sum", "open")]
     assert found == [True, True, False, False]

@@ -39,7 +39,7 @@ def test_a_change_of_state() -> None:
 
 
 def test_handlers() -> None:
-    """Those that a graph file can express are recognized where they are registered."""
+    """Events that a graph file can express are recognized where they are registered."""
     handler = call("OnProcessExit", target_action=call("Node"), on_exit=[])
     assert handler_of(call("RegisterEventHandler", handler)) == (handler, HANDLERS["OnProcessExit"])
     assert handler_of(call("RegisterEventHandler", call("OnShutdown"))) is None

@@ -307,7 +307,7 @@ async def test_a_loan_without_memory(graph: Graph) -> None:
 
 
 def test_only_so_many_readers_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever is announced."""
+    """Readers beyond the limit are ignored, however many are announced."""
     monkeypatch.setattr(shared_memory, "READERS_BOUND", 2)
     session: Any = SimpleNamespace(is_neighbour=lambda *_: True)
     readers = shared_memory.Readers(session, 0)

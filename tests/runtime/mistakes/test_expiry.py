@@ -49,6 +49,7 @@ async def test_some_of_them(graph: Graph, caplog: Caplog) -> None:
     """Is not told: those of a moment, as after a blocked loop, and those between others that were in time."""
     host: Any = _Host(graph.clock)
     burst, mixed = Expiry(host, "/a"), Expiry(host, "/b")
+    await graph.clock.advance(60.0)
     for number in range(1, 100):
         burst.add(number, 500, 10**12)
     await graph.clock.advance(60.0)

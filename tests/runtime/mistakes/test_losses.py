@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.runtime.mistakes.losses import LOSS_TOLD, Losses
+from graphflow.runtime.mistakes.losses import MANY_LOSSES, Losses
 
 
 class _Host:
@@ -32,13 +32,13 @@ def test_each_is_told_once(
     losses: Losses, deep: int | None, is_unread: bool, told: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     """However often more messages are lost."""
-    for lost in (LOSS_TOLD, 2 * LOSS_TOLD):
+    for lost in (MANY_LOSSES, 2 * MANY_LOSSES):
         losses.warn(lost, lost, deep, is_unread=is_unread, is_busy=True)
     assert len([text for text in caplog.messages if text.startswith(told)]) == 1
 
 
 def test_few_losses(losses: Losses, caplog: pytest.LogCaptureFixture) -> None:
     """Are not told: fewer than half, or too few to judge."""
-    losses.warn(LOSS_TOLD - 1, LOSS_TOLD - 1, None, is_unread=False, is_busy=False)
-    losses.warn(LOSS_TOLD, 10 * LOSS_TOLD, None, is_unread=False, is_busy=False)
+    losses.warn(MANY_LOSSES - 1, MANY_LOSSES - 1, None, is_unread=False, is_busy=False)
+    losses.warn(MANY_LOSSES, 10 * MANY_LOSSES, None, is_unread=False, is_busy=False)
     assert caplog.messages == []

@@ -76,6 +76,22 @@ class InTurn(Node):
             self.log.debug("second")
 
 
+class Slow(Node):
+    """Two loops of which the one that gets the first message works on it for a while."""
+
+    words = Subscription(String, "words")
+
+    @task
+    async def first(self) -> None:
+        async for _ in self.words:
+            await self.clock.sleep(2.5)
+
+    @task
+    async def second(self) -> None:
+        async for _ in self.words:
+            await self.clock.sleep(2.5)
+
+
 def told(caplog: Caplog) -> list[str]:
     return [text for text in caplog.messages if "is read in" in text]
 
@@ -95,6 +111,16 @@ async def test_two_loops(graph: Graph, caplog: Caplog) -> None:
     await publish(graph, 5)
     (text,) = told(caplog)
     assert text.startswith("/words is read in test_shared_reading.py:22 and in test_shared_reading.py:31, and each ")
+
+
+async def test_two_loops_that_wait_together_only_later(graph: Graph, caplog: Caplog) -> None:
+    """They are inspected again until both wait."""
+    await graph.start(Slow())
+    await publish(graph, 1)
+    await graph.clock.advance(1.0)
+    assert told(caplog) == []
+    await graph.clock.advance(3.0)
+    assert len(told(caplog)) == 1
 
 
 @pytest.mark.parametrize("cls", [Reader, Pool, OneByOne, InTurn])

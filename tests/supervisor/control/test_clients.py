@@ -41,7 +41,7 @@ def test_consoles_come_and_go() -> None:
 
 
 def test_names_and_announcements_are_bounded_and_printable() -> None:
-    """Whatever a client may call itself."""
+    """A client's name is cut and made printable."""
     clients = Clients(lambda: None)
     clients.join("\x1b[31m" + "x" * 1000)
     assert len(clients.consoles[0]["name"]) <= TEXT_BOUND + 10

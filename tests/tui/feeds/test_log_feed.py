@@ -160,7 +160,7 @@ def test_a_line_without_end_is_bounded(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_a_long_line_is_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is beyond the limit is not shown."""
+    """A line is cut at the limit."""
     monkeypatch.setattr(log_feed, "LINE_BOUND", 10)
     path = tmp_path / "talker.log"
     path.write_text("x" * 100 + "\n")

@@ -20,7 +20,7 @@ from graphflow.transport.base import Closable
 from graphflow.wire import process
 from graphflow.wire.process import ProcessToken
 
-TELL_AFTER = 1.0
+WARN_AFTER = 1.0
 """Seconds for a node of the same name to leave, as in a restart."""
 NAMED = 3
 """Other processes named in a message."""
@@ -59,7 +59,7 @@ class Twins:
             report()
 
         clock = self._here.clock
-        alarm = clock.call_at(clock.monotonic_ns() + to_ns(TELL_AFTER), due)
+        alarm = clock.call_at(clock.monotonic_ns() + to_ns(WARN_AFTER), due)
         self._alarms.add(alarm)
 
     def _report(self, name: str) -> None:

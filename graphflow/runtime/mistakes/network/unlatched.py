@@ -25,10 +25,12 @@ from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
 
-TELL_AFTER = 5.0
+WARN_AFTER = 5.0
 """Seconds without a message before the publisher is asked for the one it keeps."""
 ANSWER = 1.0
 """Seconds for its answer."""
+ANSWERS_BOUND = 100
+"""Kept messages that are looked at; a topic has few publishers, and what else arrives may be a flood."""
 _KEPT = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
 
 
@@ -76,7 +78,7 @@ class Unlatched:
             return
         is_users = not (is_everybodys(own.name) or is_hidden(own.node_name) or is_hidden(publisher.node_name))
         if own.qos.durability is Durability.VOLATILE and is_users and subscription not in self._asking:
-            self._asking[subscription] = _Asking(log, self._at(TELL_AFTER, partial(self._ask, subscription)))
+            self._asking[subscription] = _Asking(log, self._at(WARN_AFTER, partial(self._ask, subscription)))
 
     def _at(self, seconds: float, due: Callable[[], None]) -> Alarm:
         clock = self._here.clock
@@ -87,7 +89,7 @@ class Unlatched:
         if own is None or not _is_waiting(subscription):
             self._asking[subscription].alarm.cancel()
             return
-        inbox = Inbox(session.bell, None, lambda: None)
+        inbox = Inbox(session.bell, ANSWERS_BOUND, lambda: None)
         answered = self._at(ANSWER, partial(self._answered, subscription, inbox))
         kept = session.open_receiver(own.data_key, _KEPT, inbox)
         self._asking[subscription] = _Asking(self._asking[subscription].log, answered, kept)

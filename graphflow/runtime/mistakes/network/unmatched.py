@@ -22,7 +22,7 @@ from graphflow.runtime.mistakes.network.other_domains import look_elsewhere
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity, Kind
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds for the counterpart to appear."""
 AT_ONCE = 8
 """Endpoints checked per iteration of the event loop."""
@@ -42,7 +42,7 @@ class _Waiting:
 class Unmatched:
     """The endpoints of a process without a counterpart, each reported once, and the domain once.
 
-    An endpoint is checked `TELL_AFTER` seconds after it was opened, and after a possible counterpart has appeared. One
+    An endpoint is checked `WARN_AFTER` seconds after it was opened, and after a possible counterpart has appeared. One
     per process.
     """
 
@@ -76,7 +76,7 @@ class Unmatched:
     def _due(self) -> int:
         """Schedule the next check; returns its time."""
         clock = self._here.clock
-        due_ns = clock.monotonic_ns() + to_ns(TELL_AFTER)
+        due_ns = clock.monotonic_ns() + to_ns(WARN_AFTER)
         if self._alarm is None:
             self._alarm = clock.call_at(due_ns, self._check)
         return due_ns

@@ -12,7 +12,7 @@ from graphflow.names import did_you_mean, is_hidden
 from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS, to_ns
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds for a server to appear."""
 GAP = 2.0
 """Longest gap in seconds between two waits that count as one; a program that polls less often can do without the
@@ -45,7 +45,7 @@ class Unserved:
         since = clock.monotonic_ns() if raises else self._begin(clock.monotonic_ns())
         reports: list[asyncio.Task[None]] = []
         alarm = clock.call_at(
-            max(clock.monotonic_ns(), since + to_ns(TELL_AFTER)),
+            max(clock.monotonic_ns(), since + to_ns(WARN_AFTER)),
             lambda: reports.append(asyncio.create_task(self._report(task, since))),
         )
         self._waits += 1

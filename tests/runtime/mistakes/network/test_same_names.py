@@ -10,7 +10,7 @@ import pytest
 from graphflow import Context, Node, service
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.runtime.mistakes.network import same_names
-from graphflow.runtime.mistakes.network.same_names import TELL_AFTER
+from graphflow.runtime.mistakes.network.same_names import WARN_AFTER
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.wire import process
@@ -28,7 +28,7 @@ async def test_two_nodes_of_one_process(graph: Graph, caplog: Caplog) -> None:
     nodes = [Node(name) for name in ("twin", "twin", "other", "_hidden", "_hidden", "twin")]
     for node in nodes:
         await core_of(node).start(context)
-        await graph.clock.advance(TELL_AFTER)
+        await graph.clock.advance(WARN_AFTER)
     assert told(caplog) == [
         "another node is called /twin, in this process, too: parameters, services and tools reach one of them by "
         "chance; rename one"
@@ -45,7 +45,7 @@ async def run_two(graph: Graph) -> None:
     elsewhere.session.announce(process.token(elsewhere.domain, elsewhere.session.zid))
     twin = Node("twin")
     await core_of(twin).start(elsewhere)
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     await core_of(twin).stop()
     await elsewhere.close()
 
@@ -65,10 +65,10 @@ async def test_a_node_that_is_restarted(graph: Graph, caplog: Caplog) -> None:
     await graph.start(first)
     await graph.start(Node("twin"))
     await graph.stop(first)
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     assert told(caplog) == []
     await graph.start(Node("twin"))
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     assert len(told(caplog)) == 2  # by both
 
 
@@ -97,10 +97,10 @@ async def test_services_of_two_nodes(graph: Graph, caplog: Caplog) -> None:
     await graph.start(first)
     await graph.start(Goer("second"))
     await graph.stop(first)
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     assert caplog.messages == []
     await graph.start(third := Goer("third"))
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     [told, _] = caplog.messages  # in the logs of both
     assert told == (
         "/go, /stay are offered by /second and /third: each call reaches all of them; move one: --ros-args -r "
@@ -108,7 +108,7 @@ async def test_services_of_two_nodes(graph: Graph, caplog: Caplog) -> None:
     )
     await graph.stop(third)
     await graph.start(Goer("third"))
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     assert caplog.messages == [told] * 3  # in the new one's
 
 
@@ -117,14 +117,14 @@ async def test_many_nodes_of_one_service(graph: Graph, caplog: Caplog) -> None:
     await graph.start(Goer("first"))
     for number in range(6):
         await graph.start(Goer(f"other{number}"))
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     mine = {text for text in caplog.messages if text.startswith("/go")}
     assert len(mine) == 1
     assert "/first, /other0, /other1, /other2 and 3 more: each call" in mine.pop()
 
     caplog.clear()
     await graph.start(Goer("late"))
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     [told] = caplog.messages  # in the new one's log alone
     assert "and 4 more" in told
 
@@ -138,7 +138,7 @@ async def test_a_process_that_ends(graph: Graph, caplog: Caplog) -> None:
         await core_of(node).start(elsewhere)
     await graph.settle()
     elsewhere.twins.close()
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     kinds = [text.partition(" ")[0] for text in caplog.messages]
     assert sorted(kinds) == ["/go,", "another"]  # in the log of the process that goes on
     for node in nodes:

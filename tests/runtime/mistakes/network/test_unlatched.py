@@ -8,7 +8,8 @@ from graphflow import Node, subscription
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.endpoints.publishers import TopicPublisher
-from graphflow.runtime.mistakes.network.unlatched import ANSWER, TELL_AFTER
+from graphflow.runtime.mistakes.network import unlatched
+from graphflow.runtime.mistakes.network.unlatched import ANSWER, WARN_AFTER
 from graphflow.testing import Graph
 
 Caplog = pytest.LogCaptureFixture
@@ -44,7 +45,7 @@ async def test_a_map_that_was_sent_before(graph: Graph, caplog: Caplog) -> None:
     await graph.clock.advance(1.0)
     nav = Nav()
     await graph.start(nav)
-    await graph.clock.advance(TELL_AFTER + ANSWER - 0.1)
+    await graph.clock.advance(WARN_AFTER + ANSWER - 0.1)
     assert told(caplog) == []
     await graph.clock.advance(60.0)
     await server(graph, "other")
@@ -61,7 +62,7 @@ async def test_a_subscription_that_was_there_first(graph: Graph, caplog: Caplog)
     made = await server(graph)
     nav = Nav()
     await graph.start(nav)
-    await graph.clock.advance(TELL_AFTER + ANSWER / 2)
+    await graph.clock.advance(WARN_AFTER + ANSWER / 2)
     made.publish(String(data="map"))
     await graph.clock.advance(60.0)
     assert (nav.heard, told(caplog)) == (1, [])
@@ -85,6 +86,10 @@ async def test_streams_and_those_that_receive_it(graph: Graph, caplog: Caplog) -
     latched = Node("latched")
     latched.create_subscription(String, "map", lambda _: None, LATCHED)
     await graph.start(Nav(), latched)
+    hidden = await server(graph, "tools")
+    hidden.publish(String(data="map"))
+    await graph.clock.advance(1.0)
+    await graph.start(Nav("_tool"))
     await graph.clock.advance(60.0)
     assert told(caplog) == []
 
@@ -96,9 +101,27 @@ async def test_a_node_that_stops_meanwhile(graph: Graph, caplog: Caplog) -> None
     await graph.clock.advance(1.0)
     nav, other = Nav(), Nav("other")
     await graph.start(nav, other)
-    await graph.clock.advance(TELL_AFTER / 2)
+    await graph.clock.advance(WARN_AFTER / 2)
     await graph.stop(nav)
-    await graph.clock.advance(TELL_AFTER / 2 + ANSWER / 2)
+    await graph.clock.advance(WARN_AFTER / 2 + ANSWER / 2)
     await graph.stop(other)
     await graph.clock.advance(60.0)
     assert told(caplog) == []
+
+
+async def test_a_flood_of_kept_messages(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only the newest are looked at: here a stream's, and not the map before it."""
+    made = await server(graph)
+    made.publish(String(data="map"))
+    stream = await server(graph, "stream")
+    for number in range(2):
+        stream.publish(String(data=str(number)))
+    await graph.clock.advance(1.0)
+    monkeypatch.setattr(unlatched, "ANSWERS_BOUND", 1)
+    await graph.start(Nav())
+    await graph.clock.advance(WARN_AFTER + 2 * ANSWER)
+    assert told(caplog) == []
+    monkeypatch.setattr(unlatched, "ANSWERS_BOUND", 2)
+    await graph.start(Nav("other"))
+    await graph.clock.advance(WARN_AFTER + 2 * ANSWER)
+    assert len(told(caplog)) == 1

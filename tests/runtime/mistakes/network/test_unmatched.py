@@ -13,7 +13,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.qos import Durability, Qos
-from graphflow.runtime.mistakes.network.unmatched import AT_ONCE, LATE, TELL_AFTER
+from graphflow.runtime.mistakes.network.unmatched import AT_ONCE, LATE, WARN_AFTER
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from tests.runtime.cast import running_in
@@ -51,7 +51,7 @@ async def test_it_is_told_once_by_both(classes: tuple[Callable[[], Node], ...], 
     for cls in classes:
         await graph.clock.advance(60.0)
         await graph.start(cls())
-    await graph.clock.advance(TELL_AFTER - 0.1)
+    await graph.clock.advance(WARN_AFTER - 0.1)
     assert told(caplog) == []
     await graph.clock.advance(0.1)
     assert sorted(told(caplog)) == sorted(TOLD)
@@ -63,7 +63,7 @@ async def test_it_is_told_once_by_both(classes: tuple[Callable[[], Node], ...], 
 async def test_a_listener_that_comes_in_time(graph: Graph, caplog: Caplog) -> None:
     """There is no warning, even after it has left again."""
     await graph.start(Turtle(), Circle())
-    await graph.clock.advance(TELL_AFTER - 0.1)
+    await graph.clock.advance(WARN_AFTER - 0.1)
     base, teleop = Node("base"), Node("teleop")
     base.create_subscription(Twist, "cmd_vel", lambda _: None)
     teleop.create_publisher(Twist, "/turtle1/cmd_vel")
@@ -91,7 +91,7 @@ async def test_a_publisher_that_was_closed(graph: Graph, caplog: Caplog) -> None
     """It is not reported; one that is opened repeatedly is reported once."""
     node = Node("n")
     await graph.start(Turtle(), node)
-    for seconds in (1.0, TELL_AFTER, TELL_AFTER):
+    for seconds in (1.0, WARN_AFTER, WARN_AFTER):
         publisher = node.create_publisher(Twist, "/cmd_vel")
         await graph.clock.advance(seconds)
         publisher.close()
@@ -119,7 +119,7 @@ async def test_many_at_once(graph: Graph, caplog: Caplog, monkeypatch: pytest.Mo
         look(due)
 
     monkeypatch.setattr(unmatched, "_check_all", counted)
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     assert looks == [AT_ONCE, len(names) - AT_ONCE]
     assert len([text for text in told(caplog) if "listens to" in text]) == len(names)
 
@@ -127,10 +127,10 @@ async def test_many_at_once(graph: Graph, caplog: Caplog, monkeypatch: pytest.Mo
 async def test_a_loop_that_was_blocked(graph: Graph, caplog: Caplog) -> None:
     """It first processes the tokens that arrived during the block."""
     await graph.start(Turtle(), Circle())
-    graph.clock._elapsed_ns += int((TELL_AFTER + 2 * LATE) * 1e9)
+    graph.clock._elapsed_ns += int((WARN_AFTER + 2 * LATE) * 1e9)
     await graph.clock.advance(0.0)
     assert told(caplog) == []
-    await graph.clock.advance(TELL_AFTER)
+    await graph.clock.advance(WARN_AFTER)
     assert sorted(told(caplog)) == sorted(TOLD)
 
 
@@ -170,7 +170,7 @@ async def test_another_domain(
     opened(node)
     async with running_in(graph, 7):
         await graph.start(node)
-        await graph.clock.advance(TELL_AFTER - 0.1)
+        await graph.clock.advance(WARN_AFTER - 0.1)
         assert caplog.messages == []
         await graph.clock.advance(0.1)
         open_publisher(node)

@@ -27,6 +27,7 @@ TICK = """
     @timer(1.0)
     def tick(self):
         self.log.debug("%.1f", self.speed)
+        self.log.debug("on")
 """
 _numbers = itertools.count()
 

@@ -11,7 +11,7 @@ from bisect import bisect_left
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds from the first message."""
 ENOUGH = 10
 """The number of messages that each input must have had, or one more than its queue has room for."""
@@ -50,7 +50,7 @@ class Unmatched:
         self._counts[index] += 1
         if self._begun is None:
             self._begun = time.monotonic()
-        if min(self._counts) <= self._enough or time.monotonic() - self._begun < TELL_AFTER:
+        if min(self._counts) <= self._enough or time.monotonic() - self._begun < WARN_AFTER:
             return False
         logger.warning("%s", self._text())
         return True

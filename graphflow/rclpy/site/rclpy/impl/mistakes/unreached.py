@@ -31,7 +31,7 @@ from rclpy.impl.deadlock.stacks import stacks
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds that a spin must have lasted."""
 LOOK_EVERY = 1.0
 """Seconds between two checks of what threads spin."""
@@ -74,7 +74,7 @@ class Unreached:
         frames = {(frame.f_code, frame.f_lineno): frame for frame in _spinning(self._life)}
         self._since = {line: self._since.get(line, now) for line in frames}
         for line, since in self._since.items():
-            if now - since >= TELL_AFTER and line not in self._read:
+            if now - since >= WARN_AFTER and line not in self._read:
                 # The source may be gone or changed, and reading an attribute may run user code that raises.
                 with suppress(Exception):
                     _report(frames[line])

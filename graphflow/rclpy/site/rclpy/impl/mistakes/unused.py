@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
     from rclpy.node import Node
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds from the first spin of a node."""
 _EVERY_NODES = {"use_sim_time", "start_type_description_service"}
 """Parameters that every node has."""
@@ -45,7 +45,7 @@ class Unused:
             return
         if self._since is None and any(internals_of(node).times_added for node in self._nodes()):
             self._since = time.monotonic()
-        if self._since is not None and time.monotonic() - self._since >= TELL_AFTER:
+        if self._since is not None and time.monotonic() - self._since >= WARN_AFTER:
             self._report()
 
     def _nodes(self) -> list[Node]:

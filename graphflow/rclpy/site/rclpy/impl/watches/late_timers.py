@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
     from rclpy.node import Node
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds for which a period of zero, or a clock that stands still, is tolerated."""
 SLOW = 0.5
 """Seconds that a callback may take before it is checked for timers that it delays."""
@@ -87,7 +87,7 @@ class LateTimers:
             if key in runs:
                 if seconds >= SLOW and (slow := self._slow_one(runs[key], seconds)) is not None:
                     self._slow[key] = slow
-            elif seconds >= TELL_AFTER and key not in self._known:
+            elif seconds >= WARN_AFTER and key not in self._known:
                 self._known.add(key)
                 if key in timeless:
                     timeless[key].get_logger().warning(f"{full_name(timeless[key])}: {TIMELESS}")

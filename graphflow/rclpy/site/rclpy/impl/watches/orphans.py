@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.node import Node
 
-TELL_AFTER = 1.0
+WARN_AFTER = 1.0
 """Seconds within which the node may be spun again, or the spin may end."""
 _IN_A_CALLBACK = "do not spin in a callback: future.add_done_callback(...), or await it in an async def callback"
 logger = logging.getLogger("graphflow")
@@ -52,7 +52,7 @@ def watch(node: Node, former: Executor, what: str) -> None:
         if internals_of(node).times_added == times and not node.handle.is_destroyed and _is_spun(former):
             logger.error("%s", text)
 
-    internals_of(node).life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, check), wait=False)
+    internals_of(node).life.on_loop(lambda: LOOP.start().call_later(WARN_AFTER, check), wait=False)
 
 
 def attend(life: ContextState) -> None:
@@ -73,7 +73,7 @@ def _destroyed(node: Node) -> None:
             logger.warning(text, place, name)
 
     if place:
-        internals_of(node).life.on_loop(lambda: LOOP.start().call_later(TELL_AFTER, check), wait=False)
+        internals_of(node).life.on_loop(lambda: LOOP.start().call_later(WARN_AFTER, check), wait=False)
 
 
 def _users_place(begin: FrameType) -> str:

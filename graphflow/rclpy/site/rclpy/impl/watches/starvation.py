@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rclpy.impl.spinning import Entity
     from rclpy.node import Node
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds for which work is held up before it is reported."""
 SHOWN = 3
 """The number of callbacks that a report names."""
@@ -85,14 +85,14 @@ class HeldUp:
                 logger.warning("%s after %.1f s", self._reports.pop(key).is_over, seconds)
         for key in [*steps, *idle]:
             seconds = now - self._since.setdefault(key, now)
-            if seconds < TELL_AFTER or key in self._reports:
+            if seconds < WARN_AFTER or key in self._reports:
                 continue
             told = self._of_run(steps[key], seconds) if key in steps else self._of_node(key, seconds)
             if told is not None:
                 self._reports[key] = told
                 logger.warning("%s", told.text)
         for key, node in fresh.items():
-            if now - self._since.setdefault(key, now) >= TELL_AFTER:
+            if now - self._since.setdefault(key, now) >= WARN_AFTER:
                 self._begun.add(node)
                 self._report_init(node)
 

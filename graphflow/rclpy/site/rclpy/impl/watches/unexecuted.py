@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
     from rclpy.node import Node
 
-TELL_AFTER = 3.0
+WARN_AFTER = 3.0
 """Seconds after which a goal is reported if nothing holds its handle to execute it later."""
 KEPT = 15.0
 """The same in seconds if something does, and no other goal of the server is executed meanwhile."""
@@ -56,14 +56,14 @@ class Unexecuted:
                 self._since.pop(goal, None)
                 continue
             seconds = now - self._since.setdefault(goal, now)
-            if seconds >= TELL_AFTER and goal not in self._kept:
+            if seconds >= WARN_AFTER and goal not in self._kept:
                 # The search goes through every object of the process, and clients may send thousands of goals.
                 if has_searched:
                     continue
                 has_searched = True
                 if _is_kept(goal, server._goal_handles, goals):
                     self._kept.add(goal)
-            if seconds >= (KEPT if goal in self._kept else TELL_AFTER):
+            if seconds >= (KEPT if goal in self._kept else WARN_AFTER):
                 self._reported.add(server)
                 text = "%s accepted a goal of %s %.1f s ago, and its execute() was not called: end %s with %s"
                 callback = described(server._handle_accepted_callback)

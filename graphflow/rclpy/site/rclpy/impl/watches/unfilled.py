@@ -14,7 +14,7 @@ from types import FrameType
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_installed, is_users, short_place, users_frame
 
-TELL_AFTER = 1.0
+WARN_AFTER = 1.0
 """Seconds from the first failed lookup: a listener may be created after it."""
 _FILLERS = ("set_transform", "set_transform_static")
 logger = logging.getLogger("graphflow")
@@ -35,7 +35,7 @@ class Unfilled:
         now = time.monotonic()
         if self._since is None:
             self._since = now
-        if self.is_filled or self.remark or now - self._since < TELL_AFTER:
+        if self.is_filled or self.remark or now - self._since < WARN_AFTER:
             return
         if any(_names_a_filler(file) for file in _users_files()):
             self.is_filled = True  # it may be yet

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from graphflow.rclpy.messages import classes
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.service_client import nobody_serves
-from graphflow.runtime.mistakes.network.unserved import GAP, TELL_AFTER, nobody_acts
+from graphflow.runtime.mistakes.network.unserved import GAP, WARN_AFTER, nobody_acts
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.impl.deadlock.later_servers import comes_after
@@ -64,7 +64,7 @@ class Unserved:
             wakes = _wakes(client)
             if wakes and not _is_served(client):
                 self._last[client] = now
-                if now - self._since.setdefault(client, now) >= TELL_AFTER:
+                if now - self._since.setdefault(client, now) >= WARN_AFTER:
                     due.setdefault(wakes[0], client)  # one thread may wait for several
             if any(endpoint.lost for endpoint in _endpoints(client)):
                 self._report_lost(client, node)

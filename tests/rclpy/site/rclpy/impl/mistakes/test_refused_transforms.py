@@ -15,7 +15,7 @@ REFUSED = "and every listener drops it"
 
 
 def test_names_of_frames(node: Node, caplog: pytest.LogCaptureFixture) -> None:
-    """What lacks one is told at the sender, once for each line."""
+    """A transform without a frame is reported at the sender, once for each line."""
     moving, still = TransformBroadcaster(node), StaticTransformBroadcaster(node)
     named = TransformStamped(header=Header(frame_id="odom"), child_frame_id="base")
     half = TransformStamped(header=Header(frame_id="odom"))

@@ -17,7 +17,7 @@ TIMES = range(0, 5000, 100)
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unmatched_stamps, "TELL_AFTER", 0.0)
+    monkeypatch.setattr(unmatched_stamps, "WARN_AFTER", 0.0)
 
 
 class Source(SimpleFilter):
@@ -120,7 +120,7 @@ def test_synchronizers_that_work(make: Callable[..., TimeSynchronizer], caplog: 
 
 def test_patience(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is told of the first seconds."""
-    monkeypatch.setattr(unmatched_stamps, "TELL_AFTER", 100.0)
+    monkeypatch.setattr(unmatched_stamps, "WARN_AFTER", 100.0)
     a, b = Source("/a"), Source("/b")
     exact([a, b])
     for ms in TIMES:

@@ -50,7 +50,7 @@ def main(executor):
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unreached, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(unreached, "WARN_AFTER", 0.05)
     monkeypatch.setattr(unreached, "LOOK_EVERY", 0.01)
     monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
 

@@ -57,7 +57,7 @@ def test_what_no_node_has_used(caplog: Caplog, tmp_path: Path, line: str, text: 
 
 def test_it_is_told_while_nodes_run(caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Once, of all nodes together, when they have had time from the first spin on to make their names."""
-    monkeypatch.setattr(unused, "TELL_AFTER", 0.0)
+    monkeypatch.setattr(unused, "WARN_AFTER", 0.0)
     rclpy.init(args=["--ros-args", "-r", "one:light:=sun", "-r", "lihgt:=sun"])
     one, other = Lamp("one"), Lamp("other")
     life = one.context.life

@@ -24,7 +24,7 @@ Caplog = pytest.LogCaptureFixture
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(late_timers, "TELL_AFTER", 0.1)
+    monkeypatch.setattr(late_timers, "WARN_AFTER", 0.1)
     monkeypatch.setattr(late_timers, "SLOW", 0.05)
     monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
 

@@ -49,7 +49,7 @@ def until(condition: Callable[[], Any]) -> None:
 
 def test_a_spin_in_a_callback(node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is told with the line, and what to do instead."""
-    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(orphans, "WARN_AFTER", 0.05)
     done: Future[None] = Future()
     done.set_result(None)
 
@@ -73,7 +73,7 @@ def test_a_spin_beside_the_executor(
     node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its own spin does the same, and keeps the node."""
-    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(orphans, "WARN_AFTER", 0.05)
     with spun(node):
         rclpy.spin_once(node, timeout_sec=0.01)
         until(lambda: told(caplog))
@@ -85,7 +85,7 @@ def test_a_node_that_is_spun_again(
     node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By its executor or by a loop, or one that is destroyed, or whose executor spins no more: nothing is told."""
-    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(orphans, "WARN_AFTER", 0.05)
     looks, is_spun = [], orphans._is_spun
 
     def look(executor: Any) -> bool:
@@ -109,7 +109,7 @@ def test_a_callback_that_destroys_its_node(
     node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, limit: float | None
 ) -> None:
     """It is told where the spin waits for ever; a loop of the program's own may end by itself."""
-    monkeypatch.setattr(orphans, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(orphans, "WARN_AFTER", 0.05)
     looks, is_spun = [], orphans._is_spun
 
     def look(executor: Any) -> bool:

@@ -28,7 +28,7 @@ LIMIT = 10.0
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(starvation, "TELL_AFTER", 0.2)
+    monkeypatch.setattr(starvation, "WARN_AFTER", 0.2)
     monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
 
 

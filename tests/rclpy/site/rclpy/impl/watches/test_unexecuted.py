@@ -19,7 +19,7 @@ Caplog = pytest.LogCaptureFixture
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unexecuted, "TELL_AFTER", 0.1)
+    monkeypatch.setattr(unexecuted, "WARN_AFTER", 0.1)
     monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
 
 
@@ -84,7 +84,7 @@ def test_many_goals_that_may_be_executed_yet(node: Node, spin: Spinner, monkeypa
     kept: list[Any] = []
     server = ActionServer(node, Fibonacci, "fib", print, handle_accepted_callback=kept.append)
     searched: list[object] = []
-    monkeypatch.setattr(unexecuted, "TELL_AFTER", 0.0)
+    monkeypatch.setattr(unexecuted, "WARN_AFTER", 0.0)
 
     def search(goal: object, *_: object) -> bool:
         if threading.current_thread() is threading.main_thread():  # the context looks, too, in a thread of its own

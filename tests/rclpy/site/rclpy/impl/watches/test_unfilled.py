@@ -37,7 +37,7 @@ def test_it_is_told_once(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.M
     asks = Asks()
     assert not asks.can()
     assert told(caplog) == []
-    monkeypatch.setattr(unfilled, "TELL_AFTER", 0.0)
+    monkeypatch.setattr(unfilled, "WARN_AFTER", 0.0)
     for _ in range(2):
         assert not asks.can()
     line = Asks.can.__code__.co_firstlineno + 1
@@ -49,7 +49,7 @@ def test_it_is_told_once(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.M
 
 def test_buffers_that_are_filled(node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     """By a listener, or perhaps by code of the program's, which may have had nothing to put in yet."""
-    monkeypatch.setattr(unfilled, "TELL_AFTER", 0.0)
+    monkeypatch.setattr(unfilled, "WARN_AFTER", 0.0)
     listened, own = Asks(), Asks()
     TransformListener(listened.tf, node)
     assert not listened.can()

@@ -29,7 +29,7 @@ LIMIT = 10.0
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unserved, "TELL_AFTER", 0.1)
+    monkeypatch.setattr(unserved, "WARN_AFTER", 0.1)
     monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
 
 
@@ -191,7 +191,7 @@ def test_a_wait_of_which_the_search_tells(node: Node, caplog: Caplog, monkeypatc
 
 def test_a_program_that_asks_now_and_then(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Does without the server: the time between its waits does not count."""
-    monkeypatch.setattr(unserved, "TELL_AFTER", 1.0)
+    monkeypatch.setattr(unserved, "WARN_AFTER", 1.0)
     monkeypatch.setattr(unserved, "GAP", 0.1)
     client = node.create_client(Trigger, "swich")
     for _ in range(5):

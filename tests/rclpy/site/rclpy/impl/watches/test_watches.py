@@ -14,7 +14,7 @@ from rclpy.node import Node
 
 def test_they_look_and_keep_what_still_holds(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
     """All are asked again and again, on the loop; reports that are over are dropped."""
-    monkeypatch.setattr(starvation, "TELL_AFTER", 0.05)
+    monkeypatch.setattr(starvation, "WARN_AFTER", 0.05)
     monkeypatch.setattr(waiting, "LOOK_EVERY", 0.02)
     life = node.context.life
     assert life is not None
