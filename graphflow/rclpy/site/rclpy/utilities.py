@@ -82,10 +82,10 @@ def try_shutdown(*, context: Context | None = None) -> None:
 
 
 def _replace(ended: Context) -> None:
-    """Make another context the default, unless it is already."""
+    """Make another context the default, unless it is already, or another thread has initialized this one again."""
     global _default
     with _lock:
-        if _default is ended:
+        if _default is ended and not ended.ok():
             _default = None
 
 

@@ -21,6 +21,20 @@ def test_after_its_end_the_default_context_is_another() -> None:
     utilities.try_shutdown()
 
 
+def test_a_context_that_begins_again_while_it_ends() -> None:
+    """It stays the default: a callback of an executor may still be in `shutdown` when the program goes on."""
+
+    def again() -> None:
+        rclpy.init()
+
+    rclpy.init()
+    context = utilities.get_default_context()
+    context.on_shutdown(again)
+    utilities.shutdown()
+    assert utilities.get_default_context() is context
+    assert utilities.ok()
+
+
 def test_what_is_for_ros_is_removed_from_a_command_line() -> None:
     """And the rest is left as it is; what is wrong is an error."""
     words = ["me", "-x", "--ros-args", "-r", "a:=b", "--", "last"]
