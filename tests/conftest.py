@@ -47,6 +47,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if sys.dont_write_bytecode:  # each of hundreds of interpreters would compile the whole package anew
         sys.dont_write_bytecode = False
         del os.environ["PYTHONDONTWRITEBYTECODE"]
+    gc.disable()  # it finds nothing while tests are collected, and goes through them all
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
@@ -59,6 +60,7 @@ def pytest_collection_finish() -> None:
     """Keep the collector from going through all that was imported and collected, in each of its runs."""
     gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

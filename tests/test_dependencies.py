@@ -6,7 +6,8 @@ import ast
 import re
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 from tests.conftest import PROJECT
@@ -41,32 +42,35 @@ OPTIONAL = {
 }
 
 
-def own() -> Iterator[str]:
+@cache
+def own() -> set[str]:
     """Packages that come with graphflow, those under ROS's names included."""
-    yield from ("graphflow", "nodes")
-    for folder in ("graphflow/msgs", "graphflow/rclpy/site", "graphflow/rclpy/packages"):
-        yield from (child.name for child in (PROJECT / folder).iterdir() if child.is_dir())
+    folders = (PROJECT / folder for folder in ("graphflow/msgs", "graphflow/rclpy/site", "graphflow/rclpy/packages"))
+    return {"graphflow", "nodes", *(child.name for folder in folders for child in folder.iterdir() if child.is_dir())}
 
 
 def foreign(file: Path) -> set[str]:
     """The packages that a file imports which neither Python nor graphflow has."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     named = {found.module.partition(".")[0] for found in imports(tree, ".".join(file.relative_to(PROJECT).parts[:-1]))}
-    return named - sys.stdlib_module_names - set(own()) - {"__main__"}
+    return named - sys.stdlib_module_names - own() - {"__main__"}
 
 
-IMPORTED = {str(file.relative_to(PROJECT)): found for file in FILES if (found := foreign(file))}
+@cache
+def imported() -> dict[str, set[str]]:
+    """The foreign packages that each file imports, of the files that import any."""
+    return {str(file.relative_to(PROJECT)): found for file in FILES if (found := foreign(file))}
 
 
 def test_every_imported_package_is_declared() -> None:
     """None comes along by chance, as a dependency of a dependency."""
     known = NEEDED | OPTIONAL | set(USERS_CHOICE)
-    assert {file: found - known for file, found in IMPORTED.items() if found - known} == {}
+    assert {file: found - known for file, found in imported().items() if found - known} == {}
 
 
 def test_every_declared_package_is_imported() -> None:
     """Nobody installs what nothing uses."""
-    assert (NEEDED | OPTIONAL) - set().union(*IMPORTED.values()) == set()
+    assert (NEEDED | OPTIONAL) - set().union(*imported().values()) == set()
 
 
 def test_extras_repeat_no_dependency() -> None:
