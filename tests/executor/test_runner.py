@@ -19,6 +19,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import BURST, Run, Runner, RunnerSpec
 from graphflow.testing.clock import settle
+from tests.cases import slow
 
 Handler = Callable[[Any], Any]
 
@@ -393,6 +394,7 @@ async def test_cancelling_twice_waits_for_the_same_end(graphflow_runner: asyncio
     assert late.done()
 
 
+@slow
 @pytest.mark.parametrize("fails", [False, True])
 @pytest.mark.parametrize("waits", [False, True])
 async def test_an_ended_run_keeps_nothing_alive(graphflow_runner: asyncio.Runner, waits: bool, fails: bool) -> None:

@@ -50,6 +50,7 @@ def test_a_ring_of_processes(lab: Lab, names: str, policy: str) -> None:
     assert "DeadlockError" not in up.text
 
 
+@slow
 def test_members_that_answer_in_a_group_of_its_own(lab: Lab) -> None:
     """The same calls are answered, and nothing is reported (row 4)."""
     nodes = {name: f"{about}, concurrency: {{answers: [answer]}}" for name, about in ring_of("ab").items()}

@@ -74,6 +74,7 @@ def test_graphflow_calls_it(machine: Machine, tmp_path: Path) -> None:
     caller.wait_for("HEARD 5\nHEARD 43\nHEARD RemoteError")
 
 
+@slow
 def test_it_lists_what_graphflow_has(machine: Machine, tmp_path: Path) -> None:
     """Topics and services, hidden from nobody, with their types."""
     node(machine, tmp_path, "Adder")

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphflow.machines.process import ALARMS, START_LIMIT, STOP_LIMIT, Do, Event, Exit, Need, Order, State, step
+from tests.cases import slow
 
 P, S, R, T, E = State.PENDING, State.STARTING, State.READY, State.STOPPING, State.ENDED
 A, B, W = State.RESTARTING, State.RESETTING, State.WAITING
@@ -180,6 +181,7 @@ def test_a_circle_stops_all_the_same() -> None:
     assert order(a="b", b="a").stop_layers(["a", "b"]) == [["a", "b"]]
 
 
+@slow
 @given(st.data())
 def test_stopping_reverses_any_order(data: st.DataObject) -> None:
     """In every order without circles each name stops after all that came after it, and each stops once."""

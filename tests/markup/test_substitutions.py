@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import graphflow
 from graphflow.markup.substitutions import MAX_DEPTH, Outside, SubstitutionError, Substitutions, Written, truth
-from tests.cases import count
+from tests.cases import count, slow
 
 ARGS: dict[str, Any] = {
     "name": "turtle2",
@@ -207,6 +207,7 @@ def test_no_argument_to_be_near_to() -> None:
         Substitutions({}, Path("/"), Outside({})).apply("$(var x)")
 
 
+@slow
 def test_nesting_has_an_end() -> None:
     """A text nested without measure is refused, not a crash."""
     depth = MAX_DEPTH - 1

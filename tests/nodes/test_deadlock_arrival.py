@@ -11,10 +11,12 @@ from graphflow.testing import Graph
 from nodes.deadlock.arrival import CarefulFollower, Follower
 from nodes.scheduler import Scheduler
 from nodes.turtlesim import TurtleSim
+from tests.cases import slow
 
 TWO = {"motion": GroupChange(("control",)), "goals": GroupChange(("enable", "set_goal"))}
 
 
+@slow
 @pytest.mark.parametrize(
     ("follower", "groups", "points"),
     [(Follower, {}, 1), (Follower, TWO, 1), (CarefulFollower, {}, 6), (CarefulFollower, TWO, 6)],

@@ -6,8 +6,10 @@ from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from nodes.draw_square import DrawSquare
 from nodes.turtlesim import TurtleSim
+from tests.cases import slow
 
 
+@slow
 async def test_it_comes_back_to_where_it_began(graph: Graph) -> None:
     """Four sides of two metres, to the left, and then the same again."""
     await graph.start(TurtleSim(), DrawSquare())

@@ -15,10 +15,12 @@ from graphflow.testing import Graph
 from nodes.goal_follower import GoalFollower
 from nodes.scheduler import Scheduler
 from nodes.turtlesim import TurtleSim
+from tests.cases import slow
 
 POINTS = [(2, 1), (5, 9), (8, 1), (1, 6), (9, 6), (2, 1)]
 
 
+@slow
 async def test_all_points_are_visited_in_order(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """The pose comes within the tolerance of each; then the turtle rests."""
     caplog.set_level(logging.INFO)

@@ -107,6 +107,7 @@ def test_points_are_bounded_and_the_newest_stay() -> None:
     assert all(a.points[-1] == b.points[0] for a, b in pairwise(ends))
 
 
+@slow
 def test_a_turtle_whose_stroke_was_forgotten_draws_on() -> None:
     """Its next line starts a new stroke."""
     canvas = Canvas()

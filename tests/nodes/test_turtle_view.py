@@ -68,6 +68,7 @@ def test_steering(watched: Watched) -> None:
     watched.view.close()
 
 
+@slow
 @pytest.mark.parametrize("headers", [{"Origin": "http://example.org"}, {"Host": "example.org"}, {"Origin": "null"}])
 def test_a_strangers_page_gets_nothing(watched: Watched, headers: dict[str, str]) -> None:
     """Any page open in the browser could send requests."""

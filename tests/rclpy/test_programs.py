@@ -15,6 +15,7 @@ from graphflow.msgs import registry
 from graphflow.rclpy.programs import _imported_in, _where_to_have, find_program
 from graphflow.transport.rendezvous import free_endpoint
 from graphflow.workspace.packages import BUNDLED, find_workspace
+from tests.cases import slow
 
 NODE = """
 import sys
@@ -266,6 +267,7 @@ def test_source_trees_of_what_graphflow_has(workspace: Path) -> None:
     assert ran.stderr.splitlines() == [f"note: {note}" for note in notes]
 
 
+@slow
 def test_messages_of_messages(workspace: Path) -> None:
     """Those of another package of the workspace, which nobody has imported; one that is not there is named."""
     folder = workspace / "src/room_interfaces"
@@ -392,6 +394,7 @@ def test_a_program_without_an_end_of_its_own_ends_too() -> None:
     assert (ended.stdout, ended.stderr, ended.returncode) == ("left\n", "", 0)
 
 
+@slow
 @pytest.mark.parametrize(
     "order", ["import rclpy", "import atexit; atexit.register(lambda: end())"], ids=["first", "last"]
 )

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
+
 NODE = "from lamp_msgs.msg import Light\nfrom lamp.level import LEVEL\nprint(Light(level=LEVEL))\n"
 TEST = "import rclpy\nfrom lamp_msgs.msg import Light\n\ndef test_it():\n    import lamp.node\n"
 
@@ -57,6 +59,7 @@ def test_a_program_finds_what_lies_around_it(workspace: Path, tmp_path: Path) ->
     assert python(workspace, "import lampp") == "ModuleNotFoundError: No module named 'lampp'"
 
 
+@slow
 def test_a_packages_own_tests(workspace: Path) -> None:
     """Are run by pytest, which looks for a module of pickle's before all else is imported."""
     code = "import sys, pytest; sys.exit(pytest.main(['-q', '-p', 'no:cacheprovider', 'src/lamp/test']))"

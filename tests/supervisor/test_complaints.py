@@ -78,6 +78,7 @@ def test_one_node_of_a_running_graph(machine: Machine, project: Path) -> None:
     assert len({pids["/a"], first, now["/a"]}) == 3
 
 
+@slow
 @pytest.mark.parametrize("section", ["/tlaker", "/room/talker"])
 def test_a_parameter_file_for_nobody(machine: Machine, project: Path, section: str) -> None:
     """Its place and the name that was meant are told, and nothing starts. ros2#569, rcl#954, ros2cli#648."""
@@ -150,6 +151,7 @@ def test_mistakes_in_a_launch_file(machine: Machine, project: Path, name: str, t
     assert "Traceback" not in out
 
 
+@slow
 def test_what_follows_an_end_is_said_in_yaml(machine: Machine, project: Path) -> None:
     """One node after another's end, and the end of all with one node: for which ROS 2 needs Python. launch_ros#236."""
     text = """

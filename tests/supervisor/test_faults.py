@@ -16,7 +16,7 @@ import pytest
 
 from graphflow.supervisor.rundir import SUPERVISOR_LOG
 from graphflow.system import is_portable
-from tests.cases import count
+from tests.cases import count, slow
 from tests.conftest import PROGRAMS, Machine, alive
 from tests.supervisor.running import supervisor_of, write
 
@@ -45,6 +45,7 @@ def family_of(supervisor: int) -> dict[str, int]:
     return parts | ({"node": workers[0]} if workers else {})
 
 
+@slow
 @pytest.mark.parametrize("seed", range(count(few=1, full=8)))
 def test_a_kill(machine: Machine, project: Path, seed: int) -> None:
     """Of a process chosen at random, at a random moment of a graph's first half second."""

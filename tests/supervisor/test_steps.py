@@ -64,6 +64,7 @@ def test_a_message_is_said_when_it_is_due(machine: Machine, project: Path) -> No
     assert up.end() == 0
 
 
+@slow
 @pytest.mark.real
 def test_a_step_may_stop_the_graph(machine: Machine, project: Path) -> None:
     """With its reason, and as if it had been asked for."""

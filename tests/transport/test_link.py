@@ -176,6 +176,7 @@ def test_commands_reach_a_robot_without_a_graph_of_ones_own(hosts: Hosts, near: 
     assert "nor where --connect or --net points" in text
 
 
+@slow
 @pytest.mark.real
 def test_other_users_of_other_machines_are_no_strangers(hosts: Hosts, near: Machine, far: Machine) -> None:
     """A graphflow rendezvous on the robot belongs to the robot's user, whoever that is, and is linked all the same."""

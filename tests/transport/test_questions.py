@@ -13,6 +13,7 @@ import zenoh
 from graphflow.transport.config import callback_threads
 from graphflow.transport.questions import BOUND, FLOOD, Questions
 from graphflow.transport.zenoh import ZenohSession
+from tests.cases import slow
 from tests.conftest import LIMIT
 
 pytestmark = pytest.mark.real
@@ -81,6 +82,7 @@ def asked(graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session) -> It
     assert not it.thread.is_alive()
 
 
+@slow
 def test_a_flood_of_questions(asked: Asked) -> None:
     """More than can wait are ended without an answer, from the second flood on by Zenoh; the next is answered."""
     asked.flood(FLOOD)

@@ -10,6 +10,7 @@ from textual.widgets import Input
 
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets.dialogs import AskLine
+from tests.cases import slow
 from tests.tui.stage import record, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -43,6 +44,7 @@ async def test_who_has_stopped_the_graph() -> None:
         assert "the graph has ended (down, by pts/7), exit code 0; q leaves" in s.text
 
 
+@slow
 async def test_a_terminal_that_has_lost_the_focus() -> None:
     """A terminal reported out of focus, as by tmux, still focuses the first dialog."""
     async with stage() as s:
@@ -91,6 +93,7 @@ async def test_windows_are_kept_with_the_run() -> None:
         assert kept[-1]["windows"][0]["root"]["options"] == {"level": "warn"}
 
 
+@slow
 async def test_a_small_terminal_shows_one_pane() -> None:
     """A terminal too small for two panes shows one."""
     async with stage(Content("nodes"), size=(80, 24)) as s:

@@ -12,6 +12,7 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_a_click_focuses_a_pane() -> None:
     """A click on the title or anywhere in a pane focuses it."""
     async with stage(Content("nodes")) as s:

@@ -14,6 +14,7 @@ from graphflow.testing import Graph
 from graphflow.tui.commands.actions import Action
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from tests.cases import slow
 from tests.conftest import PROJECT
 from tests.docs.test_docs import blocks
 from tests.tui.stage import stage
@@ -53,6 +54,7 @@ class Battery(View):
         type(self).ended = True
 
 
+@slow
 async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """A view is updated while it is on screen; its keys act, its errors are shown, and it is closed in the end."""
     from graphflow.tui.registry import view_class
@@ -82,6 +84,7 @@ async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
         await s.until(lambda: Battery.ended)
 
 
+@slow
 async def test_the_view_of_the_page(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """The example of docs/console.md waits for its topic, shows its messages, and its key acts."""
     [example] = blocks(PROJECT / "docs" / "console.md", "python")

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from graphflow.cli.graphs import demo
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 
 
@@ -96,6 +97,7 @@ def graphs(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[subprocess.Popen[st
         process.stdout.close()
 
 
+@slow
 @pytest.mark.real
 def test_a_graph_is_shown_for_its_time(graphs: list[subprocess.Popen[str]]) -> None:
     """The output is yielded as it arrives; then the graph is ended by Ctrl-C."""

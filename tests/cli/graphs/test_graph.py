@@ -8,11 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_in_the_terminal(standing: Machine) -> None:
     """Nodes have round boxes, topics square ones; incompatible topics are marked, with the verb for details."""
     text = standing.look("graph")

@@ -41,6 +41,7 @@ def test_restart_and_stop(machine: Machine) -> None:
     machine.look("down")
 
 
+@slow
 def test_the_last_node(machine: Machine) -> None:
     """The graph ends with it, which is no failure of the command that wanted it."""
     project = make_project(machine.run_directory / "lab")

@@ -16,6 +16,7 @@ from graphflow.cli import exits
 from graphflow.cli.graphs.streaming import LogReader, _Stream, how_ended
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, RunDirectory
+from tests.cases import slow
 from tests.cli.rows import node_row
 from tests.conftest import Machine
 from tests.supervisor.running import make_project, nothing_is_left, rows, supervisor_of, write
@@ -208,6 +209,7 @@ def test_up_shows_the_logs_and_ctrl_c_stops_everything(machine: Machine) -> None
     nothing_is_left(machine, pids)
 
 
+@slow
 @pytest.mark.real
 def test_what_is_found_in_the_source_is_told_before_the_terminal_is_let_go(machine: Machine) -> None:
     """A detached graph reports findings in its source, as one in the foreground does."""

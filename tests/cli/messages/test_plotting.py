@@ -70,6 +70,7 @@ def speeds(tmp_path: Path) -> Path:
     return write(tmp_path / "speeds", records)
 
 
+@slow
 def test_a_bag(machine: Machine, speeds: Path, tmp_path: Path) -> None:
     """In letters, as numbers, and as files."""
     text = machine.look("bag", "plot", str(speeds), "/speed.linear.x")

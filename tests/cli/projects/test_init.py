@@ -45,6 +45,7 @@ def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path
         alone.communicate(timeout=LIMIT)
 
 
+@slow
 def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) -> None:
     """A node that is called like one that comes with graphflow is the project's own."""
     machine.run("init", "mylab", cwd=tmp_path)
@@ -99,6 +100,7 @@ def test_a_name_must_be_a_packages(machine: Machine, tmp_path: Path, name: str, 
     assert not (tmp_path / name).exists()
 
 
+@slow
 def test_nothing_is_overwritten(machine: Machine, tmp_path: Path) -> None:
     """A folder with something in it stays as it is; an empty one is filled."""
     (tmp_path / "lab").mkdir()

@@ -48,6 +48,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
     assert "/room/ear" in machine.look("node", "list")
 
 
+@slow
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [

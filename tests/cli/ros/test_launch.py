@@ -139,6 +139,7 @@ def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
     machine.run("down")
 
 
+@slow
 def test_json(machine: Machine, tmp_path: Path) -> None:
     """Events are lines of JSON, as by `up --json`; with -p, the plan is."""
     file = tmp_path / "a.launch.xml"

@@ -14,6 +14,7 @@ pytestmark = pytest.mark.real
 LISTED = "- {} [{}]\n\tStart: {}\n\tGoal: {}\n"
 
 
+@slow
 def test_a_life(machine: Machine) -> None:
     """The supervisor activates the node; the verbs deactivate and activate it, with ROS 2's output."""
     machine.run("up", "-d", "graphs/lifecycle.yaml")

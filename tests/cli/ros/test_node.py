@@ -7,6 +7,7 @@ import json
 import pytest
 
 from graphflow.cli.ros.node import _warn_of_twins
+from tests.cases import slow
 from tests.conftest import Machine
 
 NODES = ["/fibonacci_server", "/listener", "/office/auditor", "/office/clerk", "/talker"]
@@ -20,6 +21,7 @@ def test_list(standing: Machine) -> None:
     assert json.loads(standing.look("node", "list", "--json")) == NODES
 
 
+@slow
 @pytest.mark.real
 def test_hidden_nodes_are_listed_when_asked_for(standing: Machine) -> None:
     """A command that takes part in the graph is a node, which `-a` shows."""

@@ -29,6 +29,7 @@ def test_list(machine: Machine, robot: Path) -> None:
     assert {"my_robot", "turtlesim", "demo_nodes_cpp", "std_msgs"} <= {*names}
 
 
+@slow
 def test_executables(machine: Machine, robot: Path) -> None:
     """Executables of all packages or of one are listed, as in ROS 2, or their paths."""
     names = ("draw_square", "mimic", "turtle_teleop_key", "turtlesim_node")

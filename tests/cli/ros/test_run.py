@@ -141,6 +141,7 @@ def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: P
     assert node.end() == 0
 
 
+@slow
 def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machine, tmp_path: Path) -> None:
     """A handler that blocks the loop cannot be cancelled: the second Ctrl-C ends the process."""
     shutil.copy(PROGRAMS / "run" / "stuck.py", tmp_path)
@@ -181,6 +182,7 @@ def test_a_command_before_it(machine: Machine) -> None:
     assert "there is no program 'no-such-program' on the PATH" in machine.run(*words, code=2)
 
 
+@slow
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -16,7 +16,7 @@ from graphflow.markup.source import read
 from graphflow.msgs import registry
 from graphflow.msgs.geometry_msgs.msg import Pose, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterEvent, ParameterValue
-from tests.cases import count
+from tests.cases import count, slow
 
 
 def test_plain_is_made_of_dicts_lists_and_scalars() -> None:
@@ -145,6 +145,7 @@ DATA = st.recursive(
 )
 
 
+@slow
 @settings(derandomize=True, max_examples=count(few=100, full=400), deadline=None)
 @given(st.dictionaries(FIELDS, DATA, min_size=1, max_size=4))
 def test_what_is_printed_reads_back_as_the_same_data(data: dict[str, Any]) -> None:

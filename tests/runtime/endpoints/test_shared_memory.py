@@ -26,6 +26,7 @@ from graphflow.transport.config import config, open_session
 from graphflow.transport.rendezvous import free_endpoint
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.shared_memory import Reader, reader_token
+from tests.cases import slow
 from tests.conftest import LIMIT
 
 shares = pytest.mark.skipif(is_portable(), reason="memory cannot be shared here")
@@ -147,6 +148,7 @@ class TestOverZenoh:
         with pytest.raises(ValueError, match="read-only"):
             pair.heard[0].data[0] = 1
 
+    @slow
     async def test_images_that_are_kept_stay(self, pair: Pair) -> None:
         """More of them than the publisher has slots for, none of them changed by those that come later."""
         await pair.listen()

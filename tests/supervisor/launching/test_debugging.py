@@ -13,6 +13,7 @@ import pytest
 from graphflow.errors import GraphFileError, GraphflowError, Place
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.supervisor.launching.debugging import debugged, wait_for_debugger
+from tests.cases import slow
 from tests.conftest import Machine
 
 HERE = Place("g.yaml", 1)
@@ -71,6 +72,7 @@ def test_the_port_is_told_before_the_wait(monkeypatch: pytest.MonkeyPatch) -> No
     assert story == [4711, "waits"]
 
 
+@slow
 @pytest.mark.real
 def test_a_node_waits_for_its_debugger(machine: Machine, tmp_path: Path) -> None:
     """The port is told; the other nodes go on; when a debugger has attached, so does it."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROGRAMS
 
 pytestmark = pytest.mark.real
@@ -178,6 +179,7 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
     ]
 
 
+@slow
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
@@ -275,6 +277,7 @@ def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> 
     assert problem["message"].startswith(message)
 
 
+@slow
 @pytest.mark.parametrize("mark", [b"\xef\xbb\xbf", b"# coding: latin-1\n# \xe4\n"])
 def test_an_encoding(tmp_path: Path, mark: bytes) -> None:
     """It is the one that Python would read the file with."""
@@ -390,6 +393,7 @@ def test_what_is_set_is_known_to_functions(tmp_path: Path) -> None:
     assert last["log"]["message"] == "7out7"
 
 
+@slow
 def test_a_file_that_is_about_to_be_started(tmp_path: Path) -> None:
     """Its packages are where they are, it may import from them, and its functions are told what they ask for."""
     robot = tmp_path / "src" / "robot"
@@ -558,6 +562,7 @@ def test_conditions_that_are_compared(tmp_path: Path) -> None:
     assert remarks == []
 
 
+@slow
 def test_arguments_in_no_description(tmp_path: Path) -> None:
     """One that is asked for is a problem, unless it is given all the same; others are told of."""
     node = "return LaunchDescription([Node(package='demo_nodes_py', executable='talker', name=x)])"

@@ -54,6 +54,7 @@ def test_the_end_of_a_supervisor(tmp_path: Path, end: str, code: int) -> None:
         assert not list(run_in.glob("graphflow/*/*"))
 
 
+@slow
 @pytest.mark.parametrize("is_held", [True, False])
 def test_a_guardian_that_can_write_nothing(tmp_path: Path, is_held: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run directory that the next graph has taken is left to it, a lost folder of logs costs the line; all ends."""
@@ -122,6 +123,7 @@ def test_killed_processes_leave_nothing(machine: Machine, project: Path, nursery
         assert "everybody goes to bed" in (logs / f"{name}.log").read_text()
 
 
+@slow
 def test_what_a_node_leaves_behind_goes_with_it(machine: Machine, nursery: list[int]) -> None:
     """Also what is in a session of its own; what belongs to another node stays."""
     node = role(machine, "node")

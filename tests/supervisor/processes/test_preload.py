@@ -66,6 +66,7 @@ def test_an_impossible_environment_fails_its_node_only(machine: Machine, project
     assert "cannot be started" in up.text
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
 def test_what_a_node_has_started_goes_with_it(machine: Machine, project: Path, how: int) -> None:

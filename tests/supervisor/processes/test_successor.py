@@ -87,6 +87,7 @@ def test_what_is_left_of_a_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
             process.wait()
 
 
+@slow
 def test_the_end_of_its_supervisor(tmp_path: Path) -> None:
     """It ends what is left, and says so in the log."""
     note = {"domain": 7, "graph": "lab", "pid": 5, "logs": str(tmp_path)}

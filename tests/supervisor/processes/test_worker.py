@@ -222,6 +222,7 @@ def test_an_error_that_was_raised_in_the_users_code() -> None:
     assert _one_line(GraphflowError(f"{line}: no").with_traceback(caught.tb)) == f"{line}: no"
 
 
+@slow
 @pytest.mark.real
 def test_nobody_loads_nodes_over_the_network(machine: Machine, project: Path) -> None:
     """Unless the graph file allows it."""

@@ -6,7 +6,7 @@ import pytest
 
 from graphflow.tui.commands.command_line import CommandLine
 from graphflow.tui.panes import Content
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -35,6 +35,7 @@ async def test_what_is_typed(text: str, opens: str) -> None:
         assert str(s.view.content) == opens
 
 
+@slow
 async def test_words_of_the_consoles_own() -> None:
     """Layouts are applied; an empty line does nothing."""
     async with stage(Content("nodes")) as s:

@@ -11,7 +11,7 @@ from graphflow.console.views import VIEWS
 from graphflow.testing import Graph
 from graphflow.tui.commands.completion import Completer, completed, nothing_to_complete
 from graphflow.tui.panes import Content
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import stage
 
@@ -78,6 +78,7 @@ class Slow(Completer):
         return f"{line}ho ", [f"{line}ho"]
 
 
+@slow
 @pytest.mark.parametrize(("typed", "expected"), [("topic ec/chatter", "topic echo /chatter"), ("top", "top")])
 async def test_what_is_typed_meanwhile_is_kept(typed: str, expected: str) -> None:
     """Text typed meanwhile stays after the completion, or in its place."""

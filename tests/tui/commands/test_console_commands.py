@@ -108,6 +108,7 @@ async def test_alt_and_a_digit_as_old_terminals_send_it() -> None:
         assert s.console.window.layout == "even-vertical"
 
 
+@slow
 async def test_the_prefix_itself() -> None:
     """Typed twice, the prefix goes through; an unknown key is reported; escape cancels; a pause shows the keys."""
     async with stage(Content("prompt")) as s:

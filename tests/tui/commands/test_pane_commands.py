@@ -99,6 +99,7 @@ async def test_windows(focused: str) -> None:
         assert windows.current == 2
 
 
+@slow
 @pytest.mark.parametrize(
     ("size", "view", "where"),
     [

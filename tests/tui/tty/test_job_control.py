@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_without_a_shell() -> None:
     """Without a shell, as in a browser, the console says so and is not suspended."""
     async with stage() as s:

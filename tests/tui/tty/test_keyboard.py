@@ -8,6 +8,7 @@ from textual.widgets import Input
 
 from graphflow.tui.panes import Content
 from graphflow.tui.tty import keyboard
+from tests.cases import slow
 from tests.tui.stage import Stage, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -40,6 +41,7 @@ async def test_letters_and_keys_that_are_bound() -> None:
         assert s.view.query_one("Input.line", Input).value == "dxyacbz"
 
 
+@slow
 async def test_after_a_pane_that_goes() -> None:
     """A key may remove its own target; the next key goes to the following pane."""
     async with stage(Content("nodes")) as s:
@@ -49,6 +51,7 @@ async def test_after_a_pane_that_goes() -> None:
         assert "Stop /" in s.text
 
 
+@slow
 async def test_focus_that_was_lost() -> None:
     """If the focused widget is hidden, the next key restores the focus of the pane."""
     async with stage(Content("nodes")) as s:

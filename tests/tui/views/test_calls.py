@@ -7,6 +7,7 @@ from textual.widgets import Input
 
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import Stage, stage
 
@@ -49,6 +50,7 @@ async def test_calling(graph: Graph) -> None:
         await s.until("services")
 
 
+@slow
 async def test_requests_of_earlier_consoles(graph: Graph) -> None:
     """Earlier requests come from the command history, typed commands included."""
     await graph.start(Talker())

@@ -173,6 +173,7 @@ async def test_a_race(graph: Graph) -> None:
         await s.until("test_groups.py:3")
 
 
+@slow
 async def test_a_thread_for_a_node_that_others_have_started(graph: Graph) -> None:
     """A thread for a node of others requires a change of its code."""
     async with stage(Content("groups"), graph=graph, supervised=False) as s:

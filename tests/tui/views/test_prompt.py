@@ -34,6 +34,7 @@ async def test_output_streams_and_exit_codes_are_told() -> None:
         assert "\x1b" not in s.text
 
 
+@slow
 async def test_ctrl_c_ends_the_verb_and_nothing_else() -> None:
     """Ctrl-C interrupts the command, as in a terminal; the console stays."""
     async with stage(Content("prompt")) as s:
@@ -116,6 +117,7 @@ async def test_completion(graph: Graph) -> None:
         await s.until(lambda: s.view.query_one(Input).value == "topic echo /chatter ")
 
 
+@slow
 async def test_what_comes_too_fast_is_counted() -> None:
     """The pane keeps up; lines left out are counted."""
     async with stage(Content("prompt")) as s:

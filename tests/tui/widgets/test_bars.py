@@ -12,6 +12,7 @@ from graphflow.machines.process import State
 from graphflow.tui.feeds.supervision import NodeRow
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets.bars import MARKS, SEEN_AFTER, displayed_state
+from tests.cases import slow
 from tests.tui.stage import record, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -42,6 +43,7 @@ async def test_the_bottom_lines_on_80_columns() -> None:
         assert status.endswith("●2  ^b ? help  ^b d leave")
 
 
+@slow
 async def test_what_is_wrong_with_the_graph() -> None:
     """Unseen errors are shown with their key, and so are races."""
     async with stage(Content("nodes"), size=(110, 24)) as s:
@@ -130,6 +132,7 @@ async def test_what_went_wrong_stays_until_it_is_seen() -> None:
         assert "$ graphflow restart /arm" in s.text
 
 
+@slow
 async def test_a_message_that_is_too_long() -> None:
     """A cut message says how to see all of it; a key dismisses it once it has been seen."""
     async with stage(size=(60, 20)) as s:

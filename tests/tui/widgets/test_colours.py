@@ -12,6 +12,7 @@ from textual.theme import Theme
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets.colours import DARK, LIGHT
 from graphflow.tui.widgets.line_view import LineView
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -74,6 +75,7 @@ async def test_a_node_has_one_colour() -> None:
         assert s.console.colours.node("/a") == s.console.colours.node("/a")
 
 
+@slow
 async def test_lines_drawn_before_a_change_of_theme_follow_it() -> None:
     """Lines change with the theme, and back."""
     async with stage(Content("prompt")) as s:

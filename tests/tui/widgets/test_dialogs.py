@@ -38,6 +38,7 @@ async def test_a_line() -> None:
         assert answers == ["new"]
 
 
+@slow
 async def test_picking_by_parts_of_a_name() -> None:
     """The best match comes first; arrows select; brackets in names are no markup; long lists are bounded."""
     async with stage() as s:
@@ -81,6 +82,7 @@ async def test_nothing_to_pick() -> None:
         assert len(s.console.screen_stack) == 1
 
 
+@slow
 async def test_names_and_details_stay_apart() -> None:
     """On a narrow screen, too, each keeps to its line."""
     items = [Item(f"call /turtle1/{'a' * n}teleport", "turtlesim/srv/TeleportAbsolute", n) for n in (3, 30)]

@@ -12,6 +12,7 @@ from graphflow.msgs.turtlesim.srv import Spawn
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets import form as forms
 from graphflow.tui.widgets.form import Form, form_for
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -60,6 +61,7 @@ def test_a_type_that_is_not_known_here() -> None:
         form_for("nowhere/msg/Nothing")
 
 
+@slow
 async def test_from_line_to_line() -> None:
     """Tab, enter and arrows cycle through the lines; an invalid value is marked, and gets the focus."""
     async with stage(Content("nodes"), size=(60, 20)) as s:

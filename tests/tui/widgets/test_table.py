@@ -10,6 +10,7 @@ from textual.widgets import DataTable
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets import table
 from graphflow.tui.widgets.table import FIND, ORDER, Cells, TableView
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -91,6 +92,7 @@ async def test_an_order(monkeypatch: pytest.MonkeyPatch) -> None:
         assert view.content.options["order"] == "-value"
 
 
+@slow
 async def test_a_find_stays_in_the_title(monkeypatch: pytest.MonkeyPatch) -> None:
     """The title gives the number of matches; the search is restored with the windows."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)

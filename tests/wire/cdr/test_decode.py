@@ -13,6 +13,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.wire.cdr.codec import Codec
 from graphflow.wire.schema import Field, FieldType, Message
+from tests.cases import slow
 from tests.wire.messages import make, types_of
 
 
@@ -137,6 +138,7 @@ def table(rows: int, cells: int) -> bytes:
     return b"\0\1\0\0" + rows.to_bytes(4, "little") + row * rows
 
 
+@slow
 def test_lists_of_more_values_than_allowed() -> None:
     """Are refused by their counts before objects are made of them, lists in lists counted together."""
     decode = Codec(TABLE, TYPES._replace(values=1_000 * 2 + 1_000 * 100)).decode

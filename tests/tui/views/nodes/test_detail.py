@@ -29,6 +29,7 @@ def title(s: Stage) -> str:
     return next(line for line in s.text.split("\n") if "params topics" in line or "[params]" in line).strip(" ▌")
 
 
+@slow
 async def test_a_narrow_pane(graph: Graph) -> None:
     """In a narrow pane the title names the open tab, and the number of tabs."""
     await graph.start(Talker())

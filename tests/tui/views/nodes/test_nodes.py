@@ -18,6 +18,7 @@ from graphflow.system import host_name
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.nodes.nodes import LABEL, Costs, Nodes, _label
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import Supervised, record, stage
 
@@ -130,6 +131,7 @@ def test_costs() -> None:
     assert costs.look(2**30) is None
 
 
+@slow
 async def test_columns_go_where_there_is_no_room_for_them() -> None:
     """Columns without room are hidden whole: numbers are never cut."""
     async with stage(Content("nodes"), size=(32, 20)) as s:
@@ -140,6 +142,7 @@ async def test_columns_go_where_there_is_no_room_for_them() -> None:
         await s.until("cpu")
 
 
+@slow
 async def test_a_node_in_a_ring_says_so(graph: Graph) -> None:
     """A deadlocked node is marked even though its process runs."""
     async with stage(Content("nodes"), graph=graph) as s:
@@ -198,6 +201,7 @@ async def test_groups_of_nodes() -> None:
         assert "▾" not in s.text
 
 
+@slow
 async def test_a_life_cycle(graph: Graph) -> None:
     """t offers the transitions available now, and requests one; other nodes have none."""
     node = Lived()

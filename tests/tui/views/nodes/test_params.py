@@ -46,6 +46,7 @@ async def test_what_is_shown(graph: Graph, tmp_path: Path) -> None:
         assert "changed" in row(s, "rate")
 
 
+@slow
 async def test_changing(graph: Graph) -> None:
     """Enter edits; a refused value is reported with its reason and not kept; the command is shown."""
     node = Talker()

@@ -7,6 +7,7 @@ import pytest
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import Stage, stage
 
@@ -36,6 +37,7 @@ async def test_the_latest_message(graph: Graph) -> None:
         assert "red" in s.text
 
 
+@slow
 async def test_one_after_the_other(graph: Graph) -> None:
     """Messages between two updates are counted."""
     node = Talker()

@@ -8,6 +8,7 @@ from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.topics import plot
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
@@ -99,6 +100,7 @@ async def test_a_pause_and_the_end(graph: Graph) -> None:
         assert not view._monitor.is_open
 
 
+@slow
 async def test_fields_are_chosen_and_have_axes_of_their_own(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Fields are chosen one by one until escape; curves that stay keep their samples."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)

@@ -19,7 +19,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.deadlock import stacks, waiting
 from rclpy.node import Node
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.flat import flat
 from tests.rclpy import planted, waiting_programs
 
@@ -162,6 +162,7 @@ class TwoServers(planted.Asker):
         self.done.set()
 
 
+@slow
 def test_of_two_servers_another_may_answer(
     start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -222,6 +223,7 @@ def test_a_server_that_nobody_spins(caplog: pytest.LogCaptureFixture, network: o
     rclpy.shutdown()
 
 
+@slow
 def test_a_lock_of_a_thread_that_asks(caplog: pytest.LogCaptureFixture, network: object) -> None:
     """And which the service wants that answers."""
     rclpy.init()
@@ -248,6 +250,7 @@ def spin(executor: Executor) -> None:
         executor.spin()
 
 
+@slow
 def test_what_stands_still_is_looked_into_again(start: Callable[[type[Any]], Program]) -> None:
     """The same line may wait for something else by then."""
     program = start(planted.Sleeper)

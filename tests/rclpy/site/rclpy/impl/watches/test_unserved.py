@@ -22,6 +22,7 @@ from rclpy.impl.watches import unserved
 from rclpy.impl.watches.unserved import Unserved
 from rclpy.node import Node
 from rclpy.parameter_client import AsyncParameterClient
+from tests.cases import slow
 
 Caplog = pytest.LogCaptureFixture
 LIMIT = 10.0
@@ -189,6 +190,7 @@ def test_a_wait_of_which_the_search_tells(node: Node, caplog: Caplog, monkeypatc
     assert told(caplog) == []
 
 
+@slow
 def test_a_program_that_asks_now_and_then(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Does without the server: the time between its waits does not count."""
     monkeypatch.setattr(unserved, "WARN_AFTER", 1.0)
