@@ -194,6 +194,7 @@ def _flow(value: object) -> Any:
 def _yaml(text: str) -> YAML:
     yaml = YAML()
     yaml.preserve_quotes = True
+    # ruamel.yaml would write [{a: 1}] as [a: 1].
     yaml.brace_single_entry_mapping_in_flow_sequence = True
     yaml.width = _WIDTH
     indent = _indent(text)

@@ -44,6 +44,7 @@ class Section(NamedTuple):
     def fits(self, node: str) -> bool:
         """Return whether the section matches a node's full name."""
         parts = [{"**": ".*", "*": "[^/]+"}.get(p, re.escape(p)) for p in self.pattern[1:].split("/")]
+        # `**` also matches no part at all, so the slash behind it is optional.
         return re.fullmatch("/" + "/".join(parts).replace(".*/", "(?:.*/)?"), node) is not None
 
 
@@ -232,6 +233,7 @@ def _value(value: object) -> str:
             return ".nan"
         if math.isinf(value):
             return ".inf" if value > 0 else "-.inf"
+        # PyYAML and YAML 1.1 take 1e-07 for text; a number with an exponent needs its point there.
         text = repr(value)
         return text if "." in text or "e" not in text else text.replace("e", ".0e", 1)
     if isinstance(value, (list, tuple, bytes)):
@@ -244,4 +246,5 @@ def _value(value: object) -> str:
 def _quoted(text: str) -> str:
     if text.isprintable():
         return "'" + text.replace("'", "''") + "'"
+    # Only double quotes know escapes.
     return '"' + text.encode("unicode_escape").decode().replace('"', '\\"') + '"'

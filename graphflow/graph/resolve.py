@@ -115,6 +115,7 @@ def _resolve(
     expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
     problems.forget(map(str, programs.left_out))
     problems.left_out += programs.left_out.values()
+    # Programs that are not installed are no mistake of a launch file, unless nothing else is left of it.
     if nodes:
         problems.remarks += problems.left_out
     else:
@@ -184,6 +185,7 @@ class _Programs:
 
     @property
     def _path(self) -> str | None:
+        # That of the environment in which the graph will run, which need not be this process's.
         return self._outside.env.get("PATH")
 
     def _executable(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
@@ -417,6 +419,7 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
                         f"{match!r} cannot be remapped; a node's name is its key, its namespace goes under namespace:"
                     )
                 check_references(replacement, Resolver(name, namespace).pattern(match))
+                # References such as \1 stand for parts that are not known yet; the rest must be a legal name.
                 expand(re.sub(r"\\\d", "x", replacement), namespace, name)
             except InvalidName as error:
                 problems.add(place, str(error))

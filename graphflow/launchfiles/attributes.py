@@ -73,6 +73,7 @@ def unescaped(item: Item) -> Item:
         parts = list(spans(item.value))
     except UnclosedError:  # reported where the substitution is made
         return item
+    # `\$(` without its backslash would be a substitution.
     texts = (f"$({p})" if is_inside else _ESCAPED.sub(r"\1", p).replace("$(", r"\$(") for p, is_inside in parts)
     return item.with_value("".join(texts))
 
@@ -92,6 +93,7 @@ def split(text: str, words_of: Callable[[str], list[str]] = shlex.split) -> list
         ValueError: A quote is not closed.
     """
     spans: list[str] = []
+    # The text itself must not contain what is taken for a placeholder.
     rest, kept = text.replace("\ue000", " "), ""
     while (begin := rest.find("$(")) >= 0 and (end := _end(rest, begin + 2)):
         kept += f"{rest[:begin]}\ue000{len(spans)}\ue001"

@@ -23,8 +23,9 @@ def plain_words(line: str) -> list[str]:
 
 def _plain(line: str) -> list[str]:
     reader = shlex.shlex(line, posix=True, punctuation_chars=";|&<>")
+    # Else shlex ends a word at each character that it does not expect in one, such as : and {.
     reader.whitespace_split = True
-    reader.commenters = ""
+    reader.commenters = ""  # as in `shlex.split`
     words = list(reader)
     return [] if any(word and not word.strip(";|&<>") for word in words) else words
 
@@ -51,6 +52,7 @@ def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str
         case ["ros2", "service", "call", name, type_, *values]:
             return _sent("call", name, type_, values, command, complain)
         case ["ros2", "action", "send_goal", name, type_, *values]:
+            # Options such as --feedback are for the terminal.
             fields = [value for value in values if not value.startswith("-")]
             return _sent("goal", name, type_, fields, command, complain)
         case ["ros2", "param", "set", node, parameter, value]:

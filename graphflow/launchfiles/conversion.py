@@ -155,7 +155,9 @@ class _Translation:
         nothing = Item("", item.place)
         if name == "let":
             variable = item.entries.get("name", nothing)
+            # If the condition does not hold, the variable keeps its former value.
             value = conditional(item, item.entries.get("value", nothing), f"$(var {variable.value} '')")
+            # A loop over one value binds the variable for all later actions.
             loop = {"var": variable, "in": Item([as_text(value)], item.place), **self._block(after)}
             return item.with_value({"for": Item(loop, item.place)})
         key, value = setting(name, item, self._complain)
@@ -298,6 +300,7 @@ class _Translation:
         if words:
             place = item.entries.get("args", item.entries.get("ros_args", name)).place
             entries["args"] = Item([Item(word, place) for word in words], place, place)
+        # As in launch: without a name no `__node` rule is given, and all nodes of the program keep theirs.
         if "name" not in item.entries:
             entries["keep_names"] = Item(True, name.place, name.key)
         return entries
@@ -318,6 +321,7 @@ class _Translation:
             self._complain(command.place, f"cmd: {error}")
             return
         needs_shell = has_value(item, "shell", "true", "1")
+        # launch fails only when it starts the command, which a condition may prevent.
         may_not_run = "if" in item.entries or "unless" in item.entries
         if is_list and not (needs_shell or may_not_run) and (fault := one_word_fault(texts)):
             self._complain(command.place, fault)

@@ -81,6 +81,7 @@ def pair(item: Item, key: str, value: str, complain: Complain, *, is_written: bo
         complain(item.at, f"the attribute {key!r} is missing; one is written {key}: ..., {value}: ...")
         return Item({}, item.place)
     found = item.entries.get(value, Item("", item.place))
+    # With a value, an unknown attribute is reported elsewhere; without, it was probably meant as the value.
     others = () if value in item.entries else sorted(item.entries.keys() - {key, "if", "unless", "type", "default"})
     for strange in others:
         complain(item.entries[strange].at, f"unknown attribute {strange!r}{did_you_mean(strange, (value,))}")
@@ -162,6 +163,7 @@ def parameter(item: Item, kind: str, complain: Complain) -> Item:
         kind = kind or "yaml"
     value = item.plain()
     if isinstance(value, str) and "$(" in value:
+        # Everything else is a text that substitutions are part of, as in launch, and is parsed when they are made.
         if _VARIABLE.match(value) and kind in ("", "yaml"):  # `$(var x)` alone keeps the type of x
             return item
         return item.with_value(f"$(as {kind or 'yaml'} {as_word(value)})")

@@ -46,8 +46,10 @@ def evaluate(text: str, names: Mapping[str, Data]) -> Data:
         functions=dict(FUNCTIONS),  # a copy: simpleeval adds to it
         names={"math": _MATH, **names, "true": True, "false": False, "pi": math.pi},
     )
+    # These could make great values before `_bounded` sees them.
     for kind in (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr):
         evaluator.nodes.pop(kind, None)
+    # Only entries of mappings: by Python's attributes an expression would reach everything.
     evaluator.nodes[ast.Attribute] = lambda node: _entry(evaluator._eval(node.value), node.attr)
     try:
         ast.parse(text.strip(), mode="eval")  # simpleeval would accept a statement, too

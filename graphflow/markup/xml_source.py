@@ -70,6 +70,7 @@ class _Reader:
         self._parser.StartElementHandler = self._begin
         self._parser.EndElementHandler = self._end
         self._parser.CharacterDataHandler = self._text
+        # Entities are declared there: without them, a small file cannot grow without end.
         self._parser.StartDoctypeDeclHandler = self._refuse
         try:
             self._parser.Parse(data, True)

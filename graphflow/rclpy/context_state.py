@@ -110,6 +110,7 @@ class ContextState:
 
     def end(self) -> bool:
         """Mark the context as ended and wake all waiting threads; return whether it was still running. Signal-safe."""
+        # No lock: a signal handler may have interrupted the thread that holds it.
         was_ok, self.is_ok = self.is_ok, False
         for wake in list(self._wakes):
             wake.set()

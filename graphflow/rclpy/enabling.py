@@ -5,6 +5,7 @@ A sourced ROS 2 takes precedence: graphflow's packages then stay out of the way.
 
 from __future__ import annotations
 
+# Only light modules: Python imports this one at each start once rclpy is enabled.
 import importlib.machinery
 import os
 import sys
@@ -15,6 +16,7 @@ FILE = "graphflow-rclpy.pth"
 """The `.pth` file that `enable` writes into site-packages; Python runs its line at every start."""
 TYPINGS = "graphflow-rclpy"
 """The folder beside it with the message stubs for editors."""
+# `find_spec` first: the file may outlive graphflow, and each start of Python would report an error.
 LINES = f"""{SITE}
 {TYPINGS}
 import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.site_hook")
@@ -43,6 +45,7 @@ def here() -> bool:
         sys.path[:] = [entry for entry in sys.path if entry not in (SITE, typings())]
         return False
     if SITE not in sys.path:
+        # Last: the user's own modules of these names have precedence.
         sys.path.append(SITE)
     from graphflow.rclpy.messages.finder import install, prefer_own
 

@@ -59,6 +59,7 @@ class LoopThread:
     def call(self, fn: Callable[..., T], *args: Any) -> T:
         """Call `fn(*args)` on the loop, and block until it returns or raises."""
         loop = self.start()
+        # It would wait for itself.
         if self.is_here:
             return fn(*args)
         outcome: concurrent.futures.Future[T] = concurrent.futures.Future()

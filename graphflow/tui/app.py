@@ -37,7 +37,7 @@ PULSE = 0.05
 class MainScreen(Screen[object], inherit_bindings=False):
     """The screen of the panes. Tab and Ctrl-C go to the panes, not to Textual."""
 
-    AUTO_FOCUS = ""
+    AUTO_FOCUS = ""  # the workspace moves the focus itself
 
 
 class Console(ConsoleApp):
@@ -54,6 +54,7 @@ class Console(ConsoleApp):
     CSS_PATH = "app.tcss"
     ENABLE_COMMAND_PALETTE = False
     BINDINGS: ClassVar[list[BindingType]] = [
+        # With priority a key is the console's even while an input has the focus, which takes the others as text.
         Binding(",".join(action.keys), f"do('{action.name}')", action.title, show=False, priority="ctrl+" in key)
         for action in console_actions()
         for key in action.keys[:1]
@@ -202,9 +203,11 @@ class Console(ConsoleApp):
         self._beats += 1
         if self._beats % 2 == 0:
             self.hub.logs.read()
+        # Behind a dialog, panes are updated only twice a second.
         if self.screen is self.screen_stack[0] or self._beats % 10 == 0:
             for frame in self.workspace.visible_frames:
                 view = frame.view
+                # Half a pulse less: the timer is not exact, and a view that is nearly due would wait for another one.
                 if view.is_mounted and now - view.looked >= view.EVERY - PULSE / 2:
                     view.looked = now
                     view.look(now)

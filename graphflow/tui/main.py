@@ -66,9 +66,10 @@ def open_console(
         if not how.startswith("switch "):
             return Left(how, run, exit_code)
         socket = how.removeprefix("switch ")
+        # The chosen graph may have ended meanwhile; then the console returns to the one before.
         run = next((r for r in running() if r.socket == socket), run)
         assert run is not None
-        domain, layout = run.domain, None
+        domain, layout = run.domain, None  # which was for the first graph only
 
 
 def _show(

@@ -176,8 +176,10 @@ class Workspace(Widget):
         wanted = {p.number: p for w in self.windows.windows.values() for p in w.panes()}
         for number in [n for n in self.frames if n not in wanted]:
             self.frames.pop(number).remove()
+        # Before the first layout there is no size, and nothing to leave out.
         places = self.window.places(*self.size) if self.size else dict.fromkeys(self.window.numbers)
         for number, pane in wanted.items():
+            # Views of other windows are made when their window is first shown.
             if number not in self.frames and number in places:
                 self.frames[number] = frame = Frame(number, self._make_view(pane.content))
                 self.mount(frame)
@@ -293,6 +295,7 @@ class Workspace(Widget):
         to = int(event.x) if divider.split.axis == "columns" else int(event.y)
         if drag(divider, to):
             self._place_again()
+            # A divider has the place at which it was; the next move begins at its new one.
             self._dragged = next(
                 (
                     d

@@ -289,6 +289,7 @@ def _splits(node: Pane | Split) -> Iterator[Split]:
 def _sizes(shares: list[float], room: int) -> list[int]:
     """Divide `room` into whole cells in proportion to the shares."""
     total = sum(shares) or 1.0
+    # Edges are rounded and not sizes, which therefore add up to the room.
     edges = [round(room * part / total) for part in itertools.accumulate(shares, initial=0.0)]
     return [b - a for a, b in itertools.pairwise(edges)]
 
@@ -296,7 +297,7 @@ def _sizes(shares: list[float], room: int) -> list[int]:
 def _parts(split: Split, place: Rect) -> list[Rect]:
     if split.axis == "columns":
         sizes = _sizes([n.share for n in split.of], place.width - len(split.of) + 1)
-        starts = itertools.accumulate([size + 1 for size in sizes], initial=place.x)
+        starts = itertools.accumulate([size + 1 for size in sizes], initial=place.x)  # one more than there are parts
         return [Rect(x, place.y, size, place.height) for x, size in zip(starts, sizes, strict=False)]
     sizes = _sizes([n.share for n in split.of], place.height)
     starts = itertools.accumulate(sizes, initial=place.y)

@@ -24,6 +24,7 @@ class OwnPageServer(Server):
         @web.middleware
         async def refuse_others(request: web.Request, handler: Handler) -> web.StreamResponse:
             origin = request.headers.get("Origin")
+            # The host, too: another name may be made to resolve to this address (DNS rebinding).
             if request.host not in hosts or (origin is not None and urlsplit(origin).netloc not in hosts):
                 raise web.HTTPForbidden(text="this console can be used from its own page only")
             return await handler(request)

@@ -360,6 +360,7 @@ def _listing(folder: Path) -> tuple[list[str], set[str]]:
         _, folders, files = next(os.walk(folder), ("", [], []))
     except OSError:
         return [], set()
+    # Links may lead in a circle.
     return sorted(f for f in folders if not (folder / f).is_symlink()), set(files)
 
 

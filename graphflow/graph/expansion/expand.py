@@ -181,6 +181,7 @@ class Expansion:
         changes = [o for o in (block.entries.get("override"), overridden) if o is not None]
         for change in changes:
             self._override(self._values.substituted(change, scope), set(self.nodes) - before, scope)
+        # Templates of the including file have precedence over those of the included one.
         return replace(scope, templates={**templates, **scope.templates})
 
     def _read(self, path: Path, place: Place, values: Mapping[str, object]) -> Item | None:
@@ -406,6 +407,7 @@ class Expansion:
                 text = f"{name} is already in the included file; change it under override:"
             else:
                 text = f"there is a step {name!r} already, at {first}; give this one another name"
+        # One place gives a name twice only in a loop.
         elif first == item.at:
             text = f"every round of the loop has the same {what[:-1]} {name}; put the loop's variable into its name"
         else:

@@ -126,6 +126,7 @@ def _set_remap(call: RecordedCall) -> Action:
 def _group(call: RecordedCall) -> Action:
     is_scoped, outer = bool(call.get("scoped", default=True)), (dict(RECORDING.set), dict(RECORDING.env))
     children = _actions(_actions_argument(call, 0))
+    # launch restores configurations and environment at the end of a scoped group; functions after it see neither.
     if is_scoped:
         RECORDING.set, RECORDING.env = outer
     return Action("group", {"scoped": is_scoped}, children=children)
@@ -282,6 +283,7 @@ def number_targets(described: object) -> None:
     while todo:
         one = todo.pop()
         if isinstance(one, (list, tuple)):
+            # The stack gives them back in the file's order, by which they are numbered.
             todo += reversed(one)
         elif isinstance(one, RecordedCall) and id(one) not in seen:  # a description may contain itself
             seen.add(id(one))
@@ -344,6 +346,7 @@ def _made_by(code: Callable[[], list[object]], call: RecordedCall) -> list[Actio
     if RECORDING.values is None:
         message = f"{call.kind}: it was called once, with $(var ...) in place of each value; check its result"
         RECORDING.problem(call, message)
+    # Saved, since this code may execute an action with code of its own.
     outer, before = _carried_out[:], dict(RECORDING.set)
     _carried_out.clear()
     returned = code()

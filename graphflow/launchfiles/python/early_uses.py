@@ -64,6 +64,7 @@ def _nodes_in(scope: ast.AST) -> Iterator[ast.AST]:
     """Yield the nodes of a scope, without the bodies of functions within it."""
     todo = list(ast.iter_child_nodes(scope))
     while todo:
+        # Breadth first: an expression comes before its parts, which `seen` then leaves out.
         node = todo.pop(0)
         yield node
         if not isinstance(node, _SCOPES):

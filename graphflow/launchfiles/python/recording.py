@@ -90,6 +90,7 @@ class Recording:
     def arguments(self) -> dict[str, str]:
         """Return the known launch configurations: given arguments, defaults, and values set so far."""
         found = dict(self.values or {})
+        # In the order of declaration: a default may use the arguments before it.
         for name, default in self.defaults.items():
             if name not in found:
                 found[name] = self._made(default, found)

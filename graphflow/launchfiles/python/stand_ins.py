@@ -39,6 +39,7 @@ class Configurations(UserDict[str, str]):
         self.data.update(RECORDING.arguments())
 
     def __setitem__(self, name: str, value: object) -> None:
+        # A new mapping is made for each access, so what is set must outlive it.
         self.data[name] = RECORDING.set[name] = as_text(value)
 
 
@@ -197,7 +198,7 @@ def _substitution(call: RecordedCall) -> str:
     first = call.args[0] if call.args else next(iter(call.kwargs.values()), "")
     name, optional = _WITH_DEFAULT.get(call.kind, ("", ""))
     if name:
-        rest = call.get(optional, -1 if call.kind == "Parameter" else 1)
+        rest = call.get(optional, -1 if call.kind == "Parameter" else 1)  # keyword-only there
         return f"$({name} {_word(first)}{'' if rest is None else f' {_word(rest)}'})"
     if call.kind in _OF_ALL_ARGUMENTS:
         words = [_word("" if one is None else one) for one in call.args]
@@ -210,6 +211,7 @@ def _substitution(call: RecordedCall) -> str:
         case "ExecutableInPackage":
             return f"$(exec-in-pkg {_word(call.get('executable', 0))} {_word(call.get('package', 1))})"
         case "PathJoinSubstitution":
+            # As in launch: a part that begins with a slash drops those before it.
             return os.path.join("", *map(text, first))
         case "PythonExpression":
             expression = text(first)
@@ -267,6 +269,7 @@ def condition(call: RecordedCall) -> dict[str, str]:
     if call.kind in attributes:
         return {attributes[call.kind]: text(call.args[0] if call.args else "")}
     if call.kind in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
+        # `...ConfigurationEquals` ends so, and `...NotEquals` does not.
         comparison = "equals" if call.kind.endswith("nEquals") else "not-equals"
         variable, value = call.args
         return {"if": f"$({comparison} $(var {_word(variable)}) {_word(value)})"}
@@ -328,6 +331,7 @@ def _attribute(module: str, name: str) -> Any:
         raise ImportError(f"{module} has no {name}; write: from {elsewhere} import {name}", name=module)
     if name in OWN:
         return OWN[name]
+    # Classes are in CamelCase. `matches_action` is a function in launch, but its call must be recorded.
     return stand_in_of(name) if name[:1].isupper() or name.startswith("matches_") else _function(module, name)
 
 

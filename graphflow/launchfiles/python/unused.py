@@ -23,6 +23,7 @@ class Unused(NamedTuple):
 def unused_actions(tree: ast.Module) -> Iterator[Unused]:
     """Yield the actions assigned to a name that the file never reads."""
     read = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
+    # The file may collect its actions by name.
     if "locals" in read or "globals" in read:
         return
     for function in ast.walk(tree):

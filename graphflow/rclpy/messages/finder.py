@@ -133,6 +133,7 @@ class WorkspacePackages:
                 self._roots = []
             finally:
                 self._is_looking = False
+            # The finder of message packages was asked before this workspace was known.
             if is_package(fullname):
                 return MessagePackages().find_spec(fullname, path, target)
         *above, _ = fullname.split(".")
@@ -199,6 +200,7 @@ def _folder(package: str) -> str | None:
 def install() -> None:
     """Install the hook for message packages."""
     if not any(isinstance(finder, MessagePackages) for finder in sys.meta_path):
+        # Before Python's own finder, which takes a source folder such as my_msgs/ for a namespace package.
         sys.meta_path.insert(0, MessagePackages())
 
 

@@ -192,6 +192,7 @@ def _numbers(code: str, fits: Callable[[int], bool], plain: Callable[[object], l
             made = array(code, value)
         if made is None:
             made = array(code, plain(value))  # raises for the element that does not fit
+        # `array('f')` makes infinity of a number that is too large; `plain` tells it from one that was given.
         if not fits(len(made)) or (code == "f" and any(map(math.isinf, made))):
             plain(value)
         return made

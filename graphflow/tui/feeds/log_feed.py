@@ -162,6 +162,7 @@ class Logs:
         """Read new records from all files; return their number."""
         fresh = [record for file in self._files.values() for record in file.read()]
         if len(self._files) > 1 and fresh:
+            # A stable sort: the lines of a traceback have the stamp of its first line, and stay behind it.
             fresh.sort(key=lambda record: record.stamp)
         self.add(fresh)
         return len(fresh)
@@ -189,6 +190,7 @@ class Logs:
                 self.races.append(self._report[record.node])
             return
         self.errors[record.node] += 1
+        # Taken out first, so that it becomes the last of the dict.
         self.last_error.pop(record.node, None)
         self.last_error[record.node] = record
 

@@ -14,6 +14,7 @@ LIMIT = 2.0
 def program() -> tuple[str, ...]:
     """Return the command line of a program that copies its input; empty if there is none."""
     candidates: list[tuple[bool, tuple[str, ...]]] = [
+        # With -w tmux also passes the text on to the clipboard of its terminal.
         (bool(os.environ.get("TMUX")), ("tmux", "load-buffer", "-w", "-")),
         (bool(os.environ.get("WAYLAND_DISPLAY")), ("wl-copy",)),
         (bool(os.environ.get("DISPLAY")), ("xclip", "-selection", "clipboard")),

@@ -134,6 +134,7 @@ class Drawing:
         while self.recent and self.recent[0].at < asked:
             self.recent.popleft()
         for turtle in self.turtles.values():
+            # A pose has no colour: the pen is that of the stroke which ends at the turtle.
             ends = ((math.hypot(s.points[-1][0] - turtle.x, s.points[-1][1] - turtle.y), s.colour) for s in lines)
             near = min(ends, default=(9.0, DEFAULT_PEN))
             if near[0] < 0.3:
@@ -207,6 +208,7 @@ class TurtleCanvas(Widget):
         for name in placed.keys() | self._placed.keys():
             if placed.get(name) != self._placed.get(name):
                 for at in (each[name] for each in (self._placed, placed) if name in each):
+                    # The ends of a name are enough: a region spans everything between the cells of a row.
                     changed |= {(at.column, at.row), *(at.named(name)[:: max(1, min(LONGEST, len(name)) - 1)])}
         self._placed = placed
         if is_new:

@@ -67,6 +67,7 @@ class Colours:
 
     def node(self, name: str) -> Style:
         """Return the colour of a node, the same in all views."""
+        # Not `hash`, which differs from process to process.
         return self.nodes[sum(name.encode()) % len(self.nodes)]
 
     def level(self, level: int) -> Style:
@@ -114,6 +115,7 @@ def make_colours(app: ThemedApp) -> Colours:
     variables = app.get_css_variables()
 
     def style(name: str, *, bold: bool = False) -> Style:
+        # None and not False, which would switch off the bold of a style that it is added to.
         return Style(color=_colour(variables.get(name)), bold=bold or None)
 
     names = _NODES_ANSI if theme.ansi else _NODES_DARK if theme.dark else _NODES_LIGHT

@@ -43,6 +43,7 @@ class Ask(ModalScreen[str | None]):
                 yield Static(self._detail, classes="detail", markup=False)
             with Vertical(classes="answers"):
                 for choice in self._choices:
+                    # Textual reads the labels of buttons as markup, in which [ begins a tag.
                     yield Button(f"[{choice.key}] {choice.word}".replace("[", r"\["), name=choice.key)
                 yield Button(r"\[esc] back", name="")
 

@@ -93,6 +93,7 @@ def _must_load(file: Path, text: str) -> None:
         try:
             load(Path(trial.name), [])
         except GraphFileError as error:
+            # The file is loaded without the arguments of the run; those that it needs are no fault of the change.
             wrong = [p for p in error.problems if "has no default" not in p.message]
             if wrong:
                 raise GraphFileError(wrong) from None
@@ -105,7 +106,9 @@ def _replace(file: Path, text: str) -> None:
         with os.fdopen(handle, "w", encoding="utf-8") as fresh:
             fresh.write(text)
             fresh.flush()
+            # Before the rename: after a power failure the name could otherwise stand for an empty file.
             os.fsync(fresh.fileno())
+        # `mkstemp` makes a file that only its owner can read.
         os.chmod(name, file.stat().st_mode & 0o777)
         os.replace(name, file)
     except OSError:

@@ -79,6 +79,7 @@ class Form(VerticalScroll):
         """Move to another line; the first follows the last."""
         lines = list(self.query(Input))
         if lines:
+            # Without a focus, the first line is next in both directions.
             at = next((i for i, line in enumerate(lines) if line.has_focus), -step)
             self.screen.set_focus(lines[(at + step) % len(lines)])
 
@@ -200,4 +201,5 @@ def _value(text: str, type_name: str, path: str) -> object:
         value = parse_value(text)
     except GraphflowError as error:
         raise EncodeError(f"{path}: {error}") from None
+    # Not `isinstance`: True is an int, and no number for a form.
     return float(value) if type_name.startswith("float") and type(value) is int else value

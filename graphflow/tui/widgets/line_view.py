@@ -136,6 +136,7 @@ class LineView(ScrollView, Generic[R], can_focus=True):
 
     def replace_last(self, row: R) -> None:
         """Replace the last row."""
+        # A wrapped row has several lines; its first one is the last to go.
         while self.rows:
             if self.row_that_begins(len(self.rows) - 1) is not None:
                 self.rows.pop()
@@ -152,6 +153,7 @@ class LineView(ScrollView, Generic[R], can_focus=True):
 
     def replace(self, rows: Iterable[R]) -> None:
         """Replace all rows."""
+        # Before the rows are cleared: `rows` may be made from them.
         fresh = list(self._parts(rows))
         self.rows.clear()
         self.rows.extend(fresh)

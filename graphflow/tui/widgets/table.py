@@ -113,7 +113,7 @@ class TableView(View):
             if column is None:
                 return
             self.options["order"] = f"-{column}" if column == now and not backwards else column
-            self._columns = ()
+            self._columns = ()  # their heads show the order
             self.look(0.0)
 
         items = [Item(column, self._order_note(column), column) for column in self.COLUMNS if column]

@@ -245,6 +245,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
             return ()
         choices: list[Iterable[int]] = []
         for queue in self.queues:
+            # `<=` for one filter and `<` for the set, as in message_filters.
             near = [stamp_ns] if queue is mine else [at for at in queue if abs(at - stamp_ns) <= slop_ns]
             choices.append(sorted(near, key=lambda at: abs(at - stamp_ns)))
         return next((stamps for stamps in product(*choices) if max(stamps) - min(stamps) < slop_ns), ())

@@ -95,6 +95,7 @@ def init(
     Raises:
         RuntimeError: It is already initialized, or an argument is wrong.
     """
+    # As in rclpy, only the default context handles signals unless told to: others belong to a part of a program.
     chosen = get_default_context() if context is None else context
     if signal_handler_options is None:
         signal_handler_options = SignalHandlerOptions.ALL if context is None else SignalHandlerOptions.NO
@@ -113,6 +114,7 @@ def init(
 def get_global_executor() -> Executor:
     """Return the executor that is used where none is named."""
     global _global_executor
+    # `try_shutdown` and leaving `with rclpy.init()` replace the default context and leave this executor behind.
     if _global_executor is None or _global_executor.context is not get_default_context():
         from rclpy.executors import SingleThreadedExecutor
 
@@ -182,6 +184,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
         is_added = executor.add_node(node)
         executor.spin_once(timeout_sec=timeout_sec)
     finally:
+        # A nested spin must not take the node from the executor that runs the callback it is called in.
         if is_added:
             _take_out(node, executor, former, "rclpy.spin_once")
 
@@ -196,6 +199,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     former, is_added = node.executor, False
     try:
         is_added = executor.add_node(node)
+        # As in rclpy, only the end of the context ends it: not the executor's own shutdown, as for `executor.spin`.
         while executor.context.ok():
             executor.spin_once()
     finally:

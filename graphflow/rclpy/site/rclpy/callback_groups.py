@@ -68,5 +68,6 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def ending_execution(self, entity: object) -> None:
         with self._lock:
+            # rclpy asserts it; here `Spinning._begin` also releases what it may not have reserved.
             if self._active_entity is entity:
                 self._active_entity = None

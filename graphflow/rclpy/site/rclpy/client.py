@@ -77,6 +77,7 @@ class Client(ServiceEnd):
         finally:
             self._life.forget(wake)
         if not future.done():
+            # None as in Jazzy; later versions of rclpy raise TimeoutError.
             self.remove_pending_request(future)
             return None
         return future.result()
@@ -89,12 +90,14 @@ class Client(ServiceEnd):
         if not isinstance(request, self.srv_type.Request):
             made = f"{self.srv_type.__name__}.Request()"
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: create a request with {made}")
+        # `_settle` takes the lock, too: an answer may come before the future is stored.
         with self._handle, self._lock:
             future: Future = Future()
             payload = classes.encode(request)
             sequence = self._endpoint.send(payload)
             self._pending[sequence] = future
         self._endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
+        # Not in `_settle`: a program may also cancel the future, or set its result.
         future._when_done(partial(self._pending.pop, sequence, None))
         return future
 
@@ -120,6 +123,7 @@ class Client(ServiceEnd):
         """Block until a server is available, at most `timeout_sec` seconds; return whether one is. Errors as above."""
         wake = Wake()
         self._changed[wake] = None
+        # Registered before the first look, so that a server that comes between look and wait wakes the thread.
         self._life.on_end(wake)
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         try:

@@ -131,6 +131,7 @@ class Clock:
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Self:
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
+        # As in rclpy: only a ROSClock has an override, which a clock of ROS time needs.
         kind: Any = ROSClock if clock_type is ClockType.ROS_TIME and not issubclass(cls, ROSClock) else cls
         self: Self = object.__new__(kind)
         self._clock_type = clock_type
@@ -209,10 +210,12 @@ class Clock:
             raise NotInitializedException
         if until.clock_type != self._clock_type:
             raise ValueError("until's clock type does not match this clock's type")
+        # Before the time is read, so that a jump in between wakes the sleep.
         sleeper = _Sleeper(self)
         life.on_end(sleeper.wake)
         was_overridden = self._is_overridden
         try:
+            # rclpy ends a sleep when simulated time begins or ends: `until` would mean another time from then on.
             while context.ok() and self._is_overridden is was_overridden:
                 left_ns = until.nanoseconds - self.now_ns()
                 if left_ns <= 0:
@@ -267,6 +270,7 @@ class ROSClock(Clock):
 
     def _jump(self, change: ClockChange, delta_ns: int, move: Callable[[], None]) -> None:
         with self._moving:
+            # As in rcl, a new override of an inactive clock is no jump: the clock does not show it.
             is_told = self._is_overridden or change is not ClockChange.ROS_TIME_NO_CHANGE
             covered = [j for j in list(self._jumps) if is_told and j.threshold.covers(change, delta_ns)]
             for jump in covered:

@@ -60,6 +60,7 @@ class Context(AbstractContextManager["Context"]):
         """
         unrun.made()
         words = list(sys.argv if args is None else args)
+        # Bytes that are not UTF-8 come as lone surrogates. rclpy raises UnicodeEncodeError for them, as this does.
         for word in words:
             word.encode()
         with self._lock:
@@ -76,6 +77,7 @@ class Context(AbstractContextManager["Context"]):
                 if initialize_logging:
                     setup_console(is_quiet=not life.args.has_stdout)
                     level = log_level(life.args.log_level)
+                    # INFO is the default: setting it would also override a level that the program has set before.
                     if level != LoggingSeverity.INFO:
                         RcutilsLogger().set_level(level)
                     for name, word in life.args.log_levels.items():
@@ -115,6 +117,7 @@ class Context(AbstractContextManager["Context"]):
             life = self._life
             if life is None or not life.end():
                 return False
+        # Outside the lock, since it runs user code.
         self.finish()
         return True
 
@@ -137,6 +140,7 @@ class Context(AbstractContextManager["Context"]):
             if self._life is not None and not self._life.is_ok:
                 callback()
                 return
+            # Weakly, as in rclpy: it must not keep a node alive. A plain `ref` of a bound method is dead at once.
             self._callbacks.append(WeakMethod(callback) if ismethod(callback) else ref(callback))
 
     def destroy(self) -> None:

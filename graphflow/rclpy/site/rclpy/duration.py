@@ -60,6 +60,7 @@ class Duration:
         """Convert to builtin_interfaces/msg/Duration."""
         from builtin_interfaces.msg import Duration as DurationMessage
 
+        # Floored: `nanosec` is unsigned, so -0.5 s is sec=-1, nanosec=500000000.
         sec, nanosec = divmod(self._nanoseconds, S_TO_NS)
         return DurationMessage(sec=sec, nanosec=nanosec)
 

@@ -172,6 +172,7 @@ class EventHandler(Waitable):
         return bool(self._events) and not self._is_destroyed
 
     def take_data(self) -> Any:
+        # Exchanged and not cleared: the event loop's thread appends meanwhile.
         events, self._events = self._events, deque(maxlen=1000)
         return self._info(list(events)) if events else None
 

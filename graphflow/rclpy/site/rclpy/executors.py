@@ -75,6 +75,7 @@ class Executor(AbstractContextManager["Executor"]):
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__()
         self._context = get_default_context() if context is None else context
+        # A name that nobody writes: programs derive from executors, and have attributes of their own.
         self._graphflow = Spinning(self, self._context)
         self._graphflow_watched: WeakSet[object] = WeakSet()
         all_executors.add(self)
@@ -114,10 +115,12 @@ class Executor(AbstractContextManager["Executor"]):
         spinning = self._graphflow
         spinning.is_shutdown = True
         spinning.wake.set()
+        # A callback may shut its own executor down, and would wait for itself.
         me, until = threading.get_ident(), time.monotonic() + (timeout_sec or 0.0)
         while others := [run for run in list(spinning.running) if run.thread not in (0, me)]:
             if timeout_sec is not None and timeout_sec >= 0 and time.monotonic() >= until:
                 return False
+            # rclpy documents None as "block forever", but Jazzy sets its flag before it tests it, and never waits.
             if timeout_sec is None:
                 break
             time.sleep(POLL)
@@ -126,6 +129,7 @@ class Executor(AbstractContextManager["Executor"]):
         return not others
 
     def __del__(self) -> None:
+        # `__init__` of a subclass may have failed before it called this class's.
         spinning = getattr(self, "_graphflow", None)
         if spinning is not None:
             spinning.is_shutdown = True
@@ -136,6 +140,7 @@ class Executor(AbstractContextManager["Executor"]):
         spinning = self._graphflow
         if node in spinning.nodes:
             return False
+        # First, since setting `node.executor` calls this method again, which ends there.
         spinning.nodes[node] = None
         node.executor = self
         internals_of(node).times_added += 1
@@ -179,6 +184,7 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _graphflow_wake_when_done(self, future: Future) -> None:
         """Wake the executor when a future, also one of asyncio's, is done; registered once per future."""
+        # Called once per turn of a loop: `add_done_callback` would collect a callback each time.
         if isinstance(future, Future):
             future._when_done(self.wake)
         elif future not in self._graphflow_watched:
@@ -226,6 +232,7 @@ class Executor(AbstractContextManager["Executor"]):
         timeout = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
         return self._graphflow.next(timeout, nodes, condition)
 
+    # A generator, as in rclpy, where `wait_for_ready_callbacks` steps it.
     def _wait_for_ready_callbacks(
         self, *args: Any, **kwargs: Any
     ) -> Generator[tuple[Task, Entity | None, Node | None], None, None]:
@@ -284,6 +291,7 @@ class _Pool:
         with self._lock:
             self._busy += 1
             self._graphflow_work.append(work)
+            # Threads start on demand, as in ThreadPoolExecutor: the default size is the number of processors.
             is_new = self._threads < min(self._busy, self._max_workers)
             self._threads += is_new
             number = self._threads
@@ -298,6 +306,7 @@ class _Pool:
             try:
                 work()
             finally:
+                # Before the thread waits: else it keeps the last callback, and thereby its node, alive.
                 del work
                 with self._lock:
                     self._busy -= 1
@@ -314,6 +323,7 @@ class MultiThreadedExecutor(Executor):
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)
         if num_threads is None:
+            # In a container, fewer processors than `cpu_count` may be usable. macOS and Windows have no affinity.
             affinity = getattr(os, "sched_getaffinity", None)
             num_threads = len(affinity(0)) if affinity is not None else os.cpu_count() or 2
         if not isinstance(num_threads, int):
@@ -324,8 +334,10 @@ class MultiThreadedExecutor(Executor):
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
                 stacklevel=2,
             )
+        # `_executor` and its `_max_workers` are rclpy's names, which programs read.
         self._executor = pool = _Pool(num_threads, self._graphflow.wake.set)
         self._graphflow_failures = failures = deque[BaseException]()
+        # Work is taken only for a free thread, so that arrivals wait in the subscription's queue, and its depth counts.
         self._graphflow.has_room = lambda: pool.has_room
         self._graphflow.has_failed = lambda: bool(failures)
 
@@ -344,6 +356,7 @@ class MultiThreadedExecutor(Executor):
             return
         raise error
 
+    # Errors of the pool are raised at once, not at the next callback as in rclpy.
     def _graphflow_work(self, handler: Task) -> None:
         try:
             handler()

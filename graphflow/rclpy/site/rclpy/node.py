@@ -103,7 +103,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         try:
             names = Resolver(node_name, space, remaps)
             values = node_bridge.overrides_for(life.args, names) if use_global_arguments else {}
-            values |= node_bridge.overrides_for(own, names)
+            values |= node_bridge.overrides_for(own, names)  # of rules the first counts, of values the last
         except GraphflowError as error:
             raise RCLInvalidROSArgsError(str(error)) from None
         bell = NodeBell()

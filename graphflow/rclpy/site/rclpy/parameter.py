@@ -64,6 +64,7 @@ class Parameter(Generic[T]):
             """Return the type of a value. Raises TypeError for a value that no parameter can have."""
             if parameter_value is None:
                 return cls.NOT_SET
+            # bool first: True is an int, too.
             for kind, name in ((bool, "BOOL"), (int, "INTEGER"), (float, "DOUBLE"), (str, "STRING")):
                 if isinstance(parameter_value, kind):
                     return cls[name]
@@ -71,6 +72,7 @@ class Parameter(Generic[T]):
                 if parameter_value.typecode in _CODES:
                     return cls[_CODES[parameter_value.typecode]]
             elif isinstance(parameter_value, (list, tuple)):
+                # As in rclpy, whose first test, that all elements are bytes, is true of an empty list.
                 if not parameter_value:
                     return cls.BYTE_ARRAY
                 for element, name in _ARRAYS.items():

@@ -48,6 +48,7 @@ class _Callbacks:
                 if parameter is not None:
                     for handle in list(handles):
                         handle.callback(parameter)
+            # A copy, and a reentrant lock: a callback may remove itself.
             for event_handle in list(self.event_callbacks):
                 event_handle.callback(event)
 

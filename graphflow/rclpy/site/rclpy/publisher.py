@@ -52,10 +52,12 @@ class Publisher(Created):
         with self._handle:
             if isinstance(msg, self.msg_type):
                 payload = classes.encode(msg)
+            # Serialized messages go out as they are: rclpy does not check them either.
             elif isinstance(msg, bytes):
                 payload = msg
             else:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+            # After the check of the type, whose error comes first in rclpy, too.
             if not self._life.is_ok:
                 raise RCLError("Failed to publish: publisher's context is invalid")
             self._endpoint.put(payload)

@@ -11,7 +11,7 @@ from rclpy.duration import Duration
 from rclpy.impl.callers import stack_level
 from rclpy.impl.mistakes import swapped_policies
 
-_BEST_AVAILABLE_NS = 2**63 - 2
+_BEST_AVAILABLE_NS = 2**63 - 2  # rmw's number: one less than its infinite
 _POLICIES = (
     *("history", "depth", "reliability", "durability", "lifespan", "deadline", "liveliness"),
     *("liveliness_lease_duration", "avoid_ros_namespace_conventions"),
@@ -97,7 +97,7 @@ class LivelinessPolicy(QoSPolicyEnum):
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
-    MANUAL_BY_TOPIC = 3
+    MANUAL_BY_TOPIC = 3  # 2 is rmw's deprecated MANUAL_BY_NODE
     UNKNOWN = 4
     BEST_AVAILABLE = 5
 
@@ -169,6 +169,7 @@ class QoSProfile:
             kwargs["history"] = HistoryPolicy.KEEP_LAST
         if kwargs["history"] == HistoryPolicy.KEEP_LAST and "depth" not in kwargs:
             raise InvalidQoSProfileException("History set to KEEP_LAST without a depth setting.")
+        # First, since the setter of `depth` reads it.
         self.history = kwargs["history"]
         self.depth = kwargs.get("depth", 0)
         self.reliability = kwargs.get("reliability", ReliabilityPolicy.RELIABLE)
@@ -185,6 +186,7 @@ class QoSProfile:
 
     @history.setter
     def history(self, value: HistoryPolicy) -> None:
+        # Assertions, as in rclpy's setters.
         assert isinstance(value, (HistoryPolicy, int)), _mismatch("history", HistoryPolicy, value)
         self._history = HistoryPolicy(value)
         swapped_policies.check("history", value, self._history)
@@ -225,6 +227,7 @@ class QoSProfile:
         if value < 0:
             raise ValueError("Depth must be greater than or equal to zero")
         self._depth = value
+        # `value + 0` makes a plain int of an enumeration's value, as which it will be read.
         swapped_policies.check("depth", value, value + 0)
 
     @property
@@ -293,7 +296,7 @@ class QoSProfile:
 
 
 DeadlineBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)
-LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)
+LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)  # rclpy's spelling
 
 
 def _profile(depth: int, **policies: object) -> QoSProfile:

@@ -94,7 +94,7 @@ def _declare_qos_parameters(
         descriptor = ParameterDescriptor(read_only=True, description=f"{short} of the {entity} of {topic_name}")
         try:
             parameter = node.declare_parameter(name, _get_qos_policy_parameter(qos, policy), descriptor)
-        except ParameterAlreadyDeclaredException:
+        except ParameterAlreadyDeclaredException:  # by another endpoint of that topic
             parameter = node.get_parameter(name)
         _override(qos, short, parameter)
     if options.callback is not None:

@@ -57,6 +57,7 @@ class Service(ServiceEnd):
         self.srv_type, self.srv_name, self.callback = srv_type, srv_name, callback
         self.callback_group, self.qos_profile = callback_group, qos_profile
         self._endpoint, self._life, self._handle = service_impl, life, handle
+        # As rclpy's handle has it: code without an executor takes requests by it.
         handle.__dict__["service_take_request"] = self._take_request
 
     def send_response(self, response: object, header: RequestHeader) -> None:

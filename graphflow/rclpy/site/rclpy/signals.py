@@ -67,6 +67,7 @@ def uninstall_signal_handlers() -> None:
         return
     for number, handler in list(_former.items()):
         if signal.getsignal(number) is _caught:
+            # None stands for a handler that was not installed from Python, which Python cannot restore.
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
         del _former[number]
 

@@ -153,6 +153,7 @@ def info_of(taken: Taken) -> MessageInfo:
 
 def _type_of(callback: Callable[..., Any]) -> Subscription.CallbackType:
     try:
+        # One argument has precedence: `def heard(msg, info=None)` gets the message only, as in rclpy.
         inspect.signature(callback).bind(object())
         return Subscription.CallbackType.MessageOnly
     except TypeError:

@@ -55,6 +55,7 @@ class Future(Generic[T]):
         self._set_executor(executor)
 
     def __del__(self) -> None:
+        # A subclass's `__init__` may not have called this one, and Python calls `__del__` all the same.
         error = getattr(self, "_exception", None)
         if error is not None and not self._was_raised:
             warnings.warn(f"The following exception was never retrieved: {error}", stacklevel=1)
@@ -141,9 +142,11 @@ class Future(Generic[T]):
 
     def _call_back(self) -> None:
         with self._lock:
+            # Taken under the lock, called outside of it: a callback may wait for another thread that uses the future.
             callbacks, self._callbacks = self._callbacks, []
         executor = self._runs()
         for callback in callbacks:
+            # Not by the executor: it may be what waits for this future.
             if isinstance(callback, _AtOnce):
                 callback(self)
             elif executor is not None:
@@ -176,6 +179,7 @@ class _AtOnce:
     def __call__(self, future: object) -> None:
         self._callback()
 
+    # So that a loop of spins registers the wake-up of its executor only once.
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _AtOnce) and self._callback == other._callback
 
@@ -217,6 +221,7 @@ class Task(Future[T]):
 
     def __call__(self) -> None:
         """Run the function, or one step of the coroutine. No effect when done, or while another thread runs it."""
+        # As in rclpy: a second thread leaves at once, and does not wait for the step of the first.
         if self._is_done or self._is_cancelled or not self._step_lock.acquire(blocking=False):
             return
         try:
@@ -234,6 +239,7 @@ class Task(Future[T]):
         return self._step_lock.locked()
 
     def _step(self) -> None:
+        # A callback may spin, and thereby step another task inside this one.
         around, _stepping.task = _stepping.task, self
         try:
             if self._coroutine is None:
@@ -251,6 +257,7 @@ class Task(Future[T]):
             self._end(stop.value, None)
         except (KeyboardInterrupt, SystemExit) as leaving:
             self._end(None, leaving)
+            # It leaves the thread now, so `__del__` must not report it again.
             self._was_raised = True
             raise
         except BaseException as error:  # whatever it is, it becomes the task's result
@@ -272,5 +279,6 @@ class Task(Future[T]):
     def cancel(self) -> None:
         super().cancel()
         coroutine = self._coroutine
+        # `close` of a running coroutine raises ValueError.
         if coroutine is not None and not self.executing() and not self._is_done:
             coroutine.close()

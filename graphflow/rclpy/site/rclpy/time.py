@@ -82,6 +82,7 @@ class Time:
         if self._clock_type != other._clock_type:
             raise TypeError(text)
 
+    # Equality raises for another clock type, too, as in rclpy: False would hide the mistake.
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Time):
             return NotImplemented

@@ -108,6 +108,7 @@ class TimeSource:
         """Attach a clock. Raises ValueError if it is not of ROS time."""
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
+        # Before the clock is activated: it would show an older time for a moment otherwise.
         clock.set_ros_time_override(self._last)
         clock._set_ros_time_is_active(self._is_active)
         self._clocks.append(clock)
@@ -160,6 +161,7 @@ class _Hearing:
 
         def make(core: NodeCore) -> ThreadedSubscription:
             made = ThreadedSubscription(core, self._type, name, to_graphflow(_QOS), self._bell, _nothing)
+            # Hidden from reports and views of the user's own callbacks.
             made.is_inner = True
             return made
 

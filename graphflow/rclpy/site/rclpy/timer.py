@@ -133,6 +133,7 @@ class Timer(Created):
         """React to a jump of the clock, which may make the timer due."""
         now_ns = self._clock.now_ns()
         with self._lock:
+            # Else it would stand still until the clock has caught up; rcl starts a new period there, too.
             if self._next_ns - now_ns > self._period_ns:  # it went back
                 self._last_ns, self._next_ns = now_ns, now_ns + self._period_ns
         self._recheck()
@@ -143,6 +144,7 @@ class Timer(Created):
 
     def seconds_left(self) -> float | None:
         """Return the seconds until it is due; None if that does not depend on this machine's time."""
+        # /clock wakes the executor by `clock_moved`; a wait by the wall clock would only poll.
         if self._is_canceled or self._handle.is_destroyed or self._clock.is_set_from_outside:
             return None
         return (self._next_ns - self._clock.now_ns()) / 1e9
@@ -157,8 +159,10 @@ class Timer(Created):
             if self._is_canceled or self._handle.is_destroyed or now_ns < self._next_ns:
                 return None
             expected_ns, self._last_ns = self._next_ns, now_ns
+            # Whole periods are added, so the phase is kept; a period of 0 is due again at once.
             behind = (now_ns - self._next_ns) // self._period_ns if self._period_ns else 0
             self._next_ns += self._period_ns * (behind + 1)
+        # After the period was advanced: the timer would be due for ever otherwise.
         if self.callback is None:
             return None
         if self._takes_info:
@@ -232,6 +236,7 @@ class Rate:
             life.forget(wake)
             with self._lock:
                 del self._sleepers[wake]
+                # As rclpy's event, which the last sleeper clears: a tick while nobody sleeps counts for the next.
                 self._has_ticked &= bool(self._sleepers)
         if not life.is_ok:
             raise ROSInterruptException

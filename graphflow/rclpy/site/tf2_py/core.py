@@ -77,6 +77,7 @@ class BufferCore:
         self._graphflow_put(transform, authority, is_static=True)
 
     def _graphflow_put(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
+        # tf2 strips the slash of tf1's names from what it receives, and refuses it in lookups.
         parent, frame = transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/")
         pose = pose_of(transform.transform)
         fault = _fault(frame, parent, pose)
@@ -155,6 +156,7 @@ class BufferCore:
             lines = []
             for frame, history in known:
                 span = (history.stamps[-1] - history.stamps[0]) / 1e9
+                # tf2 divides by 0.1 ms at least, so that one sample has this rate.
                 rate = 10000.0 if span <= 0 else (len(history.stamps) - 1) / span
                 lines += [f"{frame}: ", f"  parent: '{history.parents[-1]}'"]
                 lines += [f"  broadcaster: '{self._graphflow_authorities.get(frame, '')}'", f"  rate: {rate:.3f}"]

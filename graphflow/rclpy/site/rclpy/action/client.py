@@ -157,6 +157,7 @@ class ActionClient(Waitable):
         self._graphflow_results = client(carriers.GetResultService, "get_result", result_service_qos_profile)
         self._graphflow_feedback = subscription(carriers.FeedbackMessage, "feedback", feedback_sub_qos_profile)
         self._graphflow_status = subscription(carriers.GoalStatusMessage, "status", status_sub_qos_profile)
+        # From here on `is_ready` may read the five endpoints; one that is missing would be an AttributeError there.
         self._graphflow_is_open = True
         node.add_waitable(self)
 
@@ -187,6 +188,7 @@ class ActionClient(Waitable):
             answered = client.take()
             if answered is not None:
                 answers.append(partial(self._graphflow_settle, client, answered))
+        # Taken after the answers and executed before them: feedback comes by another thread of Zenoh's than a result.
         for _ in range(self._graphflow_feedback.waiting):  # all that came before a result
             feedback = self._graphflow_feedback.take()
             if feedback is not None:
@@ -239,6 +241,7 @@ class ActionClient(Waitable):
         future: Future = Future()
         with self._graphflow_lock:
             with sending():
+                # Under the lock that `_graphflow_settle` takes: the answer may come before the future is stored.
                 sequence = client.send(classes.encode(request))
             self._graphflow_waiting[client, sequence] = (future, made)
         return future
@@ -324,6 +327,7 @@ class ActionClient(Waitable):
         carrier, key = self._action_type.Impl.GetResultService, bytes(goal_handle.goal_id.uuid)
 
         def made(payload: bytes) -> object:
+            # Not at a terminal status: feedback may still be on its way, and is executed before the result.
             self._feedback_callbacks.pop(key, None)
             self._goal_handles.pop(key, None)
             response = classes.decode(carrier.Response, payload)

@@ -121,6 +121,7 @@ class ServerGoalHandle:
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], object] | None = None) -> None:
         """Start the execution, by `execute_callback` or else by the server's."""
+        # Cancelled before it began: CANCELING cannot become EXECUTING; the callback ends such a goal.
         if not self.is_cancel_requested:
             self._update_state(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
@@ -192,7 +193,7 @@ class ActionServer(Waitable):
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
         feedback_pub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - never changed
         status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
-        result_timeout: float = 900,
+        result_timeout: float = 900,  # as in Jazzy; later versions have 10
     ) -> None:
         super().__init__(node.default_callback_group if callback_group is None else callback_group)
         self.register_handle_accepted_callback(handle_accepted_callback)
@@ -294,6 +295,7 @@ class ActionServer(Waitable):
 
             handle = ServerGoalHandle(self, msg.GoalInfo(goal_id=request.goal_id, stamp=stamp), request.goal)
             with self._lock:
+                # Before the answer: the client may request the result or a cancellation as soon as it has that.
                 self._goal_handles[key] = handle
             self._graphflow_publish_status()
         with sending():
@@ -309,6 +311,7 @@ class ActionServer(Waitable):
         executor = self._node.executor
         if executor is None:
             raise RuntimeError("a goal cannot be executed while the node is in no executor: spin it")
+        # As a task, not as a callback: so the body of a goal is outside the callback group, as in rclpy.
         executor.create_task(self._execute_goal, callback, goal_handle)
 
     async def _execute_goal(
@@ -331,6 +334,7 @@ class ActionServer(Waitable):
             goal_handle.abort()
         self._logger.debug(f"Goal with ID {bytes(goal_handle.goal_id.uuid).hex()} finished")
         carrier = self._action_type.Impl.GetResultService
+        # The status is read last: `succeed`, `abort`, `canceled` or the line above has set it.
         response = carrier.Response(status=goal_handle.status, result=result)
         goal_handle._result.set_result(response)
         if self._graphflow_result_timeout >= 0:

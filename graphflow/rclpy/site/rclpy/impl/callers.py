@@ -33,6 +33,7 @@ class Caller(NamedTuple):
     @property
     def is_chained(self) -> bool:
         """Whether the code calls a method on the result of the call it is in, as in `ask().result()`."""
+        # `f_lasti` is the offset of the call that is under way; it needs no source, which may have changed.
         steps = [s for s in dis.get_instructions(self.frame.f_code) if s.offset <= self.frame.f_lasti]
         before = [s.opname for s in steps if s.opname not in _FILLERS]
         return len(before) > 2 and before[-2] in ("LOAD_METHOD", "LOAD_ATTR") and before[-3].startswith("CALL")

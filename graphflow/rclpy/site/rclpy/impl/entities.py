@@ -67,6 +67,7 @@ def role_of(entity: Entity) -> Role:
 
 def name_of(callback: object) -> str:
     """Return a function's name; empty for other callables."""
+    # Programs bind arguments with `functools.partial`, which has no name of its own.
     while isinstance(callback, partial):
         callback = callback.func
     return str(getattr(callback, "__name__", ""))
@@ -107,6 +108,7 @@ def arrived(entity: Entity) -> tuple[tuple[str, ...], int]:
 
 
 def _requests(endpoint: ThreadedService) -> tuple[tuple[str, ...], int]:
+    # A copy: other threads append meanwhile.
     items = list(endpoint.inbox.items)
     return tuple(asked.call for asked in map(read_request, items) if asked is not None), len(items)
 

@@ -61,6 +61,7 @@ class Known:
     def __init__(self, get: Callable[..., object]) -> None:
         self._get = get
 
+    # Without `__set__`: so an attribute of an instance has precedence, unlike over a property.
     def __get__(self, node: Node, owner: type) -> Any:
         return self if node is None else self._get(node)
 

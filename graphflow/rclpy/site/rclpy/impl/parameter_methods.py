@@ -46,8 +46,10 @@ class ParameterMethods:
         from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 
         inner, node = self._graphflow, self._graphflow_as_node
+        # First: the declarations below are announced there, as in rclpy.
         inner.events = node.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
         inner.time_source = TimeSource(node=node)
+        # After the node, whose `use_sim_time` decides how the clock begins.
         inner.time_source.attach_clock(inner.clock)
         if not self.has_parameter("start_type_description_service"):
             self.declare_parameter("start_type_description_service", True)
@@ -150,7 +152,7 @@ class ParameterMethods:
     ) -> list[SetParametersResult]:
         """Log the parameters that were not set, if the calling code drops the result."""
         faults = [result.reason or "(the callback gave no reason)" for result in results if not result.successful]
-        asked = caller(3) if faults else None
+        asked = caller(3) if faults else None  # 3: past `checked` of `explained`
         if asked is not None and asked.drops_result:
             names = ", ".join(p.name for p in given) if len(results) == 1 else "some parameters"
             text = "%s: %s was not set, and the result that reports it is ignored: %s"
@@ -164,6 +166,7 @@ class ParameterMethods:
     @explained
     def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
         """Register `callback`, which may change the list of parameters before they are set."""
+        # At the front, as in rclpy: the last one added is the first to be called.
         self._graphflow.parameters.before.insert(0, callback)
 
     @explained
@@ -220,6 +223,7 @@ class ParameterMethods:
         from rcl_interfaces.msg import ParameterEvent
 
         events = self._graphflow.events
+        # While the node is being constructed or destroyed.
         if events is None:
             return
         event = ParameterEvent(stamp=self._graphflow.clock.now().to_msg(), node=self._graphflow.node.full_name)

@@ -90,20 +90,24 @@ class NodeParameters:
             name, value, descriptor = self._read(given, index)
             full = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}" if namespace else name
             validate_parameter_name(full)
+            # Also if the declaration fails below: an override for it is then no misspelt name.
             self.names.add(full)
             if not ignore_override and full in self.overrides:
                 value = self.overrides[full].value
                 if descriptor.type == Kind.BOOL.value and isinstance(value, str):
                     value = TRUTHS.get(value.lower(), value)
             if not isinstance(value, Parameter):
+                # An empty list has no type of its own; the declared one counts.
                 kind = Kind(descriptor.type) if _is_empty(value) and descriptor.type else None
                 value = Parameter(full, kind, value) if kind is not None else Parameter(full, value=value)
+            # rclpy writes into the caller's descriptor, too.
             descriptor.name = full
             wanted.append(value)
             descriptors[full] = descriptor
         known = [p.name for p in wanted if p.name in self.values]
         if known:
             raise ParameterAlreadyDeclaredException(known)
+        # One by one, as in rclpy: those before a wrong one stay declared.
         for parameter in wanted:
             result = self._set([parameter], descriptors, allows_not_set=True)
             if not result.successful:
@@ -250,6 +254,7 @@ class NodeParameters:
             _refuse_others(parameter)
         self.refuse_undeclared(parameters)
         changed = list(parameters)
+        # `before` hooks are not called at a declaration, in rclpy neither.
         for hook in list(self.before):
             changed = list(hook(changed))
             if not changed:
@@ -384,6 +389,7 @@ def _out_of_range(parameter: Parameter, bounds: IntegerRange | FloatingPointRang
 
 def _integer_fault(parameter: Parameter, bounds: IntegerRange) -> str:
     low, high = sorted((bounds.from_value, bounds.to_value))
+    # `to_value` is legal even if no step leads to it (rcl_interfaces/msg/IntegerRange).
     if parameter.value in (bounds.from_value, bounds.to_value):
         return ""
     if not low <= parameter.value <= high:
@@ -401,6 +407,7 @@ def _double_fault(parameter: Parameter, bounds: FloatingPointRange) -> str:
         return math.isclose(a, b, rel_tol=RELATIVE_TOLERANCE)
 
     value = parameter.value
+    # As for integers, and with a tolerance: 0.1 + 0.2 is not 0.3.
     if same(value, bounds.from_value) or same(value, bounds.to_value):
         return ""
     low, high = sorted((bounds.from_value, bounds.to_value))

@@ -166,6 +166,7 @@ class RcutilsLogger:
         severity = LoggingSeverity(severity)
         name = kwargs.pop("name", None) or self.name
         frame = _caller()
+        # By instruction, as rclpy's CallerId: two calls in one line have filters of their own.
         site_key = (frame.f_code, frame.f_lasti)
         site = self._sites.get(site_key)
         options = _options(kwargs) if kwargs else {}
@@ -179,6 +180,7 @@ class RcutilsLogger:
             setup_console()
         logger = self._logger if name == self.name else RcutilsLogger(name)._logger
         code = frame.f_code
+        # Not `logger.log`: it would look for the caller again, and find this file.
         record = logger.makeRecord(
             logger.name, int(severity), code.co_filename, frame.f_lineno, str(message), (), None, code.co_qualname
         )

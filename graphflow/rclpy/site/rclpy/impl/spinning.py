@@ -41,6 +41,7 @@ class ConditionReachedException(Exception):
 
 
 for _kind in (TimeoutException, ShutdownException, ExternalShutdownException, ConditionReachedException):
+    # Where rclpy defines them: so they are named in tracebacks.
     _kind.__module__ = "rclpy.executors"
 
 
@@ -116,6 +117,7 @@ class Run(Task):
 
     def cancel(self) -> None:
         super().cancel()
+        # Else the thread that is stepping it calls `stepped` afterwards.
         if not self.executing():
             self.executor.spinning.stepped(self)
 
@@ -200,8 +202,10 @@ class Spinning:
             ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: See there.
             ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
+        # Counted before anything can raise: watches see by it that somebody spins.
         self.turns += 1
         asked = (timeout, nodes, condition)
+        # In rclpy the threads share one generator as long as their arguments are equal. Here only its refusal is kept.
         if asked in self._asking:
             raise ValueError("generator already executing")
         until = None if timeout is None or timeout < 0 else time.monotonic() + timeout
@@ -210,6 +214,7 @@ class Spinning:
             life.on_end(self.wake)
         self._asking.append(asked)
         try:
+            # A wake per thread: what one of them waits for must not be swallowed by the other.
             with self.wake.for_one() as wake:
                 while True:
                     if self.is_shutdown:
@@ -231,6 +236,7 @@ class Spinning:
             self._asking.remove(asked)
 
     def _find(self, nodes: Iterable[Node] | None, *, is_hurried: bool) -> tuple[Run, Entity | None, Node | None] | None:
+        # One thread at a time: rounds, and what is taken from them, are shared.
         with self._looking:
             return self._found(nodes, is_hurried=is_hurried) if self.has_room() else None
 
@@ -250,16 +256,19 @@ class Spinning:
         """Fill the round: tasks, newest first, then timers, and arrivals by kind."""
         now_ns = time.monotonic_ns()
         for _ in range(len(self._polled)):
+            # A bare `yield`, as of `asyncio.sleep(0)`, names no future: stepped at intervals, not in a busy loop.
             run = self._polled.popleft()
             is_due = is_hurried or now_ns - run.stepped_ns >= POLL * 1e9
             (self._runnable if is_due else self._polled).append(run)
         if self._runnable and not self._tasks_were_last:  # their effects come before earlier arrivals
             self._tasks_were_last = True
             while self._runnable:
+                # From the end: Jazzy goes through its tasks in reverse; versions after it do not.
                 self._round.append((self._runnable.pop(), None))
             return
         self._tasks_were_last = False
         chosen = list(self.nodes) if nodes is None else list(nodes)
+        # Timers are looked up, since time makes them ready; all else has announced itself to the node's bell.
         for node in chosen:
             self._round.extend((timer, node) for timer in list(node.timers) if timer.has_work())
         for node in chosen:
@@ -267,6 +276,7 @@ class Spinning:
             bell.attend()
             ready = bell.ready
             for waitable in list(node.waitables):
+                # Waitables of a program's own know no bell.
                 if waitable not in ready and waitable.has_work():
                     ready[waitable] = None
             for entity in sorted(ready, key=_order):
@@ -277,15 +287,18 @@ class Spinning:
 
     def _begin(self, entity: Entity, node: Node) -> Run | None:
         """Take a piece of work, and reserve a place in its group; None if there is none."""
+        # Removed since the round was filled. Without any nodes, they came as an argument of `wait_for_ready_callbacks`.
         if node not in self.nodes and self.nodes:
             return None
         group = entity.callback_group
         try:
+            # Both, as in rclpy: groups and executors of a program's own may override either.
             if not self.executor.can_execute(entity) or not group.beginning_execution(entity):
                 return None
             work = entity.take_work()
         except InvalidHandle:
             work = None
+        # The place was reserved for nothing: what was seen may have been taken since.
         if work is None:
             group.ending_execution(entity)
             return None

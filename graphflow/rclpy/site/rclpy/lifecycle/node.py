@@ -89,6 +89,7 @@ class LifecycleNodeMixin(ManagedEntity):
     ) -> None:
         if not isinstance(enable_communication_interface, bool):
             raise TypeError("enable_communication_interface must be a bool")
+        # A dict for its order: the node's own callback comes first, then its publishers as they were made.
         self._managed_entities: dict[ManagedEntity, None] = {self: None}
         self._state_machine = _StateMachine(has_services=enable_communication_interface)
         self._graphflow_transition_event: Publisher | None = None
@@ -149,6 +150,7 @@ class LifecycleNodeMixin(ManagedEntity):
         outcome = self._graphflow_run_hook(former)
         self._graphflow_go(after(machine.state, outcome))
         if machine.state is State.ERRORPROCESSING:
+            # `on_error` gets the state in which the transition began, not the error state.
             self._graphflow_go(after(machine.state, self._graphflow_run_hook(former)))
         return TransitionCallbackReturn(int(outcome))
 
@@ -159,6 +161,7 @@ class LifecycleNodeMixin(ManagedEntity):
                 answer = getattr(entity, hook)(state)
             except Exception as error:  # a user's callback may raise anything: the transition fails, as in ROS 2
                 node = cast("Node", self)
+                # A traceback of this frame alone: the call itself failed, since the hook takes other arguments.
                 if isinstance(error, TypeError) and error.__traceback__ is not None and not error.__traceback__.tb_next:
                     way = f"write def {hook}(self, state):"
                     node.get_logger().error(f"{described(getattr(entity, hook))}: {error}; {way}")

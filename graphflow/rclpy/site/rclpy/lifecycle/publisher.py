@@ -22,6 +22,7 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         SimpleManagedEntity.__init__(self)
         Publisher.__init__(self, *args, **kwargs)
 
+        # Weakly, since the node keeps its publishers.
         self._graphflow_node: Callable[[], Any] = _none
         self._graphflow_has_warned = False
 

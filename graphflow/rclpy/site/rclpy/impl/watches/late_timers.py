@@ -99,6 +99,7 @@ class LateTimers:
         node, level = node_of(run), next((s.levels[-1] for s in stacks() if s.levels[-1].run is run), None)
         if node is None or level is None or level.waiting is not None:
             return None
+        # Two periods: one that is skipped now and then is nothing to report.
         late = [t for t in kept_by(run) if isinstance(t, Timer) and 0 < 2 * t.timer_period_ns <= seconds * S_TO_NS]
         if not late:
             return None

@@ -27,6 +27,7 @@ def attend(life: ContextState) -> None:
 
 
 def _tell(node: Node) -> None:
+    # After an uncaught error only `last_value` is left: the interpreter sets it when it prints the traceback.
     is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
     if is_failing or time.monotonic() - internals_of(node).begun > BRIEF:
         return
