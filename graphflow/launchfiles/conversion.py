@@ -357,11 +357,14 @@ class _Translation:
             pairs = [pair(variable, "name", "value", self._complain) for variable in items(item.entries["env"])]
             entries["env"] = Item({k: v for pair in pairs for k, v in pair.entries.items()}, item.entries["env"].place)
         respawn = get("respawn")
-        if respawn is not None and has_value(item, "respawn", "true", "1"):
+        retries = get("respawn_max_retries")
+        never = retries is not None and typed(retries).value == 0
+        if respawn is not None and has_value(item, "respawn", "true", "1") and not never:
             settings = {"policy": Item("always", respawn.place)}
             for key, ours in (("respawn_delay", "delay"), ("respawn_max_retries", "max_restarts")):
                 value = get(key)
-                if value is not None and not str(value.value).startswith(("-", "0")):
+                # To launch, 0 or less is no delay, and a negative number of retries is no limit.
+                if value is not None and _is_positive(value):
                     settings[ours] = typed(value)
             entries["restart"] = Item(settings, respawn.place, respawn.key)
         if "on_exit" in item.entries:
@@ -405,6 +408,12 @@ def _sets_anything(group: Item) -> bool:
 def _text(item: Item | None) -> str:
     """Return the text of an attribute; empty if it is missing or no text."""
     return item.value if item is not None and isinstance(item.value, str) else ""
+
+
+def _is_positive(item: Item) -> bool:
+    """Return whether a number is positive; the value of a substitution, known only later, counts as such."""
+    number = typed(item).value
+    return not isinstance(number, (int, float)) or number > 0
 
 
 def _scalar(item: Item) -> Scalar:

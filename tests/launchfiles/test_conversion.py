@@ -308,6 +308,25 @@ def test_what_has_no_words(action: str, complaint: str) -> None:
     assert complaints[0].startswith(complaint)
 
 
+@pytest.mark.parametrize(
+    ("numbers", "restart"),
+    [
+        ("respawn_delay: 0.5", {"policy": "always", "delay": 0.5}),
+        ("respawn_delay: 0.0, respawn_max_retries: -1", {"policy": "always"}),
+        ("respawn_max_retries: 3", {"policy": "always", "max_restarts": 3}),
+        ("respawn_delay: $(var pause)", {"policy": "always", "delay": "$(var pause)"}),
+        ("respawn_max_retries: 0", None),
+    ],
+)
+def test_restarts(numbers: str, restart: object) -> None:
+    """Delays below a second count; no retries are no restarts, and a negative number is no limit."""
+    made, complaints, _ = native(
+        f"launch: [{{node: {{pkg: turtlesim, exec: turtlesim_node, name: s, respawn: 'true', {numbers}}}}}]\n"
+    )
+    assert complaints == []
+    assert made["nodes"]["s"].get("restart") == restart
+
+
 def test_a_node_that_only_ros_has() -> None:
     """It is run by ros2; the reader of a converted file is told so."""
     made, complaints, notes = native(
