@@ -95,6 +95,7 @@ def clear() -> None:
 
 def screen(text: str) -> None:
     """Replace the terminal's contents; the caller is responsible for escape sequences in `text`."""
+    # Overwritten and not cleared first, which would flicker.
     print("\x1b[H" + "".join(f"{line}\x1b[K\n" for line in text.splitlines()) + "\x1b[J", end="", flush=True)
 
 

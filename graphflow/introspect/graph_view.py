@@ -120,6 +120,7 @@ class View:
         deadline = time.monotonic() + timeout
         while not self.cache.endpoints(Kind.SERVICE, name):
             if time.monotonic() > deadline:
+                # It raises, with the nearest name.
                 self.service_types(name)
             time.sleep(0.05)
             self.refresh()

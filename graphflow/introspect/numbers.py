@@ -47,6 +47,7 @@ class Numbers:
             self._read(reply, counts)
         span = now - self._at
         if self._at and span > 0:
+            # A count that has become smaller is that of a node which was started again.
             self.rates = {
                 flow: (n - self._counts[flow]) / span
                 for flow, n in counts.items()

@@ -387,6 +387,7 @@ def _is_equal(left: str, right: str) -> bool:
     if None not in truths:
         return truths[0] is truths[1]
     try:
+        # `isclose`, as launch's EqualsSubstitution has it.
         return math.isclose(float(left), float(right))
     except ValueError:
         return left == right

@@ -116,6 +116,7 @@ def stream(
         as_json: Whether to print events and logs as lines of JSON, too.
     """
     interrupts: list[int] = []
+    # Noted and not raised: the graph is stopped in order, and its last events are still printed.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda got, _: interrupts.append(got))
     # Connect first: a graph that fails at once waits only for its first follower before it ends.

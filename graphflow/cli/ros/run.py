@@ -65,6 +65,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     if program is not None:
         if hasattr(signal, "pthread_sigmask"):
             signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # an interpreter cannot handle it while starting
+        # With -m alone, a file of the working directory, such as queue.py, would hide a module of Python.
         _become([sys.executable, "-P", "-m", "graphflow.rclpy", *command[1:]])
     try:
         cls, rest = find_class(what, words)

@@ -112,6 +112,7 @@ def _string(text: str) -> str:
         and text[0] not in "!?-':"
         and isinstance(read(text), str)
     )
+    # The mark of `truncated` is no text of the message, and has no quotes.
     if plain_safe or text == "...":
         return text
     if text.isprintable():
