@@ -199,6 +199,7 @@ class _CallGraph:
             if server is None:
                 continue
             slot, chain = server.slot, [*path, call]
+            # A caller that has released its slot does not hold it during this call.
             held[actor.slot] -= call.is_released
             if slot.limit is not None and held[slot] >= slot.limit:
                 text = (
@@ -313,6 +314,7 @@ class _Source:
         todo = [interface.class_path.rpartition(":")[2].rpartition(".")[2]]
         seen: set[str] = set()
         while todo:
+            # Breadth first: Python's order of base classes, but for diamonds.
             name = todo.pop(0)
             if name in seen or name not in classes:
                 continue

@@ -28,6 +28,7 @@ def one_by_one(frame: FrameType | None) -> str:
     if frame is None:
         return ""
     file, line = frame.f_code.co_filename, frame.f_lineno
+    # With the globals, linecache also asks the module's loader.
     source = "".join(linecache.getlines(file, frame.f_globals))
     if _ENDS.search(source) or not (len(_CALL.findall(source)) > 1 or re.search(r"\bfor\b", source)):
         return ""

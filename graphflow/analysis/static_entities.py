@@ -157,6 +157,7 @@ def _text(node: ast.expr | None, function: FunctionType, cls: type | None) -> st
     found: object = None
     if isinstance(node, ast.Constant):
         found = node.value
+    # Only names in capitals: any other may be bound again.
     elif isinstance(node, ast.Name) and node.id.isupper():
         found = function.__globals__.get(node.id)
     elif isinstance(node, ast.Attribute) and is_own(node) and node.attr.isupper() and cls is not None:

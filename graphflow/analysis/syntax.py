@@ -23,6 +23,7 @@ def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST
         yield node, parents
         if into_functions or not parents or not isinstance(node, NESTED):
             around = [*parents, node]
+            # Reversed, since the last one added is taken first.
             todo += [(child, around) for child in reversed([*ast.iter_child_nodes(node)])]
 
 
@@ -99,5 +100,6 @@ def syntax_of(file: str) -> Syntax:
     Raises:
         OSError, SyntaxError, ValueError: The file cannot be read or parsed.
     """
+    # It reads the encoding that the file declares, as Python does.
     with tokenize.open(file) as source:
         return Syntax(ast.parse(source.read()))
