@@ -45,6 +45,8 @@ class Client:
         Raises:
             TransportError: The tokens were not complete in time.
         """
+        # The router does not say when it knows all tokens. A few are known at once; of many, an answer counts as
+        # complete if it has no more than the one before.
         began, before = time.monotonic(), MANY_TOKENS
         while True:
             found = self._known(key)
@@ -73,6 +75,7 @@ class Client:
             TimeoutError: No reply arrived within `timeout` seconds.
         """
         answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        # Direct, since Zenoh would start a thread for an indirect callback.
         self._session.get(
             key,
             Callback(answers.put, drop=lambda: answers.put(None), indirect=False),
@@ -80,6 +83,7 @@ class Client:
             attachment=attachment,
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
+            # Longer than ours: Zenoh reports its timeout as an error reply, which would look like a server's.
             timeout=timeout + 1.0,
         )
         try:

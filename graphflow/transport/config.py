@@ -48,6 +48,7 @@ _CONFIG = """{
   mode: "%(mode)s",
   connect: {
     endpoints: [%(connect)s],
+    // Zenoh's first retry comes after a second by default, and a rendezvous is often just starting.
     retry: { period_init_ms: 20, period_max_ms: 200, period_increase_factor: 2 },
   },
   listen: { endpoints: [%(listen)s] },
@@ -130,6 +131,7 @@ def open_session(settings: zenoh.Config) -> zenoh.Session:
         with _at_work():
             return zenoh.open(settings)
     except zenoh.ZError as error:
+        # Zenoh appends the place in its own source: ` at /root/.cargo/...`.
         raise TransportError(str(error).partition(" at /")[0]) from None
 
 

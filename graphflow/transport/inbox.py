@@ -80,10 +80,12 @@ class Bell:
 
     def _answer(self) -> None:
         assert self._fd is not None
+        # Level-triggered in this case: unread, it would wake the loop again and again.
         os.eventfd_read(self._fd)
         self._attend()
 
     def _attend(self) -> None:
+        # Before `rung` is read, so that an inbox that is added from now on wakes the loop again.
         self.pending = False
         rung = self.rung
         while rung and not self._closed:
@@ -145,6 +147,7 @@ class Inbox:
         if not self.ringing:
             self.ringing = True
             bell = self._bell
+            # Before `pending` is read, the reverse of `_attend`: so no inbox is left without a wake-up.
             bell.rung.append(self)
             if not bell.pending:
                 bell.ring()
@@ -178,6 +181,7 @@ class DeepInbox(Inbox):
         super().put(item)
 
     def _make_room(self) -> None:
+        # `tuple` copies the deque in one step: an iteration would fail if the loop took an item meanwhile.
         waiting = sum(map(size_of, tuple(self.items)))
         while waiting > BYTES_BOUND * 3 // 4:
             try:
@@ -238,6 +242,7 @@ class RequestInbox(Inbox):
 
     def _has_room(self, size: int, number: int) -> bool:
         self._at_most = sum(map(self._size, tuple(self.items)))
+        # A request above the limit is accepted alone, or it could never be.
         return number == 0 or self._at_most + size <= BYTES_BOUND
 
 

@@ -57,6 +57,8 @@ class AskingAgain:
             self._timers |= {self._loop.call_later(after, self._ask, token) for after in ASK_AGAIN}
 
     def _ask(self, token: str) -> None:
+        # The token is `<key>/@adv/pub/<zid>/<eid>/_`, and a heartbeat a publication on it: the last sequence number as
+        # a uint32, little-endian (zenoh-ext, advanced_publisher.rs).
         publisher = "/".join(token.split("/")[-3:-1])
         # Sequence numbers wrap around and half count as ahead: this one does, so the publisher replies with all it has.
         ahead = (self._last.get(publisher, 0) + (1 << 30)) % (1 << 32)

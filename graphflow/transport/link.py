@@ -94,6 +94,7 @@ class Link:
     def _deliver(self) -> None:
         while self._inbox.items:
             event = self._inbox.items.popleft()
+            # An endpoint may have metadata after `?` and settings after `#`, which an address in `_wanted` lacks.
             there = str(event.link.dst).partition("#")[0].partition("?")[0]
             if there == rendezvous_endpoint():
                 continue
@@ -197,8 +198,10 @@ def _hang_up_early(there: str) -> None:
         return
     import psutil
 
+    # Zenoh does not reveal its sockets: they are found among all of this process by their peer's address.
     for connection in psutil.Process().net_connections("tcp"):
         far = connection.raddr
         if far and there.endswith((f"/{far.ip}:{far.port}", f"/[{far.ip}]:{far.port}")) and connection.fd >= 0:
+            # A duplicate shares the connection's options, and closing it leaves Zenoh's descriptor open.
             with socket.socket(fileno=os.dup(connection.fd)) as same:
                 same.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, int(PATIENCE * 1000))

@@ -166,6 +166,7 @@ class _Request:
             call.server_done(answer)
 
     def __del__(self) -> None:
+        # As Zenoh does, which ends a query with the last reference to it.
         if self._call is not None:
             self._call.server_done(None)
 

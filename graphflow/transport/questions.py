@@ -67,6 +67,7 @@ class Questions:
             if self._is_flooded and self._ring is None:
                 self._change_over()
             time.sleep(PAUSE)
+        # The former callback's end, by the change-over, has ended the loop above.
         while self._ring is not None:
             try:
                 query = self._ring.recv()

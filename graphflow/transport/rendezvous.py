@@ -199,6 +199,7 @@ def establish() -> Router | None:
     Raises:
         TransportError: As for `join`.
     """
+    # Other processes start and end meanwhile: between the two steps the port may be bound or become free.
     for _ in range(5):
         session = join()
         if session is not None:

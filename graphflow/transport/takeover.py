@@ -107,6 +107,7 @@ class Takeover:
         if self._alarm is not None:
             self._alarm.cancel()
         if self._attempt is not None:
+            # Not abandoned: if it succeeds after all, the router would go on without an owner.
             self._router = await self._attempt
         if self._router is not None:
             await in_thread(self._router.close)

@@ -83,6 +83,7 @@ class _ZenohSender(_Declared):
         listener = publisher.declare_matching_listener(handler)
         self._news = listener.handler.try_recv if self._inbox is None else _nothing
         super().__init__(session, listener, publisher)
+        # Bound here, since a method that only passes on would cost each message a call.
         self.put = publisher.put
         # Subscribers may have been reported by now, but their leaving never will be.
         if publisher.matching_status.matching:
@@ -182,6 +183,7 @@ class _ZenohCaller(_Declared):
                 answered(None if reply is None else _answer(reply))
 
         inbox = Inbox(self._bell, None, deliver)
+        # Without it, an abandoned query would stay open until `QUERY_LIMIT_MS`.
         token = zenoh.CancellationToken()
         self._querier.get(
             at_once(inbox.put, lambda: inbox.put(None)),
@@ -249,6 +251,7 @@ class ZenohSession:
             key,
             cache=ext.CacheConfig(max_samples=qos.depth),
             publisher_detection=True,
+            # As rmw_zenoh: without heartbeats, the loss of the last message before a pause would go unnoticed.
             sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
             **options,
         )
@@ -280,6 +283,7 @@ class ZenohSession:
     def open_large_sender(self, sender: Sender, key: str) -> RingSender | None:
         from graphflow.transport.shared_memory.large_messages import RingSender, can_share
 
+        # A kept message must outlive its slot, so TRANSIENT_LOCAL senders have no ring.
         if not can_share() or isinstance(sender, _KeepingSender):
             return None
         raw = self.raw
@@ -290,6 +294,7 @@ class ZenohSession:
                 descriptor,
                 attachment=attachment,
                 congestion_control=zenoh.CongestionControl.DROP,
+                # Receivers in this session get the message itself.
                 allowed_destination=zenoh.Locality.REMOTE,
             )
 
@@ -321,6 +326,7 @@ class ZenohSession:
         return _Declared(self, self.raw.declare_queryable(key, at_once(arrived), complete=True))
 
     def open_caller(self, key: str, changed: Callable[[], None]) -> _ZenohCaller:
+        # Target and consolidation are rmw_zenoh's. DROP, as for publishers: a stopped server must not block the loop.
         querier = self.raw.declare_querier(
             key,
             target=zenoh.QueryTarget.ALL_COMPLETE,
@@ -342,6 +348,7 @@ class ZenohSession:
                 self.loop.call_soon(deliver)
 
         inbox = Inbox(self.bell, None, deliver)
+        # With `history` instead of a query: just after the session was opened, a query finds no tokens.
         subscriber = self.raw.liveliness().declare_subscriber(key, at_once(inbox.put), history=True)
         return _Declared(self, subscriber)
 
@@ -421,6 +428,7 @@ class ZenohSession:
 
     async def close(self) -> None:
         await in_thread(lambda: close_session(self.raw))
+        # After the session, whose callbacks may ring it to the last.
         self.bell.close()
         if self._proof >= 0:
             os.close(self._proof)

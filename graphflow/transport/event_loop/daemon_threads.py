@@ -122,6 +122,7 @@ class DaemonExecutor(ThreadPoolExecutor):
     """
 
     def __init__(self) -> None:
+        # A ThreadPoolExecutor, since `loop.set_default_executor` takes nothing else; it starts no thread of its own.
         super().__init__()
         self._order = threading.Lock()
         self._free = self._max_workers

@@ -41,6 +41,7 @@ class _BellSelector(selectors.EpollSelector):
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
         # As in EpollSelector, with as few steps as possible: all of this is cold when a message arrives.
+        # epoll_wait counts milliseconds: rounded down, a short timeout would be 0, and the loop would spin.
         wait = -1.0 if timeout is None else max(0.0, math.ceil(timeout * 1000) / 1000)
         try:
             events = self._poll(wait)
@@ -52,6 +53,7 @@ class _BellSelector(selectors.EpollSelector):
             if fd in bells:
                 bells[fd]()
             elif (key := self._fd_to_key.get(fd)) is not None:
+                # Errors and hang-ups count as both, as in EpollSelector.
                 mask = (event & ~EPOLLIN and EVENT_WRITE) | (event & ~EPOLLOUT and EVENT_READ)
                 ready.append((key, mask & key.events))
         return ready
@@ -78,6 +80,7 @@ class BellLoop(asyncio.SelectorEventLoop):
             return super().call_soon(callback, *args, context=context)
         handle = asyncio.Handle(callback, args, self, context)
         self._ready.append(handle)
+        # While the loop does not run, `_thread_id` is None, and any thread may schedule what runs first.
         if get_ident() != self._thread_id and self._thread_id is not None:
             self.stranger()
         return handle

@@ -59,6 +59,7 @@ class RingSender:
             self._readers = None
             return
         self._readers = {number_of(*who): depth for who, depth in readers.items()}
+        # A reader that has just come must open the ring before it is sent a descriptor.
         self._is_introduced = self._is_open = False
         ring = self._ring
         if ring is not None and not ring.admit(self._readers):

@@ -267,6 +267,7 @@ class Ring:
             self._next = (slot + 1) % slots
             if marks[slot] % 2:  # the slot is lent
                 continue
+            # Mark, fence, look at the claims; `_Claims.take` does the reverse: at least one sees the other's mark.
             marks[slot] += 1
             _fence()
             if claims[slot * MOST_READERS : (slot + 1) * MOST_READERS] == _UNCLAIMED:
@@ -308,12 +309,14 @@ class _Claims:
             return None
         at, column = memory.at(slot) + place.start, self.find_column()
         if column < 0 or self.count >= memory.share[0]:
+            # Copied first, then checked: no claim protects it, so it may have been overwritten in between.
             copy = bytes(memory.view[at : at + place.size])
             _fence()
             return copy if memory.marks[slot] == place.generation else None
         index = slot * MOST_READERS + column
         memory.claims[index] = 1
         _fence()
+        # The column may have been given to another reader, by an `admit` that did not see this claim.
         if memory.marks[slot] != place.generation or memory.readers[column] != self._number:
             memory.claims[index] = 0
             return None
@@ -398,6 +401,7 @@ def _map(path: str, ring: int) -> _Memory | None:
     try:
         found = os.fstat(fd)
         is_own = stat.S_ISREG(found.st_mode) and found.st_uid == os.geteuid() and found.st_size > _SLOTS
+        # Without the seals, the file could shrink after this check, and a read beyond its end kills by SIGBUS.
         if not is_own or fcntl.fcntl(fd, fcntl.F_GET_SEALS) & _seals() != _seals():
             return None
         at = mmap.mmap(fd, found.st_size)
