@@ -31,6 +31,7 @@ class Hop(NamedTuple):
 
 def process_of(zid: str) -> bytes:
     """Return a process's name in a chain, from its Zenoh id in hex."""
+    # Zenoh writes ids without leading zeros.
     return bytes.fromhex(zid.rjust(16, "0")[:16])
 
 

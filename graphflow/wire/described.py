@@ -51,6 +51,7 @@ def definition_of(name: str, fields: list[DescribedField]) -> str:
     Raises:
         InterfaceError: A field has an unknown type.
     """
+    # A type without fields is described with this one field.
     if [f.name for f in fields] == [HIDDEN]:
         return ""
     return "".join(f"{_type(name, field)} {field.name}\n" for field in fields)
@@ -61,6 +62,7 @@ def _type(name: str, field: DescribedField) -> FieldType:
     if found is None:
         raise InterfaceError(f"{name}: field {field.name!r} is of the unknown type {field.type_id}")
     base, array = found
+    # 21 and 22 are bounded strings, and each kind of array adds 48 (`typehash`).
     bound = field.string_capacity if field.type_id % 48 in (21, 22) else 0
     size = field.capacity if array in ("fixed", "bounded") else 0
     return FieldType(base or field.nested_type_name, bound, array, size)

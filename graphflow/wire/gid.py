@@ -7,6 +7,7 @@ import xxhash
 
 def gid(token: str) -> bytes:
     """Return the GID's 16 bytes: the low 64 bits of the hash little-endian, then the high 64 bits."""
+    # The digest is big-endian, high half first: reversed, it is the low half, then the high half, both little-endian.
     return xxhash.xxh3_128_digest(token.encode())[::-1]
 
 

@@ -83,6 +83,7 @@ def stopped() -> dict[int, str]:
     found = {}
     for pid in sorted(int(name) for name in _listed("/proc") if name.isdecimal()):
         try:
+            # Whatever its program: each process of a graph has Zenoh's library in memory.
             if is_stopped(pid) and b"zenoh" in _bytes(f"/proc/{pid}/maps") and _rendezvous_of(pid) == _rendezvous():
                 command = _bytes(f"/proc/{pid}/cmdline").replace(b"\0", b" ").decode(errors="replace").strip()
                 found[pid] = f"process {pid}, {command}, is stopped: kill -CONT {pid}"
@@ -110,6 +111,7 @@ def _rendezvous() -> str:
 def _state(pid: int) -> str:
     """Return Linux's letter for the state of a process."""
     try:
+        # The name of the program, in parentheses, may itself contain spaces and parentheses.
         return _bytes(f"/proc/{pid}/stat").decode(errors="replace").rpartition(")")[2].split()[0]
     except (OSError, IndexError):
         return ""

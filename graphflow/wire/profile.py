@@ -48,6 +48,7 @@ def speakers(entity: Entity) -> tuple[str, ...]:
     """Return the profiles that an endpoint may use, judged by its token; empty if that is unknown."""
     if entity.hash == "TypeHashNotSupported":
         return ("humble",)
+    # Lyrical's endpoints of types with uint8[] describe their buffers in an additional chunk.
     if "/backends:" in entity.token:
         return ("lyrical",)
     if entity.type == _TRANSITION_EVENT:

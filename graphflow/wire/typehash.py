@@ -33,6 +33,7 @@ _IDS = {
     "wstring": 18,
 }
 _BOUNDED_STRING_IDS = {"string": 21, "wstring": 22}
+# `char` has the number of `uint8`, which is what is read back.
 _BASES = {number: base for base, number in (*_IDS.items(), *_BOUNDED_STRING_IDS.items()) if base != "char"}
 _ARRAY_OFFSETS = {"": 0, "fixed": 48, "bounded": 96, "unbounded": 144}
 
@@ -93,6 +94,7 @@ def referenced(message: Message, lookup: Lookup) -> dict[str, Message]:
 def type_description(message: Message, lookup: Lookup) -> str:
     """Return the JSON text that is hashed."""
     others = referenced(message, lookup)
+    # The hash is over exactly this text: default separators, ASCII escapes, this order of keys, types by name.
     return json.dumps(
         {
             "type_description": _describe(message),

@@ -31,6 +31,7 @@ def as_array(value: Any, base: str) -> Array:
     dtype = DTYPES[base]
     if isinstance(value, (bytes, bytearray, memoryview)) and dtype.itemsize == 1 and base != "bool":
         return np.frombuffer(value, dtype)
+    # numpy gives an empty list the type float64, which the check below would refuse.
     array: Array = np.asarray(value) if len(value) else np.zeros(0, dtype)
     if array.dtype == dtype:
         return np.ascontiguousarray(array).reshape(-1)
@@ -69,6 +70,7 @@ def view(buf: bytes, dtype: np.dtype[np.generic], count: int, offset: int) -> Ar
     if not count:
         return np.frombuffer(b"", dtype.newbyteorder("="))
     if dtype.kind == "b":
+        # Any byte but 0 is true in CDR; numpy's bools must be 0 or 1, and misbehave otherwise.
         result: Array = np.frombuffer(buf, np.uint8, count, offset) != 0
         result.flags.writeable = False
         return result

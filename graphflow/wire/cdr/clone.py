@@ -53,6 +53,7 @@ class Cloner(Code):
     def single(self, type_: FieldType, source: str, target: str) -> None:
         if type_.base in FORMATS:
             if type_.base == "bool":
+                # As the encoder does: only True and False pass, not any object with a truth value.
                 self.names["BOOL"] = {True: True, False: False}
                 source = f"BOOL[{source}]"
             self.run.append(Item(FORMATS[type_.base], source))
@@ -91,6 +92,7 @@ class Cloner(Code):
 
 def _text(text: str, bound: int) -> str:
     """Return a string as it would arrive; raises the error of encoding it."""
+    # ASCII decodes to itself. Other strings take the detour: a lone surrogate has to fail as it would in the encoder.
     if text.__class__ is str and not bound and text.isascii():
         return text
     encoded = text.encode()

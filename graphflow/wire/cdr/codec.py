@@ -63,6 +63,7 @@ class Codec:
         return compile_decode(self._message, self._types, ">", None)
 
     def _decode_any_order(self, payload: bytes) -> Any:
+        # The header of plain CDR: 00 00 for big-endian, 00 01 for little-endian, then two bytes of options.
         if len(payload) < HEADER or payload[0] != 0 or payload[1] > 1:
             head = payload[:4].hex() or "nothing"
             raise DecodeError(f"{self._message.name}: payload begins with {head}, not a CDR header")

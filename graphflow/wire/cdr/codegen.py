@@ -173,6 +173,7 @@ class Code:
             if self.position is not None:
                 self.position += layout.size
             return self.constant("S", getattr(layout, method)), operands, layout.size
+        # The size of the padding depends on the position modulo the widest number only.
         table = tuple(layout_of(items, start, self.order) for start in range(widest))
         return f"{self.constant('S', table)}[p & {widest - 1}]", operands, None
 

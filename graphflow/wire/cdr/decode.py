@@ -81,11 +81,13 @@ class Decoder(Code):
         self.go_dynamic()
         wide = type_.base == "wstring"
         self.line(f"e = p + {n}{' * 4' if wide else ''}")
+        # Slicing past the end raises nothing: it would silently return a shorter string.
         self.line("if e > size: raise ValueError('a string ends after the payload')")
         if wide:
             self.names["narrow"] = _narrow
             self.line(f"{target} = narrow(buf[p:e], {self.order!r})")
         else:
+            # The length includes the final NUL. A length of 0 is an empty string, too, as for ROS 2's own readers.
             self.line(f"{target} = buf[p:e - 1].decode() if {n} else ''")
         self.line("p = e")
 
@@ -98,6 +100,7 @@ class Decoder(Code):
         self.go_dynamic()
         if size > 1:
             align = f"p += (4 - p) & {size - 1}"
+            # Fast CDR writes no padding before the elements of an empty sequence; a fixed array is never empty.
             self.line(align if type_.array == "fixed" else f"if {n}: {align}")
         self.line(f"e = p + {n} * {size}")
         self.line("if e > size: raise ValueError('an array ends after the payload')")
@@ -137,6 +140,7 @@ class Decoder(Code):
             self.number("I", n)
         self.go_dynamic()
         element = type_._replace(array="")
+        # Refused before it is built: a count of 2**32 in a few bytes must not exhaust the memory.
         least = min_size(element, self.types.schema)
         self.line(f"if {n} * {least} > size - p: raise ValueError('a sequence claims more than the payload holds')")
         self.limited(f"{n} * {value_count(element, self.types.schema)}")
@@ -198,6 +202,7 @@ def compile_decode(message: Message, types: Types, order: Order, otherwise: Deco
         code.lines.insert(before, f"        size, left = len(buf), [{types.values}]")
     code.line("return o")
     code.depth -= 1
+    # A UnicodeDecodeError is a ValueError, too.
     code.names["Errors"] = (struct.error, ValueError, OverflowError)
     code.line("except Errors as error:")
     code.line("    failed(name, buf, error)")

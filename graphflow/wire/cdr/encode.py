@@ -39,6 +39,7 @@ class Encoder(Code):
 
     def message(self, message: Message, expression: str) -> None:
         if not message.fields:
+            # ROS 2 gives a type without fields one hidden byte (`typehash.HIDDEN`).
             self.number("x", "")
         for field in message.fields:
             self.field(field, f"{expression}.{self.types.prefix}{field.name}")
@@ -75,6 +76,7 @@ class Encoder(Code):
         text = self.fresh("t")
         self.line(f"{text} = {expression}.encode() + b'\\0'")
         if type_.string_bound:
+            # The bound does not count the final NUL.
             self.line(f"if len({text}) > {type_.string_bound + 1}: raise ValueError('too long')")
         self.number("I", f"len({text})")
         self.go_dynamic()
@@ -86,6 +88,7 @@ class Encoder(Code):
         self.line(f"{text} = {expression}.encode('utf-16-le', 'surrogatepass')")
         if type_.string_bound:
             self.line(f"if len({text}) > {2 * type_.string_bound}: raise ValueError('too long')")
+        # A wstring is counted in UTF-16 code units, each sent as a uint32, without a terminator, unlike a string.
         self.number("I", f"len({text}) // 2")
         self.go_dynamic()
         self.names["widen"] = _widen
@@ -114,6 +117,7 @@ class Encoder(Code):
             self.line(f"parts.append({a}.data)")
             self.line(f"p += {a}.nbytes")
             return
+        # Fast CDR writes no padding before the elements of an empty sequence.
         self.line(f"if {a}.size:")
         self.depth += 1
         self.align(size)
