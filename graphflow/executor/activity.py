@@ -25,7 +25,7 @@ class Activity:
         context: Its own context variables; by default a copy of the caller's.
 
     Attributes:
-        suspended_at: Start of its wait for a future, in the loop's time; only set during the wait.
+        suspended_at: Start of its wait for a future, in the loop's time; only valid during the wait.
     """
 
     __slots__ = (
@@ -89,6 +89,7 @@ class Activity:
             awaited = coroutine.send(None) if error is None else coroutine.throw(error)
         except StopIteration as stop:
             result, failure = stop.value, None
+        # These end the loop itself, as from an asyncio.Task.
         except (KeyboardInterrupt, SystemExit) as exit_:
             _leave_task(loop, self)  # type: ignore[arg-type]
             self._end(None, exit_)
@@ -105,16 +106,19 @@ class Activity:
 
     def _wait_for(self, awaited: Any) -> None:
         blocking = getattr(awaited, "_asyncio_future_blocking", None)
+        # A bare `yield`, as in `asyncio.sleep(0)`: the next step is due in the loop's next iteration.
         if awaited is None:
             self._loop.call_soon(self.step, context=self._context)
         elif blocking and awaited.get_loop() is not self._loop:
             wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which belongs to another event loop")
             self._loop.call_soon(self.step, wrong, context=self._context)
         elif blocking:
+            # Tells the future that it is awaited, and not yielded by mistake (asyncio.Task's protocol).
             awaited._asyncio_future_blocking = False
             awaited.add_done_callback(self._wakeup, context=self._context)
             self.suspended_at = self._loop.time()
             self._fut_waiter = awaited
+            # The coroutine was cancelled, perhaps by itself, while it ran.
             if self._must_cancel and awaited.cancel(msg=self._cancel_message):
                 self._must_cancel = False
         else:
@@ -158,6 +162,7 @@ class Activity:
         if self._cancel_requests:
             self._cancel_requests -= 1
             if not self._cancel_requests:
+                # As asyncio.Task does since 3.13: a cancellation that was not delivered yet is withdrawn.
                 self._must_cancel = False
         return self._cancel_requests
 

@@ -79,6 +79,7 @@ class ClockTimeout:
         loop = asyncio.get_running_loop()
         self.until_ns = self._clock.monotonic_ns() + to_ns(self._seconds)
         await self._scope.__aenter__()
+        # asyncio's scope knows only the loop's time: it has no deadline until this clock's alarm sets it to now.
         self._alarm = self._clock.call_at(self.until_ns, lambda: self._scope.reschedule(loop.time()))
 
     async def __aexit__(

@@ -57,6 +57,7 @@ class HandlerGroup(GroupState[Member]):
         """Release a slot at the end of a run: it goes to the member that has waited longest."""
         successor = self.release()
         if successor is not None:
+            # Not directly, or the successor's run would begin on the stack of the one that ends.
             loop.call_soon(successor.granted, self)
 
     def set_limit(self, limit: int | None, loop: AbstractEventLoop) -> None:

@@ -319,6 +319,7 @@ class Runner:
         if group.when_full == "cancel_running":
             members = [member for member in group.members if isinstance(member, Runner)]
             runs = [run for member in members for run in member.active if run.group is group]
+            # A run that is being cancelled frees a slot by itself: the next newer item must not cancel another one.
             if runs and not any(run.cancelling() for run in runs):
                 min(runs, key=lambda run: run.number).cancel("cancelled for newer work of its group")
 
@@ -341,6 +342,7 @@ class Runner:
         if self.items and may_run:
             self._run(1 if self._waking or self._scheduled else BURST, group)
         else:
+            # The work has gone, or the runner has moved or closed since it queued: the next member gets the slot.
             group.give_back(self._loop)
             self.wake()
 
@@ -382,6 +384,7 @@ class Runner:
         self._closed = True
         if self._idle is None:
             self._idle = self._loop.create_future()
+        # A second cancellation would interrupt the cleanup.
         for run in list(self.active):
             if not run.cancelling():
                 run.cancel()
