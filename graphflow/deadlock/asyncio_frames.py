@@ -156,6 +156,7 @@ def joint_wait(frame: Frame) -> JointWait | None:
     if code is _WAIT:
         is_all = names["return_when"] == asyncio.ALL_COMPLETED
         return JointWait(list(names["fs"]), "all" if is_all else "any", False)
+    # Since 3.12 `fut` may be a coroutine, which is awaited in place and found as the next frame.
     if code is _WAIT_FOR and asyncio.isfuture(names.get("fut")):
         return JointWait([names["fut"]], "all", True)
     return None

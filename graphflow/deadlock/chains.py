@@ -53,6 +53,7 @@ class Chains:
         group = runner.group
         if group is None and runner.is_serial:
             holders, limit = list(runner.active), 1
+        # Where newer work cancels a run, a full group is not hopeless.
         elif group is None or group.limit is None or group.when_full == "cancel_running":
             return []
         else:

@@ -130,6 +130,7 @@ class Inspection:
         answered = threading.Event()
         sent = time.monotonic()
         loop.call_soon_threadsafe(answered.set)
+        # On the loop's own thread, waiting would only keep the loop from answering.
         if threading.get_ident() != self._thread:
             answered.wait(LAG_LIMIT)
         return max(time.monotonic() - sent, self._search.watchdog.blocked_for)

@@ -80,6 +80,7 @@ def watch(node: object, full_name: str, logger: logging.Logger, ignored: Abstrac
     copied = {"__module__": cls.__module__, "__qualname__": cls.__qualname__, "__doc__": cls.__doc__}
     body = {
         **copied,
+        # By this, `inspect` finds the source of a class since 3.13.
         "__firstlineno__": getattr(cls, "__firstlineno__", 0),
         "__getattribute__": read,
         "__setattr__": write,

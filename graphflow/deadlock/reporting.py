@@ -273,4 +273,5 @@ def _ignore(*_: object) -> None:
 
 def is_old(activity: ActivityView) -> bool:
     """Whether an activity has waited long enough to be probed."""
+    # A little less, since the loop may run the alarm for it a little early.
     return activity.age >= 0.999 * PROBE_AFTER

@@ -264,6 +264,7 @@ class _Builder:
         """Return the condition of a task or an activity to which `way` leads."""
         if id(task) in way.tasks or task.done():  # tasks that await each other are no handlers' concern
             return FREE
+        # Before its future is followed, which is `_Return`'s own and says nothing about the group.
         if isinstance(task, Activity) and task.returning_to is not None:
             for owner in self._nodes:
                 if task.returning_to in owner.groups.by_name.values():

@@ -99,6 +99,7 @@ class Watchdog:
         began = time.monotonic()
         # At random intervals: a fixed one could beat with a periodic block and always find the loop free.
         while not self._ended.wait(pause := LOOK_EVERY * random.uniform(0.5, 1.5)):  # noqa: S311
+            # This thread needs only the GIL and a processor: if it is late, nothing else could run either.
             lost = time.monotonic() - began - pause
             if lost > REPORT_AFTER:
                 logger.warning("nothing in this process could run for %.1f s: %s", lost, _HELD)

@@ -277,6 +277,7 @@ class LoopConditions(Conditions):
             if isinstance(node, (ast.Break, ast.Return, ast.Raise)):
                 if isinstance(node, ast.Break) and _is_of_inner_loop(parents):
                     continue
+                # Without an `if` around it, it is reached whenever no `continue` is, so their tests decide.
                 guards = [p.test for p in parents if isinstance(p, ast.If)] or turns
                 odd = (ast.Match, ast.ExceptHandler, ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
                 if not guards or any(isinstance(p, odd) for p in parents):
@@ -298,6 +299,7 @@ class LoopConditions(Conditions):
         if not is_users_object(held):
             return None
         conditions = self._owned.setdefault(owner, Conditions(source_of(held), held))
+        # One list for all: any of these tasks may end the loop.
         conditions.tasks = self.tasks
         return conditions, ast.parse(".".join(["self", *path]), mode="eval").body
 
