@@ -63,6 +63,7 @@ class LogFile(io.RawIOBase):
     def _rotate(self) -> None:
         """Start a new file if this one is too long."""
         try:
+            # The size of the file, not a count of these writes: C code and child processes write to it, too.
             if os.fstat(1).st_size < LIMIT:
                 return
             os.replace(self._path, f"{self._path}.1")
@@ -70,6 +71,7 @@ class LogFile(io.RawIOBase):
         except OSError as error:  # Windows does not rename open files; the log goes on growing
             self._on_loss(f"it cannot be rotated: {error.strerror}")
             return
+        # The descriptors keep their numbers, which C code, `faulthandler` and child processes use.
         os.dup2(fresh, 1)
         os.dup2(fresh, 2)
         os.close(fresh)

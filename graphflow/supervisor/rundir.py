@@ -63,6 +63,7 @@ def open_logs(graph: str, run_id: str) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         link = newest_logs(graph)
+        # Replaced in one step: there is always a link, and of two runs that begin at once, the last one wins.
         fresh = folder.parent / f".latest-{os.getpid()}"
         fresh.unlink(missing_ok=True)
         if not is_portable():  # symbolic links need a privilege on Windows
@@ -225,6 +226,7 @@ class RunDirectory:
             for file in self.path.parent.glob("*/names"):
                 claimed = file.read_text(encoding="utf-8").split("\n") if file.parent != self.path else []
                 taken = sorted(set(names).intersection(claimed)) if claimed[:1] == [endpoint] else []
+                # A graph that was killed has left its names behind, but no lock.
                 if taken and is_locked(_lock_of(file.parent)):
                     raise SupervisorError(
                         f"already in domain {self.path.parent.name}: {', '.join(taken)} (graph {file.parent.name}). "
@@ -247,6 +249,7 @@ class RunDirectory:
         except OSError as error:
             raise SupervisorError(f"{self.path}: {error.strerror}") from None
         with self.changing:
+            # The locked file may be gone like the directory, and a lock on it would lock nobody else out.
             if self._lock is not None:
                 os.close(self._lock)
                 self._lock = None

@@ -57,6 +57,7 @@ class Announcement:
         except OSError as error:
             raise SupervisorError(f"{self._path}: {error.strerror}") from None
         finally:
+            # Only now, so that the announcement is locked at every moment.
             if before >= 0:
                 os.close(before)
 

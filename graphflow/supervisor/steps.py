@@ -98,6 +98,7 @@ class StepRunner:
             type_name = f"rcl_interfaces/srv/{service.title().replace('_', '')}"
             return self.call(type_name, f"{step.target}/{service}", fields, step.timeout)
 
+        # YAML's `1` is an integer, which ROS 2 refuses for a double: the declared types decide.
         described = (await call("describe_parameters", names=list(step.request))).descriptors
         wanted = []
         for declared, (name, value) in zip(described, step.request.items(), strict=True):
@@ -105,6 +106,7 @@ class StepRunner:
                 value = float(value)
             elif declared.type == _DOUBLES and isinstance(value, list):
                 value = [float(number) if type(number) is int else number for number in value]
+            # An empty list has no type of its own.
             type_ = declared.type if value == [] else type_id(value)
             wanted.append(Parameter(name=name, value=to_message(value, type_)))
         result = (await call("set_parameters_atomically", parameters=wanted)).result

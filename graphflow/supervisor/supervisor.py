@@ -246,6 +246,7 @@ class Supervisor:
         self._stopping, self._layers = True, []
         for process in self._processes.values():
             process.stop_requested = True
+            # Of a process that was never spawned, no end will be reported.
             if process.pid is None:
                 self._apply(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
         self._end_if_all_have()

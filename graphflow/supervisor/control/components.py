@@ -142,6 +142,7 @@ class Components:
     async def _order(self, process: Process, order: Order, node: PlannedNode | None) -> Obeyed:
         try:
             async with asyncio.timeout(LIMIT), self._turns[process.name]:
+                # Only now: while the order waited for its turn, the process may have ended, or the name been taken.
                 self._refuse(process, node)
                 answer: asyncio.Future[Obeyed] = asyncio.get_running_loop().create_future()
                 self._pending[order["order"]] = _Pending(process, node, answer)

@@ -88,6 +88,7 @@ class Container:
                 raise GraphflowError(
                     f"{text[:20]!r}... has {len(text)} characters; a name here has {NAME_BOUND} at most"
                 )
+        # `module:Class`, as graph files write it, as opposed to ROS 2's `package::Class`.
         if ":" in plugin.replace("::", ""):
             class_path = plugin
         else:

@@ -159,6 +159,7 @@ class ControlServer:
         if self._server is not None:
             self._server.close()
         path.unlink(missing_ok=True)
+        # By the mask, since a chmod would come too late: others could connect in between.
         mask = os.umask(0o177)
         try:
             self._server = await asyncio.start_unix_server(self._accept, path)
@@ -192,6 +193,7 @@ class ControlServer:
         assert task is not None
         self._connections[task] = writer
         try:
+            # With a token, each request decides; a Unix socket names the user at its other end.
             if self._token or _peer_uid(writer.get_extra_info("socket")) in (None, user_id()):
                 await self._serve(reader, writer)
         except (ConnectionError, asyncio.IncompleteReadError, ValueError):

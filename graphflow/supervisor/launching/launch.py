@@ -129,14 +129,17 @@ def _begin_forked(job: LaunchJob) -> Launched:
     report, write = os.pipe()
     watched, lifeline = os.pipe()
     noted, note = os.pipe()
+    # A fork copies what is buffered, which both processes would write.
     sys.stdout.flush()
     sys.stderr.flush()
     pid = os.fork()
     if pid == 0:
         try:
             os.close(report)
+            # Or the supervisor would hold its own lifeline, and never see the command's end.
             os.close(lifeline)
             ANNOUNCEMENT.leave()
+            # Away from the terminal: its Ctrl-C is for the command, which stops the graph in order.
             os.setsid()
             # Passed on: a supervisor that called getppid() might do so after the guardian's end.
             process = _Launch(job, write, watched, note, guardian=os.getpid())
@@ -301,6 +304,7 @@ class _Launch:
             self._log_to(logs / rundir.SUPERVISOR_LOG)
             if self._note >= 0:
                 leave_note(self._note, domain, plan.name, logs / rundir.SUPERVISOR_LOG)
+            # Before the workers, whose sessions connect to it.
             router = establish()
             if not reaches_out():  # a refused link to another machine would stop the start, so it is tried first
                 self._lifeline.on_cut(self._cut_early)
@@ -348,11 +352,13 @@ class _Launch:
                 context.loop.call_soon_threadsafe(function)
 
         self._lifeline.on_cut(partial(on_loop, cut), partial(on_loop, control.expect_nobody))
+        # After `on_cut`: no end of the command falls between the two.
         if self._was_cut:
             cut()
         forward_network_logs(supervisor.note)
         await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.on_event, supervisor.starter_lost)
         run = replace(run, socket=await control.open(directory.socket))
+        # Only now: clients find the graph by this file, and then expect its socket to answer.
         directory.write(run)
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))

@@ -205,6 +205,7 @@ class ForkingStarter:
             self._reports.close()
 
     def end(self) -> None:
+        # When it reads the end of this socket, the preload process ends all workers and itself.
         self._channel.close()
         deadline = time.monotonic() + END_LIMIT
         while not self._has_ended:

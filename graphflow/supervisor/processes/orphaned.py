@@ -45,6 +45,7 @@ class Orphan:
 
     def _end_by(self, number: int, frame: FrameType | None) -> None:
         self._end_own_if_orphaned()
+        # By the signal, so that the exit status names it.
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
 
@@ -71,6 +72,7 @@ class Orphan:
 def _poll(pipe: int, timeout: int | None) -> bool:
     """Wait until the other end of a pipe is closed; returns whether it is."""
     end = select.poll()
+    # No events: the closing of the other end is reported in any case (poll(2), POLLHUP and POLLERR).
     end.register(pipe, 0)
     return bool(end.poll(timeout))
 

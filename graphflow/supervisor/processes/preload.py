@@ -200,6 +200,7 @@ class _Preload:
         parent, pid = os.getpid(), os.fork()
         if pid == 0:
             try:
+                # A group of its own, for `sweep`.
                 os.setpgid(0, 0)
                 end_with_parent(parent, signal.SIGKILL)
                 self._channel.close()
@@ -277,6 +278,7 @@ class _Preload:
     def _run_worker(self, request: messages.SpawnRequest, parent: int, orders: int, write: int) -> NoReturn:
         """Be the worker, in the child."""
         try:
+            # Or the supervisor would not see the preload process end as long as this worker lives.
             self._channel.close()
             # A worker sees its preload process end when the last writing end of its orders' pipe is closed.
             for fd in (write, *(worker.orders for worker in self._workers.values() if worker.orders >= 0)):
@@ -325,6 +327,7 @@ class _Preload:
                 os.close(worker.orders)
         if ended:
             self._end_orphans()
+        # After the sweep: the supervisor may start the process again at once, and nothing of the old one must be left.
         for pid, worker, code in ended:
             self._answer({"event": "exited", "process": worker.process, "pid": pid, "status": code})
 

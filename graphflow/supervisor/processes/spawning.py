@@ -125,6 +125,7 @@ class SpawningStarter:
         status = await worker.wait()
         if hasattr(os, "killpg"):
             sweep(worker.pid)
+        # The end is reported last: events that the worker has sent before may still be on their way.
         if process in self._connections:
             try:
                 async with asyncio.timeout(_LAST_EVENTS_LIMIT):

@@ -140,6 +140,7 @@ class PipeReporter:
             os.write(self._pipe, _line_within(PIPE_BUF, event))
 
     def is_open(self) -> bool:
+        # Linux calls a pipe writable if a page is free, so an event of up to PIPE_BUF bytes fits.
         return bool(select.select([], [self._pipe], [], 0)[1])
 
     def close(self) -> None:
@@ -197,6 +198,7 @@ class SocketReporter:
                 line = self._received.get()
                 stop() if json.loads(line)["do"] == "stop" else order(line)
 
+        # Before `take`, so that no line falls between the two.
         self._wake = lambda: loop.call_soon_threadsafe(take)
         take()  # lines that came before
 
@@ -226,6 +228,7 @@ def main(job: WorkerJob, reporter: Reporter) -> None:
     """Run a worker to its end; does not return."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
+    # By descriptor: `write_to` replaces `sys.stderr`, and a rotation the file behind it.
     faulthandler.enable(2)
     process = job["process"]
     process_tree.name_process(process.rpartition("/")[2], " ".join(str(node["name"]) for node in job["nodes"]))
@@ -248,6 +251,7 @@ def main(job: WorkerJob, reporter: Reporter) -> None:
         code = EXIT_CONFIGURATION
     else:
         code = loop.run(_run(nodes, job, reporter))
+    # `os._exit` flushes nothing.
     sys.stdout.flush()
     sys.stderr.flush()
     reporter.close()
@@ -346,6 +350,7 @@ def become(log: str, env: dict[str, str], parent: int) -> None:
     """Turn a new child into a worker's process: session, signals, stdin, log file, environment."""
     os.setsid()
     end_with_parent(parent, signal.SIGTERM)
+    # These settings, and the wake-up descriptor, are the preload process's own; a fork inherits them.
     for number in (*STOP_SIGNALS, signal.SIGCHLD):
         signal.signal(number, signal.SIG_DFL)
     signal.set_wakeup_fd(-1)
