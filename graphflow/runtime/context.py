@@ -141,6 +141,7 @@ class Context:
 
         domain = domain_id(domain)
         loop = asyncio.get_running_loop()
+        # The rendezvous first: through it, the session finds the others.
         takeover = Takeover(router if checked else establish())
         try:
             session = ZenohSession(loop, mode)
@@ -333,6 +334,7 @@ async def _seen_through(future: asyncio.Future[T]) -> None:
             if future.cancelled():
                 raise
             cancelled = error
+        # The coroutine is being closed, and may not wait any more.
         except GeneratorExit:
             raise
         except BaseException:  # the thread's error, which the caller raises

@@ -70,6 +70,7 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
         now, is_first = time.monotonic(), not first
         first = first or now
         if now - first > SAME_SIGNAL:
+            # By a system call: this may have interrupted `logging` or `print`, which cannot be entered again.
             os.write(2, b"ended without cleanup: it was asked twice\n")
             os._exit(1)
         if not loop.is_closed():

@@ -69,6 +69,7 @@ class NodeClock:
             if self._alarm is not None:
                 self._alarm.cancel()
             former[1].close()
+            # By now, `current` is the real clock.
             former[0].retire(self.current)
 
     def _warn(self) -> None:

@@ -81,6 +81,7 @@ async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerat
             await core.start(context)
             stack.push_async_callback(core.stop)
         if own:
+            # Pushed last, so called first: before the nodes stop.
             stack.callback(context.session.leave)
         try:
             async with asyncio.TaskGroup() as group:
@@ -261,4 +262,5 @@ async def _run(nodes: Sequence[Node]) -> None:
         await serve(nodes, context, stop)
     finally:
         await context.close()
+        # After the close, which a second signal can still cut short.
         restore()

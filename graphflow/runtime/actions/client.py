@@ -131,6 +131,7 @@ class ClientGoalHandle(AttributeHints, PendingGoal, Generic[Goal, Result, Feedba
         if timeout is not None:
             async with self._client.host.clock.timeout(timeout):
                 return await self.result()
+        # Shielded: a caller that is cancelled must not cancel `ended`, for which others may wait.
         with self._client.host.context.ledger.goal(ended := asyncio.shield(self.ended), self):
             return await ended
 
@@ -189,6 +190,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         feedback: Any = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         at = f"{name}/_action"
         self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._feedback_received)
+        # The result of a goal must not overtake its feedback.
         self._feedback.in_order = True
         status = "action_msgs/msg/GoalStatusArray"
         self._status = RawSubscription(host, status, f"{at}/status", ACTION_STATUS, self._status_received)
@@ -202,6 +204,8 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     @property
     def endpoints(self) -> tuple[Endpoint, ...]:
+        # In the order of opening: the topics first, so that nothing of a goal is missed; `send`, which begins one,
+        # last.
         return (self._feedback, self._status, self._get, self._cancel, self._send)
 
     def open(self) -> None:
@@ -302,6 +306,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             may_be_there = True
             answer = await self._send.call(request, timeout=timeout)
         except (CancelledError, CallTimeout) as error:
+            # The server may have accepted the goal all the same, and nobody else knows the id by which to cancel it.
             self._forget(sent)
             if may_be_there and self._cancel.is_open:
                 withdrawing = self._in_background(self._withdraw(sent))

@@ -154,6 +154,7 @@ def _returns_nothing(code: CodeType) -> bool:
     for step in dis.get_instructions(code):
         if step.opname == "RETURN_VALUE" and not (before and before.opname == "LOAD_CONST" and before.argval is None):
             return False
+        # In CPython 3.12 and 3.13 only.
         if step.opname == "RETURN_CONST" and step.argval is not None:
             return False
         before = step

@@ -98,6 +98,7 @@ class Endpoint(Part):
         """Declare the endpoint on the network, then announce it. Called by the node."""
         context, host = self.host.context, self.host
         there = context.cache.named(self.name)
+        # Before the token is made: peers of ROS 2 drop one that has the number of BEST_AVAILABLE.
         self.qos = self.qos.adapted(e.qos for e in there if {e.kind, self.kind} == {Kind.PUBLISHER, Kind.SUBSCRIPTION})
         self.entity = Entity(
             context.domain,

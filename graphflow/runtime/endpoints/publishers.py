@@ -123,9 +123,11 @@ class TopicPublisher(Endpoint, Generic[M]):
                 general(message)
                 return
             payload = codec.encode(message)
+            # Before `is_shared` is read, the reverse of `look_who_publishes`: one of two threads sees the other.
             order.is_sending = True
             try:
                 if order.is_shared:
+                    # Cleared first: a thread that holds the lock may be waiting for that.
                     order.is_sending = False
                     with order.lock:
                         self._send(payload)

@@ -303,6 +303,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             elif answer is not None:
                 self._replies.append(_Reply(call, lambda: answered(answer)))
                 runner.wake()
+            # The end of the replies may overtake a response that still waits for its slot.
             elif not any(reply.call == call for reply in self._replies):
                 answered(None)
 
@@ -337,6 +338,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
     def _block(self, request: Request, timeout: float | None) -> Response:
         """Send a request and block the event loop, where no response can arrive."""
         asking = self.call(request, timeout=timeout)
+        # The first step sends the request, if a server is known, and yields the future that the call waits for.
         with closing(asking), self.host.context.ledger.blocked_by(asking.send(None)):
             threading.Event().wait(timeout)
         raise CallTimeout(f"no response from {self.name} could arrive within {timeout:g} s: the event loop was blocked")

@@ -112,6 +112,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
 
     def _asked(self, request: DirectRequest) -> None:
         assert self._inbox is not None
+        # Past the inbox's own bounds: the line's inbox has enforced them already.
         self._inbox.items.append(request)
         self._arrived()
 

@@ -48,6 +48,7 @@ class Readers:
         receiver = self._session.open_ring_receiver(ring_key(self._domain, entity.data_key), entity.eid, inbox)
         if receiver is None:
             return None
+        # Announced last, so that a publisher that sees the token can already reach the receiver.
         token = reader_token(self._domain, Reader(entity.zid, entity.eid, *receiver.reader))
         return RingReading(receiver, self._session.announce(token))
 

@@ -124,6 +124,7 @@ class Timer(Part):
         assert self.runner is not None
         now, due = self.host.clock.monotonic_ns(), self._next_ns
         late = max(0, (now - due) // self._period_ns)
+        # First, so that a handler that cancels or resets the timer has the last word.
         self._arm(due + (1 + late) * self._period_ns)
         self.skipped += late
         self._missed += late

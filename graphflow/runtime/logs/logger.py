@@ -203,6 +203,7 @@ def node_logger(full_name: str) -> NodeLogger:
     """Return the logger of the node `full_name`: `/turtle1/follower` logs as `turtle1.follower`."""
     name = f"{ROOT}.{full_name[1:].replace('/', '.')}"
     manager = logging.Logger.manager
+    # For this call only: `logging.setLoggerClass` would be for all loggers that the program makes.
     former, manager.loggerClass = manager.loggerClass, NodeLogger
     try:
         found = logging.getLogger(name)

@@ -62,6 +62,7 @@ def _report(reported: set[Place], frame: FrameType | None) -> None:
     Args:
         frame: The caller of the loop's method.
     """
+    # The collector may run a `__del__` of asyncio's in any thread: the line that it interrupts is innocent.
     while frame is not None and frame.f_code.co_filename.startswith(_ASYNCIO) and frame.f_code.co_name != "__del__":
         frame = frame.f_back
     if frame is None or not is_users(frame.f_code.co_filename):

@@ -36,6 +36,7 @@ def _called(trace: TracebackType | None) -> object:
         return None
     while trace.tb_next is not None:
         trace = trace.tb_next
+    # One entry per code unit, of two bytes; columns count bytes of UTF-8.
     line, end_line, start, end = list(trace.tb_frame.f_code.co_positions())[trace.tb_lasti // 2]
     if line is None or end_line is None:
         return None

@@ -68,10 +68,8 @@ class Unserved:
         if self._is_reported or is_hidden(self._host.full_name):  # a command's node, whose command reports it
             return
         text, place = await self._nobody(), place_of(task)
-        is_reported, self._is_reported = (
-            self._is_reported,
-            True,
-        )  # another wait may report meanwhile, and this one may end first
+        # Only now, after the wait above: another wait may have reported meanwhile, or this one have ended.
+        is_reported, self._is_reported = self._is_reported, True
         if text and not is_reported:
             waited = (self._host.context.clock.monotonic_ns() - since) / NANOSECONDS
             self._host.log.warning("wait_ready has waited for %.0f s%s: %s", waited, place and f" {place}", text)
