@@ -186,6 +186,7 @@ STEPS: Mapping[tuple[Phase, GoalEvent], Step] = {
     (Phase.RUNNING, GoalEvent.CLIENT_AWAY): Step(Phase.CANCELING, _STOP_BODY),
     (Phase.RUNNING, GoalEvent.RETURNED): Step(Phase.SUCCEEDED),
     (Phase.RUNNING, GoalEvent.FAILED): Step(Phase.ABORTED),
+    # No client has cancelled it, so it may not end as CANCELED.
     (Phase.RUNNING, GoalEvent.UNWOUND): Step(Phase.ABORTED),
     (Phase.RUNNING, GoalEvent.STOPPING): Step(Phase.RUNNING),  # the node cancels all bodies
     #

@@ -59,6 +59,7 @@ class GroupState(Generic[M]):
 
     def release(self) -> M | None:
         """Return a slot; the result is the member that it passes to, which holds it from now on, or None."""
+        # Not if the limit was lowered meanwhile: then the slot is gone.
         if self._queue and (self.limit is None or self.running <= self.limit):
             return self._queue.popleft()
         self.running -= 1

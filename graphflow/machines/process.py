@@ -100,6 +100,7 @@ TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
         Event.EXIT: (State.ENDED, ()),
     },
     State.RESTARTING: {
+        # Without TERMINATE, which was sent on the way to this state.
         Event.STOP: (State.STOPPING, ()),
         Event.KILL: (State.STOPPING, (Do.KILL,)),
         Event.LATE: (State.RESTARTING, (Do.KILL,)),

@@ -6,8 +6,8 @@
 
 The first restart comes after `delay`, each further one after twice the time, up to `max_delay`. Jitter of 20 % spreads
 processes that failed together. A process that was ready for `CALM` seconds starts again with the first delay. After
-`max_restarts` restarts `within` a number of seconds there is no other. An exit code from 64 to 78 means wrong usage or
-configuration, which no restart would change.
+`max_restarts` restarts `within` a number of seconds there is no other. An exit code from 64 to 78, except 70, means
+wrong usage or configuration, which no restart would change.
 
 Source: Erlang's supervisors (intensity), systemd's StartLimitBurst; sysexits(3) for the codes.
 """
@@ -99,6 +99,7 @@ class Restarts:
         if len(self._times) >= backoff.max_restarts:
             return GiveUp(f"started again {len(self._times)} times within {backoff.within:g} s")
         self._times.append(now)
+        # Bounded, since a power beyond the floats raises OverflowError.
         delay = min(backoff.delay * 2.0 ** min(self._failures, 60), backoff.max_delay)
         self._failures += 1
         return Again(delay * (1.0 - JITTER + 2.0 * JITTER * chance))

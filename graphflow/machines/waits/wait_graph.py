@@ -40,6 +40,7 @@ class Call:
 
 def call_id(gid: bytes, sequence: int) -> str:
     """Return the id of a call, the same in the snapshots of all processes."""
+    # Of an error on a direct line, the sequence number is negative.
     return f"{gid.hex()}:{abs(sequence)}"
 
 
