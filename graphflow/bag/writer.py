@@ -46,6 +46,7 @@ class _Stream:
     """A file whose writes are all or nothing, so that it stays readable on a full disk."""
 
     def __init__(self, path: Path, make_room: Callable[[], bool]) -> None:
+        # Unbuffered, so that an error tells how much of this very write has reached the file.
         self._file = path.open("xb", buffering=0)
         self._end = 0
         self._make_room = make_room
@@ -130,6 +131,7 @@ class _McapPart(FileWriter):
         return self._writer.register_channel(topic.name, topic.encoding, self._schemas[key], about)
 
     def _add(self, number: int, record: Record) -> None:
+        # MCAP's sequence number is a uint32.
         self._writer.add_message(number, record.log_ns, record.data, record.publish_ns, record.sequence % (1 << 32))
 
 
@@ -183,6 +185,7 @@ class BagWriter:
         self._flushed_ns = self._synced_ns = self._now_ns()
         with _bag_errors(folder):
             self._reserve = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115 - it ends with the process
+            # Written in full, since a sparse file would reserve nothing.
             self._reserve.write(bytes(RESERVE))
             self._reserve.flush()
         try:
@@ -265,6 +268,7 @@ class BagWriter:
             BagError: The end cannot be written; the bag so far can be read.
         """
         with _bag_errors(self.folder):
+            # First: the end of the bag may need its room.
             self._reserve.close()
             if not self._is_finished:
                 self._finish()
@@ -306,6 +310,7 @@ class BagWriter:
     def _write_metadata(self) -> None:
         files = self._files()
         text = metadata.written(files, together([file.contents for file in files]), self._custom, self._storage)
+        # Replaced in one step: nobody, not even after a kill, finds half of it.
         fresh = self.folder / f".{metadata.FILE}"
         fresh.write_text(text, encoding="utf-8")
         fresh.replace(self.folder / metadata.FILE)

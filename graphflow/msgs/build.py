@@ -130,10 +130,12 @@ def _fits(type_: FieldType, value: str) -> str:
         case "float64":
             return f"{value}.__class__ is float"
         case "float32":
+            # Well below the largest float32: `convert` decides beyond that.
             return f"{value}.__class__ is float and -1e38 < {value} < 1e38"
         case "string" if not type_.string_bound:
             return f"{value}.__class__ is str"
         case "string" | "wstring":
+            # The bound counts bytes or UTF-16 code units, of which ASCII has as many as characters.
             bound = f" and len({value}) <= {type_.string_bound}" if type_.string_bound else ""
             return f"{value}.__class__ is str and {value}.isascii(){bound}"
         case integer:

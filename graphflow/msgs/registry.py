@@ -114,6 +114,7 @@ def roots() -> Iterator[Path]:
 
     Definitions that differ in a wire profile are in a folder of its name.
     """
+    # First, so that its definitions take precedence.
     overlay = BUNDLED / wire_profile()
     if overlay.is_dir():
         yield overlay

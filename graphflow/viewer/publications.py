@@ -57,6 +57,7 @@ class Publications:
             except (ValueError, RecursionError) as error:
                 raise UsageFault(f"{publisher.name}: {error}") from None
         else:
+            # Only to check it: the publisher sends whatever it is given.
             registry.codec(publisher.type_name).decode(data)
         publisher.publish(data)
 

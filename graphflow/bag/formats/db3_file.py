@@ -52,6 +52,8 @@ class Db3File:
         self.contents = Contents({t.name: t for t in self._topics.values()}, counts, start, end)
 
     def _open(self) -> sqlite3.Connection:
+        # Without `immutable`, SQLite would create files beside a bag in WAL mode, whose folder may be read-only. With
+        # it, SQLite ignores the two files that are refused above.
         base = sqlite3.connect(f"{self.path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
         base.text_factory = lambda raw: raw.decode("utf-8", "replace")
         return base

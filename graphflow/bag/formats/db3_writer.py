@@ -49,6 +49,7 @@ class Db3Part(FileWriter):
         """Statements with their values."""
         self._bytes = 0
         self._types: set[str] = set()
+        # SQLite itself would open a file that exists.
         os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         # Used by one thread after the other: the recorder's after the one that created it.
         self._base = sqlite3.connect(path, isolation_level=None, check_same_thread=False)

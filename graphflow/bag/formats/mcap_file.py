@@ -108,6 +108,7 @@ class McapFile:
         waiting: list[_Waiting] = []
         with self._opened() as file:
             for block in blocks:
+                # Chunks may overlap in time: only messages older than the next chunk are certain to be next.
                 while waiting and waiting[0][0] < block.start_ns:
                     yield _record(heapq.heappop(waiting), wanted)
                 for number, (channel, sequence, log_ns, publish_ns, data) in enumerate(self._messages(file, block)):
@@ -196,6 +197,7 @@ class McapFile:
                 elif kind == FOOTER:
                     self.is_whole = True
                     return
+                # No opcode: a file system fills with zeros what a crash has kept from being written.
                 elif kind == 0:
                     raise _Broken
                 else:

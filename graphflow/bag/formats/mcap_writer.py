@@ -158,6 +158,7 @@ class McapWriter:
     def finish(self) -> None:
         """Write the end of the file: its index."""
         self.flush()
+        # 0 means that there is no checksum (MCAP, "Data End").
         self._stream.write(_record(DataEnd(data_section_crc=0)))
         start = self._stream.tell()
         groups: list[tuple[Opcode, list[McapRecord]]] = [
@@ -177,6 +178,7 @@ class McapWriter:
         offsets_start = start + len(summary)
         for record in offsets:
             summary += _record(record)
+        # The checksum covers the summary, and the footer up to the checksum itself (MCAP, "Footer").
         footer = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets_start)
         check = zlib.crc32(footer, zlib.crc32(summary))
         end = Footer(summary_start=start, summary_offset_start=offsets_start, summary_crc=check)

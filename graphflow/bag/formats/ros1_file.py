@@ -65,6 +65,7 @@ class Ros1File:
                 )
                 counts[name] = counts.get(name, 0) + connection.msgcount
             topics = {topic.name: topic for topic in self._topics.values()}
+            # The end that rosbags gives is the first nanosecond after the last message.
             start, end = (reader.start_time, reader.end_time - 1) if any(counts.values()) else (0, 0)
         self.contents = Contents(topics, counts, start, end)
 
@@ -88,6 +89,7 @@ class Ros1File:
             raise BagError(f"{self.path}: {text}") from None
         try:
             with Reader(self.path) as reader:
+                # By itself, rosbags would decompress a chunk to any size.
                 for place, chunk in reader.chunks.items():
                     reader.chunks[place] = chunk._replace(decompressor=_bounded(chunk.decompressor))
                 yield reader
