@@ -143,6 +143,7 @@ class Search:
         self.watchdog.close()
         if self._alarm is not None:
             self._alarm.cancel()
+        # From now on, `arm` returns at once.
         self.is_armed = True
 
     # probes

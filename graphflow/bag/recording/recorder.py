@@ -247,6 +247,7 @@ class Recorder:
 
     def _arrived(self, name: str, payload: bytes, info: MessageInfo) -> None:
         if self.is_paused:
+            # A pause is no gap.
             self._last.clear()
             return
         now_ns = self._node.clock.time_ns()
@@ -306,6 +307,7 @@ class Recorder:
             was_low = self._waiting < self._cache // 4
             self._waiting += size
             self.recorded += 1
+            # Already at a quarter, so that a burst is written before `WRITE_EVERY` has passed and the cache is full.
             if was_low and self._waiting >= self._cache // 4:
                 self._work.notify()
 
@@ -344,6 +346,7 @@ class Recorder:
                 for record in came:
                     self._kept.put(record)
             self._split_after, self._is_writing_snapshot = None, False
+        # Without the lock: a slow disk must not hold up the loop.
         for topic in topics:
             self._writer.declare(topic)
         if split_after is not None:

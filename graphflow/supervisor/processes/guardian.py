@@ -57,6 +57,7 @@ def guard(supervise: Callable[[], int], note: int, descriptors: tuple[int, ...])
         os.dup2(null, fd)
     for fd in (null, *descriptors):
         os.close(fd)
+    # After the fork, since children inherit ignored signals, and the supervisor acts on SIGTERM.
     for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     code = os.waitstatus_to_exitcode(_wait_for(pid))

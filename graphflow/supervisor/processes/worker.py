@@ -348,6 +348,7 @@ def _one_line(error: Exception) -> str:
 
 def become(log: str, env: dict[str, str], parent: int) -> None:
     """Turn a new child into a worker's process: session, signals, stdin, log file, environment."""
+    # Its own process group, by which it is ended together with what it has started (`kill_group`).
     os.setsid()
     end_with_parent(parent, signal.SIGTERM)
     # These settings, and the wake-up descriptor, are the preload process's own; a fork inherits them.
