@@ -27,6 +27,11 @@ GraphflowError
 |-- TransitionRefused         raised by a lifecycle hook to keep the node in its state
 |-- TransitionFailed          a lifecycle transition was refused, failed, or is not possible now
 |-- LoopBlockedError          a blocking call was made on the event loop
+|-- TransformError            a transform between two frames is not available
+|   |-- UnknownFrame          nobody has placed a frame of that name
+|   |-- UnconnectedFrames     the frames are in two trees
+|   |-- FrameLoop             the frames above one of them form a loop
+|   `-- ExtrapolationError    the time is before or after the known transforms
 `-- CallError                 a call ended without a response
     |-- ServiceUnavailable    no node offers that name
     |-- ServerLost            the server disappeared during the call
@@ -236,6 +241,47 @@ class TransitionFailed(GraphflowError):
 
 class LoopBlockedError(GraphflowError):
     """A blocking call was made on the event loop, which would stop the whole process; await it instead."""
+
+
+class TransformError(GraphflowError):
+    """A transform between two frames is not available.
+
+    Attributes:
+        target, source: The frames that were looked up.
+        frame: The frame that is missing or too old; "" if it is not one.
+    """
+
+    def __init__(self, message: str, target: str, source: str, frame: str = "") -> None:
+        super().__init__(message)
+        self.target, self.source, self.frame = target, source, frame
+
+
+class UnknownFrame(TransformError):
+    """No transform has named the frame."""
+
+
+class UnconnectedFrames(TransformError):
+    """Two frames are in separate trees."""
+
+
+class FrameLoop(TransformError):
+    """The parents of a frame lead back to it."""
+
+
+class ExtrapolationError(TransformError):
+    """A time is before or after the known transforms of a frame.
+
+    Attributes:
+        parent: The parent of `frame`.
+        requested_ns, oldest_ns, newest_ns: The requested time, and the times between which transforms are known.
+    """
+
+    def __init__(
+        self, message: str, target: str, source: str, frame: str, parent: str, times: tuple[int, int, int]
+    ) -> None:
+        super().__init__(message, target, source, frame)
+        self.parent = parent
+        self.requested_ns, self.oldest_ns, self.newest_ns = times
 
 
 class CallError(GraphflowError):

@@ -14,7 +14,8 @@ from graphflow.errors import ParameterError
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import COMMON_PARAMETERS, Interface
 from graphflow.runtime.declarations import declared
-from graphflow.runtime.declarations.declare import ActionClient, Client, Held, Param, Publisher, Subscription
+from graphflow.runtime.declarations.creator import Creator, Owner
+from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.declarations.handlers import Handler, Rate
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.failures import ErrorBudget
@@ -24,31 +25,6 @@ from graphflow.times import to_ns
 
 CHAIN = 100
 """Limit of parameter changes in a second that each result from a hook on the change before."""
-
-
-class Creator(Protocol):
-    """The methods of a node that create its endpoints."""
-
-    @property
-    def create_publisher(self) -> Callable[..., object]: ...
-
-    @property
-    def create_subscription(self) -> Callable[..., object]: ...
-
-    @property
-    def create_service(self) -> Callable[..., object]: ...
-
-    @property
-    def create_client(self) -> Callable[..., object]: ...
-
-    @property
-    def create_action_server(self) -> Callable[..., object]: ...
-
-    @property
-    def create_action_client(self) -> Callable[..., object]: ...
-
-    @property
-    def create_timer(self) -> Callable[..., Timer]: ...
 
 
 class Instance(declared.NodeClass, Creator, Protocol):
@@ -69,11 +45,12 @@ class Binding:
 
     Attributes:
         held: Endpoints and parameter values, by attribute.
+        node, owner: The node, and its core.
     """
 
-    def __init__(self, node: Creator, host: Host, parameters: Parameters) -> None:
+    def __init__(self, node: Creator, owner: Owner, parameters: Parameters) -> None:
         self.held: dict[str, object] = {}
-        self._node, self._host, self._parameters = node, host, parameters
+        self.node, self.owner, self._parameters = node, owner, parameters
         self._class = type(node)
         self._timers: list[tuple[Rate, Timer]] = []
         self._hooks = declared.param_hooks(self._class)
@@ -87,7 +64,7 @@ class Binding:
             self._parameters.declare(parameter)
         for attribute, item in declared.held(self._class).items():
             if isinstance(item, Param):
-                self.held[attribute] = self._parameters.declare(item.parameter)
+                self.held[attribute] = item.create(self)
                 self._settled.add(item.parameter.name)
         self._parameters.check(self._check)
         self._parameters.observe(self._changed)
@@ -96,45 +73,31 @@ class Binding:
         """Create the endpoints, handlers and timers."""
         for attribute, item in declared.held(self._class).items():
             if not isinstance(item, Param):
-                self.held[attribute] = self._create(item)
+                self.held[attribute] = item.create(self)
         for attribute, handler in declared.handlers(self._class).items():
-            self._bind_handler(getattr(self._node, attribute), handler)
+            self._bind_handler(getattr(self.node, attribute), handler)
 
-    def _create(self, item: Held) -> object:
-        node = self._node
-        match item:
-            case Publisher():
-                return node.create_publisher(item.type, item.name, item.qos, on_event=self._method(item.on_event))
-            case Subscription():
-                options = {"ignore_local": item.ignore_local, "on_event": self._method(item.on_event)}
-                return node.create_subscription(item.type, item.name, None, item.qos, **options)
-            case Client():
-                return node.create_client(item.type, item.name, introspection=item.introspection, group=item.group)
-            case ActionClient():
-                return node.create_action_client(item.type, item.name)
-        raise TypeError(f"{item!r} cannot be made")
-
-    def _method(self, fn: object) -> object:
+    def method(self, fn: object) -> object:
         """Return a function of the class body as the node's method, which a subclass may have overridden.
 
         A function that is not an attribute of the class, such as a lambda, is bound as it is.
         """
         if not inspect.isfunction(fn):
             return fn
-        return getattr(self._node, fn.__name__) if hasattr(self._class, fn.__name__) else MethodType(fn, self._node)
+        return getattr(self.node, fn.__name__) if hasattr(self._class, fn.__name__) else MethodType(fn, self.node)
 
     def _bind_handler(self, method: Callable[..., object], handler: Handler) -> None:
-        node = self._node
+        node = self.node
         options: dict[str, object] = {"group": handler.group, "thread": handler.thread}
         if handler.kind == "subscription":
             options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
-            options |= {"on_event": self._method(handler.on_event), "on_error": handler.on_error}
+            options |= {"on_event": self.method(handler.on_event), "on_error": handler.on_error}
             node.create_subscription(handler.type, handler.name, method, handler.qos, **options)
         elif handler.kind == "service":
             node.create_service(handler.type, handler.name, method, introspection=handler.introspection, **options)
         elif handler.action is not None:
-            options |= {"accept": self._method(handler.action.accept), "policy": handler.action.policy}
-            options["cancellable"] = self._method(handler.action.cancellable)
+            options |= {"accept": self.method(handler.action.accept), "policy": handler.action.policy}
+            options["cancellable"] = self.method(handler.action.cancellable)
             options["on_client_loss"] = handler.action.on_client_loss
             options["cleanup_timeout"] = handler.action.cleanup_timeout
             node.create_action_server(handler.type, handler.name, method, **options)
@@ -162,7 +125,7 @@ class Binding:
             name = hook.param.parameter.name
             if hook.kind == "check" and name in values:
                 try:
-                    answer = getattr(self._node, attribute)(values[name])
+                    answer = getattr(self.node, attribute)(values[name])
                 except ValueError as error:
                     raise ParameterError(f"parameter {name!r} = {values[name]!r}: {error}") from None
                 if answer is not None and answer is not True:
@@ -170,22 +133,22 @@ class Binding:
                     raise ParameterError(f"parameter {name!r} is not set: {attribute} returned {answer!r}; {text}")
 
     def _changed(self, changes: Mapping[str, ParameterChange]) -> None:
-        for name, (old, new) in changes.items() if self._host.is_running else ():
+        for name, (old, new) in changes.items() if self.owner.is_running else ():
             if old is not None and name not in self._settled:
                 self._settled.add(name)
                 from graphflow.runtime.mistakes.source.copies import kept  # most nodes never need it
 
-                if text := kept(self._node, name, old, new):
-                    self._host.log.warning("%s", text)
+                if text := kept(self.node, name, old, new):
+                    self.owner.log.warning("%s", text)
         for rate, timer in self._timers:
             if changes.keys() & rate.parameters():
                 timer.period = self._period_ns(rate, {}) / 1e9
         for attribute, hook in self._hooks.items():
             change = changes.get(hook.param.parameter.name)
-            if hook.kind == "on_change" and change is not None and self._host.is_running:
+            if hook.kind == "on_change" and change is not None and self.owner.is_running:
                 if attribute not in self._followers:
                     name = hook.param.parameter.name
-                    self._followers[attribute] = _Follower(self._host, getattr(self._node, attribute), name)
+                    self._followers[attribute] = _Follower(self.owner, getattr(self.node, attribute), name)
                 self._followers[attribute].follow(change)
 
     def runners(self) -> list[Runner]:

@@ -7,17 +7,19 @@ of the class, each declaration becomes a call of the `create_*` method that the 
 from __future__ import annotations
 
 import inspect
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, Literal, NoReturn, Protocol, Self, TypeVar, get_args, overload
 
 from graphflow.errors import DeclarationError, GraphflowError, ParameterError, Place
 from graphflow.executor.groups import Groups, HandlerGroup
-from graphflow.interface import Parameter, WhenFull, type_of
+from graphflow.interface import EndpointInfo, Parameter, WhenFull, type_of
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.qos import Qos
 from graphflow.runtime.call_site import here
 from graphflow.runtime.declarations.checks import check_group, check_name, check_on_event, check_qos, check_type
+from graphflow.runtime.declarations.creator import Maker
 from graphflow.runtime.endpoints.service_events import Introspection
 from graphflow.runtime.mistakes.rclpy_words import MadeByNodes, with_argument_hints
 from graphflow.runtime.parameters.params import Parameters
@@ -100,7 +102,7 @@ class Group:
         return f"Group({self.name or 'unnamed'}, limit={self.limit})"
 
 
-class Held(MadeByNodes):
+class Held(MadeByNodes, ABC):
     """A declaration as a class attribute; on a node, its runtime object."""
 
     attribute = ""
@@ -108,6 +110,14 @@ class Held(MadeByNodes):
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.attribute = name
+
+    def endpoints(self) -> Sequence[EndpointInfo]:
+        """Return the endpoints it declares, as data."""
+        return ()
+
+    @abstractmethod
+    def create(self, maker: Maker) -> object:
+        """Create the runtime object of one node."""
 
 
 class Publisher(Held, Generic[M]):
@@ -142,6 +152,12 @@ class Publisher(Held, Generic[M]):
         check_on_event(on_event, "Publisher", self.place)
         self.type, self.name, self.qos = type, name, check_qos(qos, depth, self.place)
         self.on_event = on_event
+
+    def endpoints(self) -> Sequence[EndpointInfo]:
+        return [EndpointInfo("publisher", self.name, self.type.SCHEMA.name, self.attribute, self.place)]
+
+    def create(self, maker: Maker) -> object:
+        return maker.node.create_publisher(self.type, self.name, self.qos, on_event=maker.method(self.on_event))
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -182,6 +198,13 @@ class Subscription(Held, Generic[M]):
         """Raise DeclarationError: the declaration was written as a decorator."""
         raise DeclarationError(f"{here()}: on a method write @subscription(...), lower-case")
 
+    def endpoints(self) -> Sequence[EndpointInfo]:
+        return [EndpointInfo("subscription", self.name, self.type.SCHEMA.name, self.attribute, self.place)]
+
+    def create(self, maker: Maker) -> object:
+        options = {"ignore_local": self.ignore_local, "on_event": maker.method(self.on_event)}
+        return maker.node.create_subscription(self.type, self.name, None, self.qos, **options)
+
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
@@ -216,6 +239,13 @@ class Client(Held, Generic[Request, Response]):
         check_name(name, "Client", self.place)
         self.type, self.name, self.introspection, self.group = type, name, introspection, group
 
+    def endpoints(self) -> Sequence[EndpointInfo]:
+        group = "" if self.group is None else self.group.name
+        return [EndpointInfo("client", self.name, self.type.NAME, self.attribute, self.place, group)]
+
+    def create(self, maker: Maker) -> object:
+        return maker.node.create_client(self.type, self.name, introspection=self.introspection, group=self.group)
+
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
@@ -235,6 +265,12 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
         check_type(type, Action, "ActionClient", self.place)
         check_name(name, "ActionClient", self.place)
         self.type, self.name = type, name
+
+    def endpoints(self) -> Sequence[EndpointInfo]:
+        return [EndpointInfo("action client", self.name, self.type.NAME, self.attribute, self.place)]
+
+    def create(self, maker: Maker) -> object:
+        return maker.node.create_action_client(self.type, self.name)
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -318,6 +354,9 @@ class Param(Held, Generic[V]):
     def __set_name__(self, owner: type, name: str) -> None:
         super().__set_name__(owner, name)
         self.parameter = replace(self.parameter, name=self._name or name)
+
+    def create(self, maker: Maker) -> object:
+        return maker.owner.parameters.declare(self.parameter)
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...

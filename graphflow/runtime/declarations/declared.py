@@ -14,7 +14,6 @@ from graphflow.errors import DeclarationError, Place
 from graphflow.interface import (
     COMMON_PARAMETERS,
     EndpointInfo,
-    EndpointKind,
     GroupInfo,
     HandlerInfo,
     Interface,
@@ -23,8 +22,6 @@ from graphflow.interface import (
 from graphflow.runtime.callables import code_of, file_of
 from graphflow.runtime.declarations.declare import (
     HOOK_MARK,
-    ActionClient,
-    Client,
     Group,
     Held,
     Param,
@@ -187,7 +184,8 @@ def interface_of(cls: type[NodeClass]) -> Interface:
         DeclarationError: Two declarations contradict each other.
     """
     place = _source_place(cls)
-    params, endpoints, methods = _params(cls), _attributes(cls), handlers(cls)
+    params, methods = _params(cls), handlers(cls)
+    endpoints = [endpoint for declared in held(cls).values() for endpoint in declared.endpoints()]
     for attribute, handler in methods.items():
         _check_rate(cls, attribute, handler, params)
         if handler.kind in ("subscription", "service", "action"):
@@ -227,27 +225,6 @@ def _params(cls: type) -> dict[str, Parameter]:
         if parameter.name in found:
             raise DeclarationError(f"{parameter.place}: {cls.__name__} declares the parameter {parameter.name!r} twice")
         found[parameter.name] = parameter
-    return found
-
-
-def _attributes(cls: type) -> list[EndpointInfo]:
-    """Return the endpoints that are declared as attributes."""
-    found: list[EndpointInfo] = []
-    kind: EndpointKind
-    for attribute, declared in held(cls).items():
-        match declared:
-            case Publisher():
-                kind, type_name, group = "publisher", declared.type.SCHEMA.name, None
-            case Subscription():
-                kind, type_name, group = "subscription", declared.type.SCHEMA.name, None
-            case Client():
-                kind, type_name, group = "client", declared.type.NAME, declared.group
-            case ActionClient():
-                kind, type_name, group = "action client", declared.type.NAME, None
-            case _:
-                continue
-        name = "" if group is None else group.name
-        found.append(EndpointInfo(kind, declared.name, type_name, attribute, declared.place, name))
     return found
 
 

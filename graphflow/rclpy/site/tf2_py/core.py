@@ -2,35 +2,23 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 
+from graphflow.errors import TransformError
+from graphflow.tf.faults import fault_of
+from graphflow.tf.frames import Frames
+from graphflow.tf.poses import Pose
+from graphflow.tf.transform import fill, pose_of
 from rclpy.duration import Duration
-from rclpy.impl.mistakes.refused_transforms import TOLERANCE
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.logging import get_logger
 from rclpy.time import Time
-from tf2_py.exceptions import InvalidArgumentException, TransformException
-from tf2_py.frames import Frames
-from tf2_py.poses import Pose
-
-if TYPE_CHECKING:
-    from geometry_msgs.msg import Transform
-
-
-NAME_BOUND = 1000
-"""The length of a frame's name in characters, at most."""
-
-
-def pose_of(transform: Transform) -> Pose:
-    """Convert a `geometry_msgs/Transform` to a pose."""
-    t, r = transform.translation, transform.rotation
-    return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
+from tf2_py.exceptions import InvalidArgumentException, TransformException, in_words_of_tf2
 
 
 def nanoseconds(time: Any) -> int:
@@ -39,13 +27,9 @@ def nanoseconds(time: Any) -> int:
 
 
 def message(pose: Pose, target: str, source: str, stamp: int) -> TransformStamped:
-    """Convert the pose of a frame to a message."""
+    """Convert the pose of a frame to a message of rclpy's class."""
     out = TransformStamped()
-    out.header.stamp.sec, out.header.stamp.nanosec = divmod(stamp, 10**9)
-    out.header.frame_id, out.child_frame_id = target, source
-    t, r = out.transform.translation, out.transform.rotation
-    t.x, t.y, t.z = pose.translation
-    r.x, r.y, r.z, r.w = pose.rotation
+    fill(out, pose, target, source, stamp)
     return out
 
 
@@ -80,7 +64,7 @@ class BufferCore:
         # tf2 strips the slash of tf1's names from what it receives, and refuses it in lookups.
         parent, frame = transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/")
         pose = pose_of(transform.transform)
-        fault = _fault(frame, parent, pose)
+        fault = fault_of(frame, parent, pose)
         if fault is not None:
             _logger(fault).error(f"transform from {authority!r} is dropped: {fault}", throttle_duration_sec=1.0)
             return
@@ -105,9 +89,16 @@ class BufferCore:
         if target_frame != source_frame:
             _check(target_frame, "target_frame")
             _check(source_frame, "source_frame")
-        with self._graphflow_lock:
-            pose, stamp = self._graphflow_frames.find(target_frame, source_frame, nanoseconds(time))
+        pose, stamp = self._graphflow_find(target_frame, source_frame, nanoseconds(time))
         return message(pose, target_frame, source_frame, stamp)
+
+    def _graphflow_find(self, target: str, source: str, stamp: int) -> tuple[Pose, int]:
+        """Return the pose of `source` in `target`, and its time. Raises TransformException."""
+        try:
+            with self._graphflow_lock:
+                return self._graphflow_frames.find(target, source, stamp)
+        except TransformError as error:
+            raise in_words_of_tf2(error) from None
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: object, source_frame: str, source_time: object, fixed_frame: str
@@ -115,9 +106,8 @@ class BufferCore:
         """Return the transform between two times; `fixed_frame` does not move between them."""
         for name, role in ((target_frame, "target"), (source_frame, "source"), (fixed_frame, "fixed")):
             _check(name, f"{role}_frame")
-        with self._graphflow_lock:
-            first, _ = self._graphflow_frames.find(fixed_frame, source_frame, nanoseconds(source_time))
-            second, stamp = self._graphflow_frames.find(target_frame, fixed_frame, nanoseconds(target_time))
+        first, _ = self._graphflow_find(fixed_frame, source_frame, nanoseconds(source_time))
+        second, stamp = self._graphflow_find(target_frame, fixed_frame, nanoseconds(target_time))
         return message(second.of(first), target_frame, source_frame, stamp)
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: object) -> tuple[bool, str]:
@@ -134,8 +124,11 @@ class BufferCore:
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """Return the latest time at which the whole chain between two frames is known. Raises TransformException."""
-        with self._graphflow_lock:
-            return Time(nanoseconds=self._graphflow_frames.latest_common(target_frame, source_frame))
+        try:
+            with self._graphflow_lock:
+                return Time(nanoseconds=self._graphflow_frames.latest_common(target_frame, source_frame))
+        except TransformError as error:
+            raise in_words_of_tf2(error) from None
 
     def clear(self) -> None:
         """Forget all transforms."""
@@ -189,18 +182,3 @@ def _check(frame: str, role: str) -> None:
         raise InvalidArgumentException(f"{said} in tf2 frame_ids cannot start with a '/'")
     if not frame:
         raise InvalidArgumentException(f"{said} in tf2 frame_ids cannot be empty")
-
-
-def _fault(frame: str, parent: str, pose: Pose) -> str | None:
-    """Describe the fault of a transform."""
-    if not frame or not parent:
-        return "frame_id and child_frame_id must not be empty"
-    if frame == parent:
-        return f"frame_id and child_frame_id are both {frame!r}"
-    if max(len(frame), len(parent)) > NAME_BOUND:
-        return f"the name of a frame is longer than {NAME_BOUND} characters"
-    if not all(map(math.isfinite, (*pose.translation, *pose.rotation))):
-        return f"a number of {frame!r} is infinite or not a number"
-    if abs(sum(q * q for q in pose.rotation) - 1) > TOLERANCE:
-        return f"the quaternion of {frame!r} is not normalized"
-    return None

@@ -19,8 +19,9 @@ from tf2_geometry_msgs import (
     transform_covariance,
 )
 from tf2_py.core import message
-from tf2_py.poses import Pose
 from tf2_ros import Buffer
+
+from graphflow.tf.poses import Pose
 
 LEFT = (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
 S = 10**9

@@ -9,8 +9,8 @@ import yaml
 from geometry_msgs.msg import TransformStamped
 from tf2_py import BufferCore, InvalidArgumentException, LookupException
 from tf2_py.core import message, nanoseconds
-from tf2_py.poses import IDENTITY, Pose
 
+from graphflow.tf.poses import IDENTITY, Pose
 from rclpy.duration import Duration
 from rclpy.time import Time
 

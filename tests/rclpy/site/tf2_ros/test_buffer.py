@@ -9,10 +9,10 @@ from collections.abc import Callable
 import pytest
 from tf2_msgs.srv import FrameGraph
 from tf2_py.core import message
-from tf2_py.poses import IDENTITY
 from tf2_ros import Buffer, LookupException
 
 import rclpy
+from graphflow.tf.poses import IDENTITY
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time

@@ -10,10 +10,10 @@ import pytest
 from tf2_msgs.action import LookupTransform
 from tf2_msgs.msg import TF2Error
 from tf2_py.core import message
-from tf2_py.poses import IDENTITY
 from tf2_ros import Buffer, BufferClient, LookupException, TimeoutException, TransformException
 
 import rclpy
+from graphflow.tf.poses import IDENTITY
 from rclpy.action import ActionServer
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor

@@ -7,10 +7,10 @@ import time
 
 import pytest
 from tf2_py.core import message
-from tf2_py.poses import Pose
 from tf2_ros import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformException, TransformListener
 
 import rclpy
+from graphflow.tf.poses import Pose
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from tf2_py.poses import Pose, Vector, about, from_rpy
+from graphflow.tf.poses import Pose, Vector, about, from_rpy
 
 MOVES = {"revolute", "continuous", "prismatic"}
 """The joint types that move; all others are fixed."""

@@ -14,10 +14,10 @@ from uuid import uuid4
 
 from rcl_interfaces.msg import ParameterDescriptor
 from tf2_py.core import message
-from tf2_py.poses import Pose, Quaternion, from_rpy
 from tf2_ros import StaticTransformBroadcaster
 
 import rclpy
+from graphflow.tf.poses import Pose, Quaternion, from_rpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.logging import get_logger
 from rclpy.node import Node

@@ -8,10 +8,10 @@ import math
 import sys
 
 from geometry_msgs.msg import TransformStamped
-from tf2_py.poses import AXES, rotate, to_rpy
 from tf2_ros import Buffer, TransformException, TransformListener
 
 import rclpy
+from graphflow.tf.poses import AXES, rotate, to_rpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.time import Time

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 from tf2_py.core import message
-from tf2_py.poses import Pose
 from tf2_ros import TransformBroadcaster
 
+from graphflow.tf.poses import Pose
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 

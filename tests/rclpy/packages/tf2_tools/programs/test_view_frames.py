@@ -7,7 +7,8 @@ from typing import Any
 
 from tf2_py import BufferCore
 from tf2_py.core import message
-from tf2_py.poses import IDENTITY
+
+from graphflow.tf.poses import IDENTITY
 
 S = 10**9
 

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 
 from graphflow.analysis.user_code import short_place, users_frame
 from graphflow.errors import Place
+from graphflow.tf.faults import TOLERANCE
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import Transform, TransformStamped
 
 
-TOLERANCE = 0.01
-"""The greatest deviation of a quaternion's squared length from 1."""
 _EULER = "x, y, z, w = tf_transformations.quaternion_from_euler(roll, pitch, yaw)"
 _reported: set[Place] = set()
 """The lines that have been reported."""

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tf2_py.poses import IDENTITY, Pose, from_rpy, multiply, rotate, slerp, to_rpy
 from transforms3d import euler, quaternions
+
+from graphflow.tf.poses import IDENTITY, Pose, from_rpy, multiply, rotate, slerp, to_rpy
 
 LEFT = (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
 """A quarter turn to the left."""

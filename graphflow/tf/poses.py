@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from math import acos, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 """x, y, z in metres."""
 Quaternion: TypeAlias = tuple[float, float, float, float]
 """x, y, z, w; of length 1."""
+
+
+_new = tuple.__new__
 
 
 class Pose(NamedTuple):
@@ -19,7 +23,22 @@ class Pose(NamedTuple):
 
     def of(self, inner: Pose) -> Pose:
         """Return the pose in this one's parent of something with the pose `inner` in this one."""
-        return Pose(self.point(inner.translation), multiply(self.rotation, inner.rotation))
+        # `point` and `multiply` in one: lookups spend most of their time here.
+        (tx, ty, tz), (x, y, z, w) = self
+        (a, b, c), (bx, by, bz, bw) = inner
+        u, v, t = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
+        return _new(
+            Pose,
+            (
+                (a + w * u + y * t - z * v + tx, b + w * v + z * u - x * t + ty, c + w * t + x * v - y * u + tz),
+                (
+                    w * bx + x * bw + y * bz - z * by,
+                    w * by - x * bz + y * bw + z * bx,
+                    w * bz + x * by - y * bx + z * bw,
+                    w * bw - x * bx - y * by - z * bz,
+                ),
+            ),
+        )
 
     def point(self, point: Vector) -> Vector:
         """Convert a point's coordinates to the parent's."""
@@ -56,6 +75,12 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
+def unit(q: Quaternion) -> Quaternion:
+    """Normalize a quaternion, with the sign that makes w >= 0; zero becomes the identity."""
+    length = math.copysign(math.hypot(*q), q[3])
+    return (q[0] / length, q[1] / length, q[2] / length, q[3] / length) if length else IDENTITY.rotation
+
+
 def conjugate(q: Quaternion) -> Quaternion:
     """Return the inverse rotation."""
     return -q[0], -q[1], -q[2], q[3]
@@ -71,15 +96,18 @@ def rotate(q: Quaternion, vector: Vector) -> Vector:
 
 def slerp(a: Quaternion, b: Quaternion, share: float) -> Quaternion:
     """Interpolate the shorter rotation from `a` to `b` at a share of 0 to 1."""
-    dot = sum(p * q for p, q in zip(a, b, strict=True))
-    sign = -1.0 if dot < 0 else 1.0
-    angle = math.acos(min(1.0, abs(dot)))
-    if angle < 1e-6:
-        start, end = 1 - share, share
-    else:
-        start, end = math.sin((1 - share) * angle) / math.sin(angle), math.sin(share * angle) / math.sin(angle)
-    x, y, z, w = (start * p + sign * end * q for p, q in zip(a, b, strict=True))
-    length = math.sqrt(x * x + y * y + z * z + w * w)
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    dot = ax * bx + ay * by + az * bz + aw * bw
+    end = share
+    if dot < 0:  # -b is the same rotation, on the nearer side
+        dot, end = -dot, -share
+    start = 1 - share
+    if dot < 0.9999999:  # below that the chord serves: the sines would be nearly 0
+        angle = acos(dot)
+        start, end = sin(start * angle), sin(end * angle)
+    x, y, z, w = start * ax + end * bx, start * ay + end * by, start * az + end * bz, start * aw + end * bw
+    length = sqrt(x * x + y * y + z * z + w * w)
     return x / length, y / length, z / length, w / length
 
 

@@ -1,0 +1,148 @@
+"""The result of a lookup: the pose of one frame in another at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from graphflow.msgs.geometry_msgs.msg import Transform as TransformMessage
+from graphflow.msgs.geometry_msgs.msg import TransformStamped
+from graphflow.msgs.std_msgs.msg import Header
+from graphflow.tf import messages
+from graphflow.tf.poses import AXES, Pose, Quaternion, Vector, from_rpy, rotate, to_rpy
+from graphflow.times import Time
+
+M = TypeVar("M")
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """The pose of the frame `child` in `parent` at a time; it converts coordinates in `child` to those in `parent`.
+
+    Attributes:
+        stamp: The time for which it holds; 0 if it always does.
+        pose: A translation in metres and a rotation as a quaternion (x, y, z, w) of length 1.
+    """
+
+    parent: str
+    child: str
+    pose: Pose
+    stamp: Time = Time(0)  # noqa: RUF009 - frozen
+
+    @classmethod
+    def of(
+        cls,
+        parent: str,
+        child: str,
+        translation: Vector = (0.0, 0.0, 0.0),
+        *,
+        rpy: Vector = (0.0, 0.0, 0.0),
+        rotation: Quaternion | None = None,
+        stamp: Time = Time(0),  # noqa: B008 - frozen
+    ) -> Transform:
+        """Return a transform from its numbers.
+
+        Args:
+            translation: x, y, z in metres.
+            rpy: Roll, pitch and yaw in radians: rotations about the fixed axes x, y and z in turn.
+            rotation: A quaternion (x, y, z, w) in place of `rpy`.
+            stamp: Its time; by default the time of sending.
+        """
+        x, y, z = map(float, translation)
+        return cls(parent, child, Pose((x, y, z), from_rpy(*rpy) if rotation is None else rotation), stamp)
+
+    @classmethod
+    def from_msg(cls, message: TransformStamped) -> Transform:
+        """Convert a `geometry_msgs/TransformStamped`."""
+        stamp = Time.from_msg(message.header.stamp)
+        return cls(message.header.frame_id, message.child_frame_id, pose_of(message.transform), stamp)
+
+    def to_msg(self) -> TransformStamped:
+        """Convert to a `geometry_msgs/TransformStamped`."""
+        return stamped(self.pose, self.parent, self.child, self.stamp.nanoseconds)
+
+    @property
+    def translation(self) -> Vector:
+        """x, y, z in metres."""
+        return self.pose.translation
+
+    @property
+    def rotation(self) -> Quaternion:
+        """The quaternion x, y, z, w, of length 1."""
+        return self.pose.rotation
+
+    @property
+    def rpy(self) -> Vector:
+        """Roll, pitch and yaw in radians."""
+        return to_rpy(self.pose.rotation)
+
+    @property
+    def yaw(self) -> float:
+        """The rotation about z in radians, from -pi to pi."""
+        return to_rpy(self.pose.rotation)[2]
+
+    def matrix(self) -> NDArray[np.float64]:
+        """Return the homogeneous matrix, of shape (4, 4)."""
+        out = np.eye(4)
+        out[:3, :3] = self._turn()
+        out[:3, 3] = self.pose.translation
+        return out
+
+    def _turn(self) -> NDArray[np.float64]:
+        return np.array([rotate(self.pose.rotation, axis) for axis in AXES]).T
+
+    def inverse(self) -> Transform:
+        """Return the pose of `parent` in `child`."""
+        return Transform(self.child, self.parent, self.pose.inverse(), self.stamp)
+
+    def __matmul__(self, other: Transform) -> Transform:
+        """Chain two transforms: `map_to_odom @ odom_to_base`.
+
+        Raises:
+            ValueError: The child of the first is not the parent of the second.
+        """
+        if self.child != other.parent:
+            chain = f"{self.parent} -> {self.child} and {other.parent} -> {other.child}"
+            raise ValueError(f"{chain} do not join: {self.child!r} is not {other.parent!r}")
+        return Transform(self.parent, other.child, self.pose.of(other.pose), max(self.stamp, other.stamp))
+
+    def points(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Convert points in `child` to `parent`: an array of shape (..., 3), in metres, to a new array."""
+        return np.asarray(points, dtype=np.float64) @ self._turn().T + self.pose.translation
+
+    def vectors(self, vectors: ArrayLike) -> NDArray[np.float64]:
+        """Rotate vectors, which have no place, such as velocities: an array of shape (..., 3)."""
+        return np.asarray(vectors, dtype=np.float64) @ self._turn().T
+
+    def apply(self, message: Any) -> Any:
+        """Convert a message with a header from `child` to `parent`; a `LaserScan` becomes a `PointCloud2`.
+
+        Raises:
+            TypeError: Messages of its type cannot be converted; the text lists those that can.
+        """
+        return messages.convert(message, self.pose, Header(stamp=self.to_msg().header.stamp, frame_id=self.parent))
+
+
+def pose_of(transform: TransformMessage) -> Pose:
+    """Convert a `geometry_msgs/Transform` to a pose."""
+    t, r = transform.translation, transform.rotation
+    return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
+
+
+def stamped(pose: Pose, parent: str, child: str, stamp_ns: int) -> TransformStamped:
+    """Convert the pose of `child` in `parent` to a message."""
+    out = TransformStamped()
+    fill(out, pose, parent, child, stamp_ns)
+    return out
+
+
+def fill(message: TransformStamped, pose: Pose, parent: str, child: str, stamp_ns: int) -> None:
+    """Fill in a message with the pose of `child` in `parent`."""
+    header, transform = message.header, message.transform
+    header.stamp.sec, header.stamp.nanosec = divmod(stamp_ns, 10**9)
+    header.frame_id, message.child_frame_id = parent, child
+    t, r = transform.translation, transform.rotation
+    (t.x, t.y, t.z), (r.x, r.y, r.z, r.w) = pose
