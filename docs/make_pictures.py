@@ -34,7 +34,8 @@ from tests.tui.terminal import Terminal
 
 PICTURES = Path(__file__).parent / "pictures"
 WIDE, SMALL = (110, 32), (80, 24)
-GALLERY, TALL = (128, 17), (100, 52)
+GALLERY, BROAD, TALL = (128, 17), (172, 17), (100, 52)
+SIZES = {"ten_turtles": TALL, "turtle_tf2": BROAD}
 CELL_WIDTH, CELL_HEIGHT, FONT_SIZE, MARGIN = 8.43, 17.0, 14, 10
 GROUND, INK = "#0f151c", "#d9e2ec"
 FONTS = "DejaVu Sans Mono, Menlo, Consolas, monospace"
@@ -158,7 +159,7 @@ def gallery() -> None:
         if file.stem == "fibonacci":  # it has no topics; the scene `goals` shows it
             continue
         with stage() as s:
-            t = s.open(f"up {file}", TALL if file.stem == "ten_turtles" else GALLERY)
+            t = s.open(f"up {file}", SIZES.get(file.stem, GALLERY))
             t.until("● running", 60)
             time.sleep(4)
             open_window(t, "graph")

@@ -280,6 +280,8 @@ class Interface:
     """Places where endpoints are created whose names the source does not show."""
     is_managed: bool = False
     """Whether it is a `LifecycleNode`."""
+    attributes: tuple[str, ...] = ()
+    """Attributes that the class declares, of any kind."""
 
     def param(self, name: str) -> Parameter | None:
         """Find a parameter of the class, or of every node, by name."""
@@ -306,6 +308,7 @@ class Interface:
             groups={name: GroupInfo(**group) for name, group in data["groups"].items()},
             dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
             unread=tuple(Place(*place) for place in data["unread"]),
+            attributes=tuple(data["attributes"]),
         )
 
 

@@ -147,7 +147,7 @@ class _CallGraph:
             for place, what in source.lost_sight_of(handler.name, clients):
                 self._unresolved.append(Finding("unresolved", place, f"{actor} {what}"))
             for call in found:
-                if call.name not in clients:
+                if call.name not in clients and call.name not in interface.attributes:
                     text = f"{actor} calls self.{call.name}, which is made at run time"
                     self._unresolved.append(Finding("unresolved", call.place, text))
             for endpoint in interface.endpoints:

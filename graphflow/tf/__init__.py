@@ -6,9 +6,9 @@ is refused, and `reports` what is warned of. Only `declaration` and `buffer` kno
 on the other modules. May import the runtime and everything below it.
 """
 
-from graphflow.tf.buffer import TransformBuffer
+from graphflow.tf.buffer import FrameInfo, TransformBuffer
 from graphflow.tf.declaration import Transforms
 from graphflow.tf.poses import Pose
 from graphflow.tf.transform import Transform
 
-__all__ = ["Pose", "Transform", "TransformBuffer", "Transforms"]
+__all__ = ["FrameInfo", "Pose", "Transform", "TransformBuffer", "Transforms"]

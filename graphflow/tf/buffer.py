@@ -39,18 +39,43 @@ Stamp: TypeAlias = Time | HasFields | None
 """A time: a `Time`, a message's stamp, or None for the latest."""
 
 
+@dataclass(frozen=True, slots=True)
+class FrameInfo:
+    """The transforms of one frame, as a node receives them.
+
+    Attributes:
+        publisher: The full name of the node that publishes it; "" if that has ended.
+        rate: Transforms per second over the time that is kept; 0 for a static frame, and for a single transform.
+        newest: The time of the newest transform.
+        delay, longest_delay: Seconds from a transform's time to its arrival: on average, and at most.
+    """
+
+    frame: str
+    parent: str
+    publisher: str
+    is_static: bool
+    rate: float
+    newest: Time
+    delay: float
+    longest_delay: float
+
+
 @dataclass(slots=True)
 class Sender:
     """The latest publisher of a frame.
 
     Attributes:
         received_ns: When its latest transform arrived, by the node's clock.
+        count, delays_ns, longest_ns: The number of its transforms, and the sum and the longest of their delays.
         former: The GIDs of those before it.
     """
 
     gid: bytes
-    received_ns: int = 0
     former: frozenset[bytes] = frozenset()
+    received_ns: int = 0
+    count: int = 0
+    delays_ns: int = 0
+    longest_ns: int = 0
 
 
 @dataclass(slots=True, eq=False)
@@ -110,6 +135,38 @@ class TransformBuffer:
     def parent(self, frame: str) -> str | None:
         """Return the frame that a frame is placed in now; None for a root or an unknown frame."""
         return self._frames.parent(frame)
+
+    def chain(self, target: str, source: str) -> list[str]:
+        """Return the frames from `target` to `source`, both included, as they are placed now.
+
+        Raises:
+            UnknownFrame, UnconnectedFrames, FrameLoop: They are not connected.
+        """
+        return self._frames.chain(target, source)
+
+    def info(self, frame: str) -> FrameInfo:
+        """Return a frame's parent, publisher, rate and delays.
+
+        Raises:
+            UnknownFrame: No transform places it in another frame.
+        """
+        history, sender = self._frames.histories.get(frame), self._senders.get(frame)
+        if history is None or sender is None:
+            raise UnknownFrame(f"no transform places {frame!r} in another frame", frame, frame, frame)
+        return FrameInfo(
+            frame,
+            history.parents[-1],
+            self._name_of(sender.gid) or "",
+            history.is_static,
+            history.rate,
+            Time(history.stamps[-1]),
+            sender.delays_ns / sender.count / NANOSECONDS,
+            sender.longest_ns / NANOSECONDS,
+        )
+
+    def infos(self) -> list[FrameInfo]:
+        """Return the frames that have a parent, sorted by name."""
+        return [self.info(frame) for frame in sorted(self._frames.histories) if frame in self._senders]
 
     def get(
         self, target: str, source: str, at: Stamp = None, *, fixed: str | None = None, target_at: Stamp = None
@@ -233,10 +290,9 @@ class TransformBuffer:
         if error.requested_ns < error.oldest_ns:
             return f"; the node keeps {seconds(self._frames.kept)} s, more with Transforms(cache=...)"
         history = self._frames.histories[error.frame]
-        span = history.stamps[-1] - history.stamps[0]
-        rate = f" at {(len(history.stamps) - 1) / (span / NANOSECONDS):.3g} Hz" if span > 0 else ""
+        rate = f" at {history.rate:.3g} Hz" if history.rate else ""
         silent = self._owner.clock.monotonic_ns() - sender.received_ns
-        period = span // (len(history.stamps) - 1) if span > 0 else 0
+        period = to_ns(1 / history.rate) if history.rate else 0
         name = self._name_of(sender.gid)
         if name is None:
             return "; the node that published it has ended"
@@ -284,6 +340,11 @@ class TransformBuffer:
                 self._sender_changed(frame, parent, before, sender, gid)
                 sender = self._senders[frame]
             sender.received_ns = now
+            sender.count += 1
+            delay = time_ns - stamp
+            sender.delays_ns += delay
+            if delay > sender.longest_ns:
+                sender.longest_ns = delay
             if self._waits:
                 self._wake(frame)
                 if before != parent:  # it may have made a frame known, or joined two trees

@@ -29,6 +29,12 @@ class History:
     poses: list[Pose] = field(default_factory=list)
     parents: list[str] = field(default_factory=list)
 
+    @property
+    def rate(self) -> float:
+        """Poses per second; 0 for fewer than two."""
+        span = self.stamps[-1] - self.stamps[0]
+        return (len(self.stamps) - 1) * 1e9 / span if span > 0 else 0.0
+
     def put(self, stamp: int, pose: Pose, parent: str, kept: int) -> bool:
         """Add a pose and drop those more than `kept` nanoseconds older than the latest; return False if too old."""
         stamps = self.stamps
@@ -154,31 +160,44 @@ class Frames:
             return downs[common].inverse().of(ups[common]), stamp
         raise missing or also_missing or self._unconnected(target, source)
 
+    def chain(self, target: str, source: str) -> list[str]:
+        """Return the frames from `target` to `source`, both included, through their nearest common ancestor.
+
+        Raises:
+            UnknownFrame, UnconnectedFrames, FrameLoop: They have none.
+        """
+        for frame in (target, source):
+            if not self.has(frame):
+                raise self._unknown(frame, target, source)
+        down, common, up = self._meet(target, source)
+        return [*down, common, *reversed(up)]
+
     def latest_common(self, target: str, source: str) -> int:
         """Return the latest time common to the chain between two frames; 0 if none of them moves.
 
         Raises:
             UnconnectedFrames, FrameLoop: The frames are not connected.
         """
-        ups, downs = self._above(source), self._above(target)
-        common = next((frame for frame in downs if frame in ups), None)
-        if common is None:
-            for start, above in ((source, ups), (target, downs)):
-                top = next(reversed(above))
-                if top in self.histories:
-                    raise self._loop(top, start, (target, source))
-            raise self._unconnected(target, source)
-        stamps = []
-        for way in (ups, downs):
-            for frame in way:
-                if frame == common and target != source:
-                    break
-                history = self.histories.get(frame)
-                if history is not None and not history.is_static:
-                    stamps.append(history.stamps[-1])
-                if frame == common:
-                    break
+        down, common, up = self._meet(target, source)
+        stamps, histories = [], self.histories
+        for frame in [*down, *up] or [common]:
+            history = histories.get(frame)
+            if history is not None and not history.is_static:
+                stamps.append(history.stamps[-1])
         return min(stamps, default=0)
+
+    def _meet(self, target: str, source: str) -> tuple[list[str], str, list[str]]:
+        """Return the nearest common ancestor of two frames, and those below it on either side, from the bottom up."""
+        ups, downs = self._above(source), self._above(target)
+        for common in downs:
+            if common in ups:
+                down, up = list(downs), list(ups)
+                return down[: down.index(common)], common, up[: up.index(common)]
+        for start, above in ((source, ups), (target, downs)):
+            top = next(reversed(above))
+            if top in self.histories:
+                raise self._loop(top, start, (target, source))
+        raise self._unconnected(target, source)
 
     def _climb(
         self, frame: str, stamp: int, poses: dict[str, Pose], ends: dict[str, Pose], asked: tuple[str, str]

@@ -35,6 +35,7 @@ VERBS += (
     "pkg",
     "component",
     "lifecycle",
+    "tf",
     "waits",
     "groups",
     "doctor",

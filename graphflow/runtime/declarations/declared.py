@@ -203,6 +203,7 @@ def interface_of(cls: type[NodeClass]) -> Interface:
         groups={name: GroupInfo(g.limit, g.when_full, g.thread) for name, g in groups(cls).items()},
         dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
         is_managed=cls.is_managed,
+        attributes=tuple(held(cls)),
     )
 
 

@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 
 from geometry_msgs.msg import TransformStamped
 from tf2_ros import Buffer, TransformException, TransformListener
 
 import rclpy
-from graphflow.tf.poses import AXES, rotate, to_rpy
+from graphflow.tf.text import described
+from graphflow.tf.transform import Transform, pose_of
+from graphflow.times import Time as NativeTime
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.time import Time
@@ -46,34 +47,14 @@ class Echo(Node):
                 _show(f"Failure at {self.get_clock().now().nanoseconds / 1e9}\n{error}\n")
             return
         self._is_known = True
-        _show(described(found))
+        _show(f"{described(_native(found))}\n")
         if self._once:
             raise SystemExit
 
 
-def described(found: TransformStamped) -> str:
-    """Format a transform as lines."""
-    t, r = found.transform.translation, found.transform.rotation
-    rotation = (r.x, r.y, r.z, r.w)
-    turns = to_rpy(rotation)
-    columns = [*(rotate(rotation, axis) for axis in AXES), (t.x, t.y, t.z)]
-    rows = [*zip(*columns, strict=True), (0.0, 0.0, 0.0, 1.0)]
-    return "\n".join(
-        [
-            f"At time {found.header.stamp.sec}.{found.header.stamp.nanosec:09}",
-            f"- Translation: {_vector((t.x, t.y, t.z))}",
-            f"- Rotation: in Quaternion (xyzw) {_vector(rotation)}",
-            f"- Rotation: in RPY (radian) {_vector(turns)}",
-            f"- Rotation: in RPY (degree) {_vector(tuple(map(math.degrees, turns)))}",
-            "- Matrix:",
-            *("".join(f" {number:z6.3f}" for number in row) for row in rows),
-            "",
-        ]
-    )
-
-
-def _vector(numbers: tuple[float, ...]) -> str:
-    return f"[{', '.join(f'{number:.3f}' for number in numbers)}]"
+def _native(found: TransformStamped) -> Transform:
+    stamp = Time.from_msg(found.header.stamp).nanoseconds
+    return Transform(found.header.frame_id, found.child_frame_id, pose_of(found.transform), NativeTime(stamp))
 
 
 def _show(text: str) -> None:

@@ -15,6 +15,7 @@ import yaml
 from tf2_ros import Buffer, TransformListener
 
 import rclpy
+from graphflow.tf.text import tree
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
@@ -41,19 +42,7 @@ def frames(text: str) -> list[Frame]:
 
 def drawn(known: list[Frame]) -> str:
     """Draw the tree, or the trees, as lines."""
-    lines: list[str] = []
-
-    def draw(parent: str, before: str) -> None:
-        below = sorted(frame for frame in known if frame.parent == parent)
-        for i, frame in enumerate(below):
-            is_last = i == len(below) - 1
-            lines.append(f"{before}{'└── ' if is_last else '├── '}{frame.name}   ({frame.about})")
-            draw(frame.name, f"{before}{'    ' if is_last else '│   '}")
-
-    for root in sorted({frame.parent for frame in known} - {frame.name for frame in known}):
-        lines.append(root)
-        draw(root, "")
-    return "\n".join(lines)
+    return "\n".join(tree({f.name: f.parent for f in known}, {f.name: f.about for f in known}))
 
 
 def graphviz(known: list[Frame]) -> str:
