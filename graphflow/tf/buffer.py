@@ -252,9 +252,11 @@ class TransformBuffer:
             TypeError: Messages of its type cannot be converted.
             TransformError: As for `lookup`.
         """
-        header = getattr(message, "header", None)
-        if not isinstance(header, Header):
-            raise TypeError(f"a {type(message).__name__} has no header, so that its frame is not known; use lookup()")
+        try:
+            header: Header = message.header
+        except AttributeError:
+            text = f"a {type(message).__name__} has no header, so that its frame is not known; use lookup()"
+            raise TypeError(text) from None
         found = await self.lookup(to, header.frame_id, header.stamp, timeout=timeout, fixed=fixed, target_at=at)
         return found.apply(message)
 
@@ -400,9 +402,13 @@ class TransformBuffer:
             TransformError: A transform has a fault, such as a rotation that is not of length 1.
         """
         if self._publisher is None:
-            self._publisher = self._node.create_publisher(TFMessage, TOPIC, QOS)  # type: ignore[assignment]
-        assert self._publisher is not None
+            self._publisher = self._create(TOPIC, QOS)
         self._publisher.publish(TFMessage(transforms=[self._checked(one) for one in transforms]))
+
+    def _create(self, topic: str, qos: Qos) -> TopicPublisher[TFMessage]:
+        made = self._node.create_publisher(TFMessage, topic, qos)
+        assert isinstance(made, TopicPublisher)
+        return made
 
     def send_static(self, *transforms: Transform | TransformStamped) -> None:
         """Publish transforms on /tf_static: they hold for all times, and late subscribers receive them, too.
@@ -411,8 +417,7 @@ class TransformBuffer:
             TransformError: As for `send`.
         """
         if self._static_publisher is None:
-            self._static_publisher = self._node.create_publisher(TFMessage, STATIC_TOPIC, STATIC_SENDER_QOS)  # type: ignore[assignment]
-        assert self._static_publisher is not None
+            self._static_publisher = self._create(STATIC_TOPIC, STATIC_SENDER_QOS)
         checked = [self._checked(one) for one in transforms]
         self._sent |= {one.child_frame_id: one for one in checked}
         self._static_publisher.publish(TFMessage(transforms=list(self._sent.values())))

@@ -47,4 +47,4 @@ class Transforms(Held):
     @overload
     def __get__(self, node: Bound, owner: type) -> TransformBuffer: ...
     def __get__(self, node: Bound | None, owner: type) -> object:
-        return self if node is None else node._core.held[self.attribute]
+        return self if node is None else self.on(node)

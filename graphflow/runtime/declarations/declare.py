@@ -119,6 +119,10 @@ class Held(MadeByNodes, ABC):
     def create(self, maker: Maker) -> object:
         """Create the runtime object of one node."""
 
+    def on(self, node: Bound) -> object:
+        """Return the runtime object on a node."""
+        return node._core.held[self.attribute]
+
 
 class Publisher(Held, Generic[M]):
     """A publisher of the node.
@@ -164,7 +168,7 @@ class Publisher(Held, Generic[M]):
     @overload
     def __get__(self, node: Bound, owner: type) -> TopicPublisher[M]: ...
     def __get__(self, node: Bound | None, owner: type) -> object:
-        return self if node is None else node._core.held[self.attribute]
+        return self if node is None else self.on(node)
 
 
 class Subscription(Held, Generic[M]):
@@ -210,7 +214,7 @@ class Subscription(Held, Generic[M]):
     @overload
     def __get__(self, node: Bound, owner: type) -> TopicSubscription[M]: ...
     def __get__(self, node: Bound | None, owner: type) -> object:
-        return self if node is None else node._core.held[self.attribute]
+        return self if node is None else self.on(node)
 
 
 class Client(Held, Generic[Request, Response]):
@@ -251,7 +255,7 @@ class Client(Held, Generic[Request, Response]):
     @overload
     def __get__(self, node: Bound, owner: type) -> ServiceClient[Request, Response]: ...
     def __get__(self, node: Bound | None, owner: type) -> object:
-        return self if node is None else node._core.held[self.attribute]
+        return self if node is None else self.on(node)
 
 
 class ActionClient(Held, Generic[Goal, Result, Feedback]):
@@ -277,7 +281,7 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
     @overload
     def __get__(self, node: Bound, owner: type) -> GoalClient[Goal, Result, Feedback]: ...
     def __get__(self, node: Bound | None, owner: type) -> object:
-        return self if node is None else node._core.held[self.attribute]
+        return self if node is None else self.on(node)
 
 
 class Param(Held, Generic[V]):

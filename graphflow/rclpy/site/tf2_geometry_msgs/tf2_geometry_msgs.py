@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TypeVar
 
+import numpy as np
 from geometry_msgs.msg import (
     PointStamped,
     PolygonStamped,
@@ -14,6 +15,7 @@ from geometry_msgs.msg import (
     Vector3Stamped,
     WrenchStamped,
 )
+from numpy.typing import ArrayLike, NDArray
 from tf2_ros.buffer_interface import ConvertRegistration, TransformRegistration
 
 from graphflow.tf import messages, poses
@@ -41,12 +43,12 @@ __all__ = [
 ]
 
 
-def to_msg_msg(msg: Any) -> Any:
+def to_msg_msg(msg: M) -> M:
     """Return the message unchanged."""
     return msg
 
 
-def from_msg_msg(msg: Any) -> Any:
+def from_msg_msg(msg: M) -> M:
     """Return the message unchanged."""
     return msg
 
@@ -87,7 +89,7 @@ def do_transform_pose_stamped(pose: PoseStamped, transform: TransformStamped) ->
     return _converted(pose, transform)
 
 
-def transform_covariance(cov_in: Any, transform: TransformStamped) -> Any:
+def transform_covariance(cov_in: ArrayLike, transform: TransformStamped) -> NDArray[np.float64]:
     """Rotate the axes of a pose's covariance, 6 by 6 as 36 numbers; translation does not change it."""
     return messages.turned_covariance(cov_in, _pose(transform))
 
