@@ -28,6 +28,11 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     # A shell starts what it puts into the background so, and what is started from there would be deaf to Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+pytest.register_assert_rewrite(
+    *(f"tests.deadlock.{name}" for name in ("deadlocked", "diary", "lookalikes", "system_runs", "verdicts")),
+    *(f"tests.runtime.{name}" for name in ("action_model", "action_programs")),
+)  # their assertions are as those of tests: a failure shows the values
+
 PROJECT = Path(__file__).parents[1]
 PROGRAMS = PROJECT / "tests" / "programs"
 """Node programs that tests start, in folders by kind."""

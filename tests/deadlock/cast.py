@@ -107,6 +107,12 @@ class Waiter(Robot):
         self.arrived.set()
 
 
+class EventWithin(Waiter):
+    async def go(self, _: String) -> None:
+        async with self.clock.timeout(5.0):
+            await self.arrived.wait()  # stuck: EventWithin
+
+
 class Driver(Robot):
     """Polls a flag that another handler of the group sets."""
 
