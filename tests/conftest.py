@@ -23,6 +23,8 @@ from graphflow.cli.main import main
 from graphflow.msgs import registry
 from graphflow.transport.rendezvous import free_endpoint
 from tests.flat import flat
+from tests.until import LIMIT as LIMIT
+from tests.until import until
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     # A shell starts what it puts into the background so, and what is started from there would be deaf to Ctrl-C.
@@ -36,8 +38,6 @@ pytest.register_assert_rewrite(
 PROJECT = Path(__file__).parents[1]
 PROGRAMS = PROJECT / "tests" / "programs"
 """Node programs that tests start, in folders by kind."""
-LIMIT = 45.0
-"""Seconds that anything here may take before the test fails."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -202,10 +202,7 @@ class Machine:
 
     def until(self, condition: Callable[[], bool], what: str, limit: float = LIMIT) -> None:
         """Wait until something outside holds."""
-        deadline = time.monotonic() + limit
-        while not condition():
-            assert time.monotonic() < deadline, f"not within {limit} s: {what}"
-            time.sleep(0.01)
+        until(condition, what, limit)
 
     def close(self) -> None:
         """End whatever is left, by its own process id."""

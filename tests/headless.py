@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import LIMIT
+from tests.until import eventually
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 NEEDS_BROWSER = pytest.mark.skipif(CHROMIUM is None, reason="needs chromium; on Debian: apt install chromium")
@@ -84,8 +85,7 @@ async def browser(folder: Path) -> AsyncIterator[Any]:
     try:
         async with asyncio.timeout(LIMIT), aiohttp.ClientSession() as session:
             said = folder / "DevToolsActivePort"
-            while not said.exists() or not said.read_text():  # it is made before it is written
-                await asyncio.sleep(0.05)
+            await eventually(lambda: said.exists() and said.read_text())  # it is made before it is written
             port = said.read_text().split()[0]
 
             @asynccontextmanager

@@ -6,12 +6,12 @@ import gc
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from graphflow.system import ROS2, collect_normally, collect_rarely, detached, host_name, is_portable, offer_ros2
+from tests.until import until
 
 
 @pytest.mark.parametrize(
@@ -78,10 +78,7 @@ if {is_alive}:
 os._exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
 """
     assert subprocess.run([sys.executable, "-c", code], timeout=20).returncode == 0
-    deadline = time.monotonic() + 10.0
-    while not (tmp_path / "asked").exists():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
+    until((tmp_path / "asked").exists)
 
 
 def test_the_collector_runs_rarely_only_for_a_while() -> None:

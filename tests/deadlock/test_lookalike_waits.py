@@ -20,6 +20,7 @@ from graphflow.testing import Graph
 from tests.cases import sample
 from tests.deadlock.cast import Caplog, Driver, Promised, Robot, Waiter, reports, say
 from tests.deadlock.lookalikes import goes_on, in_three_seconds, legal, three_seconds_from_now
+from tests.until import eventually
 
 
 class SetInNoGroup(Waiter):
@@ -539,7 +540,6 @@ async def test_a_program_that_waits_for_a_thread(graph: Graph, caplog: Caplog, p
         assert robot.motion.running
     finally:
         robot.hold.set()
-    while robot.motion.running:
-        await asyncio.sleep(0.001)
+    await eventually(lambda: not robot.motion.running)
 
     assert reports(caplog) == []

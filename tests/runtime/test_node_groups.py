@@ -28,6 +28,7 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from tests.runtime.cast import Log
+from tests.until import eventually
 
 
 async def test_each_group_is_one_group(graph: Graph) -> None:
@@ -407,5 +408,4 @@ async def test_blocking_handlers_of_a_threaded_group_hold_the_slot_and_not_the_l
     await entered.wait()
     assert node.heavy.running == 1
     gate.set()
-    while node.heavy.running:
-        await asyncio.sleep(0.001)
+    await eventually(lambda: not node.heavy.running)

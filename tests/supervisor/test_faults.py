@@ -19,6 +19,7 @@ from graphflow.system import is_portable
 from tests.cases import count, slow
 from tests.conftest import PROGRAMS, Machine, alive
 from tests.supervisor.running import supervisor_of, write
+from tests.until import until
 
 pytestmark = [
     pytest.mark.real,
@@ -67,9 +68,6 @@ def test_a_kill(machine: Machine, project: Path, seed: int) -> None:
         machine.until(lambda: told in log.read_text(), "it is told", limit=10.0)
         up.process.wait(20.0)
         machine.look("down") if alive(run["pid"]) else None
-    deadline = time.monotonic() + ORPHANS
-    while any(map(alive, everybody)) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert not [pid for pid in everybody if alive(pid)]
+    until(lambda: not any(map(alive, everybody)), lambda: f"{list(filter(alive, everybody))} have ended", ORPHANS)
     assert log.read_text().count(told) == 1
     up.process.wait(20.0)

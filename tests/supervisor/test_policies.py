@@ -19,6 +19,7 @@ from graphflow.supervisor.processes.messages import InterfacesJson, Job, Process
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.testing.clock import ManualClock
 from graphflow.transport.memory import Network
+from tests.until import eventually
 
 QUICK = "{policy: on_failure, delay: 0.001}"
 
@@ -84,9 +85,8 @@ class Stage:
 
     async def until(self, **states: str) -> None:
         """Wait until nodes are in states."""
-        async with asyncio.timeout(10.0):
-            while any(self.states()[f"/{name}"] != state for name, state in states.items()):
-                await asyncio.sleep(0.001)
+        wanted = {f"/{name}": state for name, state in states.items()}
+        await eventually(lambda: wanted.items() <= self.states().items(), lambda: f"{wanted}, not {self.states()}")
 
     async def ended(self) -> int:
         async with asyncio.timeout(10.0):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import threading
-import time
 from collections.abc import Iterator
 
 import pytest
@@ -15,6 +14,7 @@ from graphflow.transport.questions import BOUND, FLOOD, Questions
 from graphflow.transport.zenoh import ZenohSession
 from tests.cases import slow
 from tests.conftest import LIMIT
+from tests.until import until
 
 pytestmark = pytest.mark.real
 
@@ -32,8 +32,7 @@ class Asked:
         before = {*callback_threads()}
         self.questions = Questions(mine, KEY, self._answer)
         (self.thread,) = {*callback_threads()} - before
-        while not list(other.get(KEY)):  # there is no way to it yet
-            time.sleep(0.01)
+        until(lambda: list(other.get(KEY)), "there is a way to it")
 
     def _answer(self, query: zenoh.Query) -> None:
         self.taken.set()
@@ -121,8 +120,7 @@ def test_an_answer_that_fails(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(asked.questions, "_take", take)
     asked.ask(1)
-    while not replied:
-        time.sleep(0.001)
+    until(lambda: replied)
     replied.clear()
     asked.wait_ended(1)
     monkeypatch.undo()

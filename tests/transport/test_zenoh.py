@@ -17,6 +17,7 @@ from graphflow.transport.inbox import Inbox
 from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine
+from tests.until import eventually
 
 pytestmark = pytest.mark.real
 
@@ -166,17 +167,13 @@ async def test_publishers_end_while_their_listeners_do(
     plain = [mine.open_sender(f"plain/{i}", Qos(1)) for i in range(60)]
     keys = [f"plain/{i}" for i in range(len(plain))]
     listeners = [other.raw.declare_subscriber(key, zenoh.handlers.RingChannel(1)) for key in keys]
-    async with asyncio.timeout(LIMIT):
-        while not all(sender.is_wanted for sender in plain):
-            await asyncio.sleep(0.01)
+    await eventually(lambda: all(sender.is_wanted for sender in plain))
     other.raw.close()  # type: ignore[no-untyped-call]
     began = time.monotonic()
     for sender in kept:
         sender.close()
     took = time.monotonic() - began
-    async with asyncio.timeout(LIMIT):
-        while any(sender.is_wanted for sender in plain):
-            await asyncio.sleep(0.01)
+    await eventually(lambda: not any(sender.is_wanted for sender in plain))
     mine.raw.close()  # type: ignore[no-untyped-call]
     del listeners
     assert took < 8  # Zenoh itself gives up after ten
@@ -192,9 +189,7 @@ async def test_a_session_that_leaves_withdraws_all_at_once(
     other.watch("@x/*", seen.__setitem__)
 
     async def see(wanted: dict[str, bool]) -> None:
-        async with asyncio.timeout(LIMIT):
-            while seen != wanted:
-                await asyncio.sleep(0.01)
+        await eventually(lambda: seen == wanted, lambda: f"{wanted} and not {seen}")
 
     tokens = [mine.announce(f"@x/{i}") for i in range(3)]
     await see(dict.fromkeys(("@x/0", "@x/1", "@x/2"), True))
@@ -244,9 +239,8 @@ async def test_questions_about_the_process_are_answered(
     server.open_server("@graphflow/0/groups/1", requests)
     caller = client.open_caller("@graphflow/0/groups/1", lambda: None)
     answers = list[Answer]()
+    await eventually(lambda: caller.has_server)
     async with asyncio.timeout(LIMIT):
-        while not caller.has_server:
-            await asyncio.sleep(0.01)
         done = loop.create_future()
         caller.call(b"", b"", lambda answer: done.set_result(None) if answer is None else answers.append(answer))
         await done
@@ -274,9 +268,8 @@ async def test_an_answer_does_not_overtake_what_was_published_before_it(
     heard, counts = Inbox(client.bell, None, lambda: None), list[int]()
     client.open_receiver("feedback", Qos(), heard, in_order=True)
     caller = client.open_caller("result", lambda: None)
+    await eventually(lambda: caller.has_server and sender.is_wanted)
     async with asyncio.timeout(LIMIT):
-        while not (caller.has_server and sender.is_wanted):
-            await asyncio.sleep(0.01)
         for _ in range(300):
             done = loop.create_future()
 

@@ -22,6 +22,7 @@ from graphflow.msgs.std_srvs.srv import SetBool
 from graphflow.qos import Durability
 from graphflow.testing import Graph
 from graphflow.viewer.bridge import Bridge
+from tests.until import eventually
 
 LIMIT = 10.0
 """Seconds to wait for anything."""
@@ -129,9 +130,7 @@ class Viewer:
 
     async def until(self, condition: Callable[[], object], limit: float = LIMIT) -> None:
         """Wait until something holds."""
-        async with asyncio.timeout(limit):
-            while not condition():
-                await asyncio.sleep(0.005)
+        await eventually(condition, limit=limit)
 
     async def send(self, op: str, **fields: Any) -> None:
         await self._socket.send(json.dumps({"op": op, **fields}))

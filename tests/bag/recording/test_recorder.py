@@ -7,7 +7,6 @@ import contextlib
 import errno
 import os
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -31,6 +30,7 @@ from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.testing import Graph
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
+from tests.until import eventually
 
 ALL = Choice(all=True, exclude=frozenset({"/rosout", "/parameter_events"}))
 
@@ -60,11 +60,8 @@ class Session:
         return Bag(self.folder)
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        deadline = time.monotonic() + 20.0
-        while not condition():
-            assert time.monotonic() < deadline
-            await asyncio.sleep(0.005)
-            await self.graph.settle()
+        await eventually(condition)
+        await self.graph.settle()
 
 
 @pytest.fixture
@@ -107,12 +104,14 @@ async def test_topics_that_come_later(graph: Graph, session: Session) -> None:
     assert (await session.end()).contents.counts == {"/chatter": 1}
 
 
-async def test_no_discovery(graph: Graph, session: Session) -> None:
+async def test_no_discovery(graph: Graph, session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only what was there at the start."""
+    monkeypatch.setattr(recorder_module, "SEARCH_EVERY", 0.0)
     await speaker(graph)
     recorder = await session.start(discovery=False)
     await speaker(graph, "/news")
-    await asyncio.sleep(0.15)
+    for _ in range(3):  # a search takes several turns of the loop
+        await graph.settle()
     assert recorder.topics == 1
     assert (await session.end()).contents.counts == {"/chatter": 0}
 
@@ -200,9 +199,10 @@ async def test_a_disk_that_cannot_keep_up(graph: Graph, session: Session, monkey
     publisher = await speaker(graph, qos=1000)
     gate = asyncio.Event()
     loop = asyncio.get_running_loop()
-    real = BagWriter.add
+    real, is_held_up = BagWriter.add, threading.Event()
 
     def slowly(self: BagWriter, record: Any) -> None:
+        is_held_up.set()
         asyncio.run_coroutine_threadsafe(gate.wait(), loop).result(5.0)
         real(self, record)
 
@@ -211,8 +211,7 @@ async def test_a_disk_that_cannot_keep_up(graph: Graph, session: Session, monkey
     for n in range(100):
         publisher.publish(String(data=str(n) * 500))
         if n == 0:
-            await session.until(lambda: recorder.recorded == 1)
-            await asyncio.sleep(0.05)
+            await session.until(is_held_up.is_set)
     await session.until(lambda: recorder.recorded + recorder.dropped == 100)
     assert recorder.dropped > 50
     gate.set()
@@ -235,13 +234,14 @@ async def test_a_full_disk(graph: Graph, session: Session, monkeypatch: pytest.M
 
     monkeypatch.setattr(writing._Stream, "_put", put)
     monkeypatch.setattr(writing, "CHUNK_SIZE", 1000)
+    monkeypatch.setattr(recorder_module, "WRITE_EVERY", 0.005)
     publisher = await speaker(graph, qos=1000)
     recorder = await session.start()
     for n in range(200):
         publisher.publish(String(data=os.urandom(500).hex()))
         await graph.settle()
-        if n % 20 == 0:
-            await asyncio.sleep(0.01)
+        if n % 20 == 0:  # by and by, as messages come
+            await session.until(lambda: not recorder._queue)
     await session.until(recorder.failed.done)
     with pytest.raises(BagError, match="the disk is full"):
         await session.task
@@ -291,18 +291,12 @@ async def test_what_every_snapshot_begins_with(graph: Graph, tmp_path: Path) -> 
     recorder = Recorder(node, writer, ALL, snapshot=True, cache=4000, on_topic=lambda _: None)
     task = asyncio.create_task(recorder.run())
     await graph.settle()
-    deadline = time.monotonic() + 20.0
     for taken, count in ((21, 20), (41, 20)):
         for _ in range(count):
             publisher.publish(String(data="x" * 90))
-        while recorder.recorded < taken:
-            assert time.monotonic() < deadline
-            await graph.settle()
-            await asyncio.sleep(0.005)
+        await eventually(lambda: recorder.recorded >= taken)  # noqa: B023 - it is called at once
         recorder.take_snapshot()
-        while recorder._is_writing_snapshot:
-            assert time.monotonic() < deadline
-            await asyncio.sleep(0.005)
+        await eventually(lambda: not recorder._is_writing_snapshot)
     task.cancel()
     with contextlib.suppress(asyncio.CancelledError):
         await task

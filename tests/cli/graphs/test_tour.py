@@ -17,6 +17,7 @@ from graphflow.cli.graphs import tour
 from graphflow.cli.graphs.examples import DEADLOCKS
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.rundir import GraphRun
+from tests.until import until
 
 STEPS = DEADLOCKS[:2]
 
@@ -98,8 +99,5 @@ def test_a_graph_that_does_not_end_is_killed(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr(tour, "_END_LIMIT", 0.5)
     with tour._up(file) as found:
         assert found is run
-        deadline = time.monotonic() + tour._START_LIMIT
-        while not ready.exists():
-            assert time.monotonic() < deadline
-            time.sleep(0.01)
+        until(ready.exists, limit=tour._START_LIMIT)
     assert started[0].returncode is not None

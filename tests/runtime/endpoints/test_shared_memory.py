@@ -6,7 +6,7 @@ import asyncio
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -28,6 +28,7 @@ from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.shared_memory import Reader, reader_token
 from tests.cases import slow
 from tests.conftest import LIMIT
+from tests.until import eventually
 
 shares = pytest.mark.skipif(is_portable(), reason="memory cannot be shared here")
 
@@ -37,12 +38,6 @@ WARM_UP = 255
 
 def picture(number: int, size: int = 500_000) -> Image:
     return Image(height=1, width=size, encoding="mono8", step=size, data=np.full(size, number, np.uint8))
-
-
-async def until(is_so: Callable[[], bool]) -> None:
-    async with asyncio.timeout(LIMIT):
-        while not is_so():
-            await asyncio.sleep(0.01)
 
 
 def stranger(publisher: Entity, session: Any) -> str:
@@ -96,7 +91,7 @@ class Pair:
 
     async def ready(self, readers: int) -> None:
         """Wait until so many subscriptions have the publisher's memory open: until then, images are sent."""
-        await until(
+        await eventually(
             lambda: len(self.publisher.matched) >= readers and len(self.talker.context.readers._known) >= readers
         )
 
@@ -104,7 +99,7 @@ class Pair:
             self.publisher.publish(picture(WARM_UP))
             return self._in_memory > 0
 
-        await until(is_open)
+        await eventually(is_open)
         self._before = self._in_memory
 
     async def close(self) -> None:
@@ -139,7 +134,7 @@ class TestOverZenoh:
         sizes = [500_000, 10, 500_000, 300_000, 10, 10, 550_000, 500_000]
         for number, size in enumerate(sizes):
             pair.publisher.publish(picture(number, size))
-        await until(lambda: len(pair.heard) == len(sizes))
+        await eventually(lambda: len(pair.heard) == len(sizes))
         assert [(m.width, int(m.data[0]), int(m.data[-1])) for m in pair.heard] == [
             (size, number, number) for number, size in enumerate(sizes)
         ]
@@ -155,7 +150,7 @@ class TestOverZenoh:
         await pair.ready(1)
         for number in range(60):
             pair.publisher.publish(picture(number))
-            await until(lambda number=number: len(pair.heard) > number)  # type: ignore[misc]
+            await eventually(lambda number=number: len(pair.heard) > number)  # type: ignore[misc]
         assert [set(np.unique(m.data)) for m in pair.heard] == [{number} for number in range(60)]
         assert pair.in_memory == 60
 
@@ -169,15 +164,15 @@ class TestOverZenoh:
             got: list[bytes] = []
             subscriber = session.declare_subscriber(own.data_key, lambda sample: got.append(sample.payload.to_bytes()))
             token = session.liveliness().declare_token(stranger(own, session))
-            await until(lambda: len(pair.publisher.matched) == 2)
+            await eventually(lambda: len(pair.publisher.matched) == 2)
             pair.publisher.publish(picture(1))
-            await until(lambda: len(got) == len(pair.heard) == 1)
+            await eventually(lambda: len(got) == len(pair.heard) == 1)
             assert got == [pair.heard[0].to_bytes()] == [picture(1).to_bytes()]
             assert pair.in_memory == 0
             close(token, subscriber)
-            await until(lambda: len(pair.publisher.matched) == 1)
+            await eventually(lambda: len(pair.publisher.matched) == 1)
         pair.publisher.publish(picture(2))
-        await until(lambda: len(pair.heard) == 2)
+        await eventually(lambda: len(pair.heard) == 2)
         assert pair.in_memory == 1
 
     async def test_a_forged_token_changes_nothing(self, pair: Pair) -> None:
@@ -191,9 +186,9 @@ class TestOverZenoh:
             subscriber = session.declare_subscriber(own.data_key, lambda sample: got.append(len(sample.payload)))
             tokens = [session.liveliness().declare_token(forged)]
             tokens.append(session.liveliness().declare_token(stranger(own, session)))
-            await until(lambda: len(pair.publisher.matched) == 1)
+            await eventually(lambda: len(pair.publisher.matched) == 1)
             pair.publisher.publish(picture(1))
-            await until(lambda: len(got) == 1)
+            await eventually(lambda: len(got) == 1)
             close(subscriber, *tokens)
         assert pair.in_memory == 0
 
@@ -207,7 +202,7 @@ class TestOverZenoh:
         reader = Node("reader", enable_rosout=False)
         reader.create_subscription(Image, "maps", late.append, Qos(durability=Durability.TRANSIENT_LOCAL))
         await pair.start(reader)
-        await until(lambda: len(late) == 1)
+        await eventually(lambda: len(late) == 1)
         assert "in_memory" not in publisher.statistics()
 
     async def test_recorders_read_memory_too(self, pair: Pair) -> None:
@@ -223,7 +218,7 @@ class TestOverZenoh:
         await pair.start(node)
         await pair.ready(1)
         pair.publisher.publish(picture(4))
-        await until(lambda: len(got) == 1)
+        await eventually(lambda: len(got) == 1)
         assert type(got[0]) is bytes
         assert got[0] == picture(4).to_bytes()
         assert pair.in_memory == 1
@@ -238,7 +233,7 @@ class TestOverZenoh:
         with pytest.raises(ZeroDivisionError), pair.publisher.loan(data=400_000) as image:
             image.data[0] = 1 // 0
         pair.publisher.publish(picture(5))
-        await until(lambda: len(pair.heard) == 2)
+        await eventually(lambda: len(pair.heard) == 2)
         first = pair.heard[0]
         assert (first.header.frame_id, first.width, set(np.unique(first.data))) == ("camera", 400_000, {77})
         assert pair.in_memory == 2
@@ -258,7 +253,7 @@ class TestOverZenoh:
             process.send_signal(number)
             for count in range(5, 40):
                 pair.publisher.publish(picture(count))
-                await until(lambda count=count: len(pair.heard) > count)  # type: ignore[misc]
+                await eventually(lambda count=count: len(pair.heard) > count)  # type: ignore[misc]
             assert [int(m.data[0]) for m in pair.heard] == list(range(40))
             assert pair.in_memory >= 39  # one may be sent while a new ring is opened
         finally:

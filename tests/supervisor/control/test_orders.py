@@ -13,6 +13,7 @@ from graphflow.supervisor.control.orders import Orders
 from graphflow.supervisor.processes.messages import Obeyed
 from graphflow.testing import Graph
 from tests.runtime.cast import Speaker
+from tests.until import eventually
 
 
 class Broken(Node):
@@ -44,9 +45,7 @@ class Stage:
         obeying = asyncio.create_task(self.orders.run())
         for number, order in enumerate(orders, 1):
             self.orders.take(json.dumps({"order": number, **order}).encode())
-        async with asyncio.timeout(5.0):
-            while len(self.told) < len(orders):
-                await asyncio.sleep(0.001)
+        await eventually(lambda: len(self.told) >= len(orders))
         self.living = [node.full_name for node in self.company.nodes]
         self.stop.set()
         await running

@@ -6,8 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pytest
 
 from tests.cases import slow
 from tests.conftest import Machine
+from tests.until import until
 
 PROGRAM = """
 import sys
@@ -46,7 +46,7 @@ def test_a_program_starts_what_it_describes(machine: Machine, tmp_path: Path) ->
     """With its arguments; Ctrl-C, which the whole group of processes hears, stops it, and the program goes on."""
     (tmp_path / "bringup.py").write_text(PROGRAM)
     with started(machine, tmp_path) as (process, output):
-        until(lambda: "Publishing" in output.read_text(), output)
+        until(lambda: "Publishing" in output.read_text(), output.read_text)
         os.killpg(process.pid, signal.SIGINT)
         assert process.wait(30) == 0, output.read_text()
     assert "says hello\n" in output.read_text()
@@ -60,10 +60,10 @@ def test_what_it_has_started_ends_with_the_program(machine: Machine, tmp_path: P
     """Also where that cannot say so."""
     (tmp_path / "bringup.py").write_text(PROGRAM)
     with started(machine, tmp_path) as (process, output):
-        until(lambda: "Publishing" in output.read_text(), output)
+        until(lambda: "Publishing" in output.read_text(), output.read_text)
         process.send_signal(number)
         assert process.wait(30) == (0 if number == signal.SIGTERM else -number)
-        until(lambda: not is_group(process.pid), output)
+        until(lambda: not is_group(process.pid), output.read_text)
 
 
 @contextmanager
@@ -90,14 +90,6 @@ def is_group(pid: int) -> bool:
     except ProcessLookupError:
         return False
     return True
-
-
-def until(condition: Callable[[], bool], output: Path) -> None:
-    """Wait until a condition holds."""
-    end = time.monotonic() + 30
-    while not condition():
-        assert time.monotonic() < end, output.read_text()
-        time.sleep(0.02)
 
 
 def test_its_file_is_a_launch_file_too(machine: Machine, tmp_path: Path) -> None:

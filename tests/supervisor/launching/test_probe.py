@@ -20,6 +20,7 @@ from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces
 from graphflow.supervisor.processes.preload import PROBE_LIMIT
 from tests.conftest import PROGRAMS, alive
+from tests.until import until
 
 
 @pytest.fixture
@@ -105,9 +106,7 @@ def test_what_an_import_starts_ends_with_it(tmp_path: Path) -> None:
     assert "problem" not in probe(["nodes.busy:Busy"], str(tmp_path))["nodes.busy:Busy"]
     assert time.monotonic() - began < PROBE_LIMIT / 2
     pid = int((tmp_path / "pid").read_text())
-    while alive(pid):
-        assert time.monotonic() - began < PROBE_LIMIT
-        time.sleep(0.01)
+    until(lambda: not alive(pid), "its child has ended", PROBE_LIMIT)
 
 
 @pytest.mark.real
@@ -123,7 +122,4 @@ def test_an_import_ends_with_those_who_wait_for_it(project: Path, number: int) -
         pid = int(waiting.stdout.readline())
         assert alive(pid)
         waiting.send_signal(number)
-    until = time.monotonic() + PROBE_LIMIT
-    while alive(pid):
-        assert time.monotonic() < until
-        time.sleep(0.01)
+    until(lambda: not alive(pid), "the import has ended", PROBE_LIMIT)

@@ -6,13 +6,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 
 import pytest
 
 from graphflow.supervisor.processes import process_tree
 from tests.conftest import alive
+from tests.until import until
 
 pytestmark = [
     pytest.mark.real,
@@ -137,10 +137,7 @@ def test_the_state_of_a_process(ancestor: subprocess.Popen[str]) -> None:
 
 
 def wait_for(pid: int, state: str) -> None:
-    deadline = time.monotonic() + 10.0
-    while process_tree.state_of(pid) != state:
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
+    until(lambda: process_tree.state_of(pid) == state, state)
 
 
 def test_children_that_have_ended() -> None:

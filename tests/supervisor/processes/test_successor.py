@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from graphflow.system import is_portable
 from tests.cases import slow
 from tests.conftest import LIMIT, PROGRAMS, Machine, Program, alive
 from tests.supervisor.running import nothing_is_left, rows, supervisor_of, write
+from tests.until import until
 
 pytestmark = [
     pytest.mark.real,
@@ -116,10 +116,8 @@ def test_signals_to_it(tmp_path: Path) -> None:
     successor = subprocess.Popen(command, stdin=subprocess.PIPE, env=env, start_new_session=True)
     assert successor.stdin is not None
     try:
-        numbers, began = (signal.SIGINT, signal.SIGHUP, signal.SIGTERM), time.monotonic()
-        while any(number not in ignored_by(successor.pid) for number in numbers):
-            assert time.monotonic() - began < LIMIT, "it ignores them"
-            time.sleep(0.01)
+        numbers = signal.SIGINT, signal.SIGHUP, signal.SIGTERM
+        until(lambda: ignored_by(successor.pid).issuperset(numbers), "it ignores them")
         for number in numbers:
             successor.send_signal(number)
         successor.communicate(json.dumps(note).encode() + b"\n", timeout=LIMIT)

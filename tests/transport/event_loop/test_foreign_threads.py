@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -17,15 +16,9 @@ import zenoh
 from graphflow.transport.event_loop import foreign_threads
 from graphflow.transport.event_loop.foreign_threads import at_once
 from tests.conftest import LIMIT
+from tests.until import until
 
 pytestmark = pytest.mark.real
-
-
-def until(is_so: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + LIMIT
-    while not is_so():
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
 
 
 def beside(port: int) -> zenoh.Session:

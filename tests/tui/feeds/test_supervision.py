@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from graphflow.supervisor.control.server import ControlServer
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.tui.feeds import supervision as module
 from graphflow.tui.feeds.supervision import NodeRow, Supervision
+from tests.until import eventually
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
@@ -52,12 +53,6 @@ def run_at(address: str) -> GraphRun:
     return GraphRun("id", "g", 0, 1, 0.0, time.time(), "g.yaml", address, "", "", "")
 
 
-async def until(holds: Callable[[], bool]) -> None:
-    async with asyncio.timeout(5.0):
-        while not holds():
-            await asyncio.sleep(0.01)
-
-
 async def test_the_end_is_heard_by_who_was_asleep(tmp_path: Path) -> None:
     """The supervisor's last events are read even when requests can no longer be sent."""
     with socket.socket(socket.AF_UNIX) as server:
@@ -66,7 +61,7 @@ async def test_the_end_is_heard_by_who_was_asleep(tmp_path: Path) -> None:
         heard: list[dict[str, Any]] = []
         one = Supervision(run_at(str(tmp_path / "s")), heard.append)
         task = asyncio.ensure_future(one.follow())
-        await until(lambda: one.is_connected)
+        await eventually(lambda: one.is_connected)
         connection, _ = server.accept()
         connection.sendall(b'{"event": "exited", "unexpected": false}\n{"event": "end", "exit_code": 3}\n')
         connection.close()
@@ -113,7 +108,7 @@ async def test_nodes_of_a_supervisor_that_has_gone(tmp_path: Path, last: bytes, 
             "/b": {**row, "node": "/b", "state": "failed", "pid": 8, "detail": "signal SIGSEGV"},
         }
         task = asyncio.ensure_future(one.follow())
-        await until(lambda: one.is_connected)
+        await eventually(lambda: one.is_connected)
         connection, _ = server.accept()
         connection.sendall(last)
         connection.shutdown(socket.SHUT_WR)
@@ -134,19 +129,19 @@ async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.M
     one, two = Supervision(run, heard.append), Supervision(run, lambda _: None)
     two.name = "pts/2"
     tasks = [asyncio.ensure_future(x.follow()) for x in (one, two)]
-    await until(lambda: len(one.consoles) == 2 and bool(two.nodes) and one.plan is not None)
+    await eventually(lambda: len(one.consoles) == 2 and bool(two.nodes) and one.plan is not None)
     assert one.hello["version"] == "0.0.0"
     assert "0.0.0" in one.version_note
     two.send(do="restart", node="/a")
-    await until(lambda: any(e["event"] == "announced" for e in heard))
+    await eventually(lambda: any(e["event"] == "announced" for e in heard))
     [told] = [e for e in heard if e["event"] == "announced"]
     assert (told["text"], told["by"]) == ("restart /a", "pts/2")
     two.send(do="keep_layout", layout={"windows": []})
-    await until(lambda: graph.clients.layout == {"windows": []})
+    await eventually(lambda: graph.clients.layout == {"windows": []})
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
-    await until(lambda: graph.asked == ["restart /a", "empty"])
+    await eventually(lambda: graph.asked == ["restart /a", "empty"])
     await server.close()
 
 
@@ -159,7 +154,7 @@ async def test_what_was_asked_last_is_done(portable: str, tmp_path: Path, monkey
     heard: list[dict[str, Any]] = []
     one = Supervision(run_at(await server.open(tmp_path / "c.sock")), heard.append)
     task = asyncio.ensure_future(one.follow())
-    await until(lambda: bool(one.nodes))
+    await eventually(lambda: bool(one.nodes))
     for i in range(100):
         graph.clients.broadcast({"event": "note", "text": str(i)})
         one.send(do="keep_layout", layout={"windows": [i]})
@@ -180,7 +175,7 @@ async def test_leaving_a_supervisor_that_does_not_listen(tmp_path: Path, monkeyp
         one = Supervision(run_at(str(tmp_path / "s")), lambda _: None)
         await one.leave()
         task = asyncio.ensure_future(one.follow())
-        await until(lambda: one.is_connected)
+        await eventually(lambda: one.is_connected)
         await one.leave()
     await asyncio.wait_for(task, 5.0)
 
@@ -193,7 +188,7 @@ async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.Monkey
     heard: list[dict[str, Any]] = []
     one = Supervision(run_at(await server.open(tmp_path / "c.sock")), heard.append)
     task = asyncio.ensure_future(one.follow())
-    await until(lambda: bool(one.nodes))
+    await eventually(lambda: bool(one.nodes))
     graph.clients.broadcast({"event": "end", "exit_code": 3})
     await server.close()
     await asyncio.wait_for(task, 5.0)

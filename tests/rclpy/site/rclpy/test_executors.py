@@ -24,6 +24,7 @@ from rclpy.executors import (
 )
 from rclpy.node import Node
 from rclpy.task import Future
+from tests.until import until
 
 
 @pytest.fixture
@@ -42,7 +43,7 @@ def pool(node: Node) -> MultiThreadedExecutor:
     return executor
 
 
-def until(executor: Any, condition: Callable[[], object]) -> None:
+def spin_until(executor: Any, condition: Callable[[], object]) -> None:
     limit = time.monotonic() + 5
     while not condition():
         assert time.monotonic() < limit, "it did not come about in time"
@@ -125,7 +126,7 @@ def test_what_follows_an_answer_is_a_task(node: Node, kind: Any) -> None:
 
     for follows in (in_a_pool, awaited):
         client.call_async(AddTwoInts.Request()).add_done_callback(follows)
-    until(executor, lambda: {*told} == {"called", "awaited"})
+    spin_until(executor, lambda: {*told} == {"called", "awaited"})
     client.call_async(AddTwoInts.Request()).add_done_callback(failing)
     with pytest.raises(LookupError, match="in what follows"):
         executor.spin()
@@ -160,7 +161,7 @@ def test_tasks_run_while_it_spins(single: SingleThreadedExecutor) -> None:
 
     tasks = [single.create_task(work, 1), single.create_task(work(2)), single.create_task(max, 3, 1)]
     assert not any(task.done() for task in tasks)
-    until(single, lambda: all(task.done() for task in tasks))
+    spin_until(single, lambda: all(task.done() for task in tasks))
     assert [task.result() for task in tasks] == [1, 2, 3]
 
 
@@ -182,7 +183,7 @@ def test_a_callback_awaits_a_call_in_its_own_group(node: Node, single: SingleThr
 
     ask("reentrant", ReentrantCallbackGroup())
     ask("exclusive", MutuallyExclusiveCallbackGroup())
-    until(single, lambda: done)
+    spin_until(single, lambda: done)
     for _ in range(5):
         single.spin_once(timeout_sec=0.01)
     assert done == ["reentrant"]
@@ -212,7 +213,7 @@ def test_callbacks_of_an_exclusive_group_never_run_together(node: Node, pool: Mu
         timer.cancel()
     for _ in range(2):
         node.create_guard_condition(together, ReentrantCallbackGroup()).trigger()
-    until(pool, lambda: len(met) == 2)
+    spin_until(pool, lambda: len(met) == 2)
     assert most == [1]
 
 
@@ -230,7 +231,7 @@ def test_a_pool_takes_no_more_than_it_has_threads_for(node: Node, pool: MultiThr
         publisher.publish(String(data=data))
         pool.spin_once(timeout_sec=0.02)
     go.set()
-    until(pool, lambda: len(heard) == 4)
+    spin_until(pool, lambda: len(heard) == 4)
     assert sorted(heard) == ["a", "b", "f", "g"]
 
 
@@ -278,7 +279,7 @@ def test_an_executor_of_ones_own(node: Node) -> None:
         timer.cancel()
 
     timer = node.create_timer(0.001, tick)
-    until(executor, lambda: threads)
+    spin_until(executor, lambda: threads)
     assert runs[0] == (timer, node)
     assert threads != [threading.current_thread().name]
 
@@ -310,12 +311,10 @@ def test_a_second_thread_may_wait_for_a_future(single: SingleThreadedExecutor, n
     """In the executor that another one spins: what ends one of them wakes both, and nothing else does."""
     first, second = Future[int](), Future[int]()
     threads = [threading.Thread(target=single.spin_until_future_complete, args=(f,)) for f in (first, second)]
-    for thread, count in zip(threads, (1, 2), strict=True):
-        thread.start()
-        end = time.monotonic() + 10
-        while len(single._graphflow._asking) < count:
-            assert time.monotonic() < end
-            time.sleep(0.001)
+    threads[0].start()
+    until(lambda: len(single._graphflow._asking) == 1)
+    threads[1].start()
+    until(lambda: len(single._graphflow._asking) == 2)
     first.set_result(7)
     threads[0].join(10)
     assert [thread.is_alive() for thread in threads] == [False, True]
@@ -328,8 +327,7 @@ def test_a_second_thread_may_not_spin_the_same_executor(single: SingleThreadedEx
     """In the same way; it is told so."""
     thread = threading.Thread(target=single.spin)
     thread.start()
-    while not single.spinning._asking:
-        time.sleep(0.001)
+    until(lambda: single.spinning._asking)
     with pytest.raises(ValueError, match="already executing"):
         single.spin_once()
     single.shutdown()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 
 import pytest
 from rosgraph_msgs.msg import Clock as ClockMessage
@@ -15,13 +14,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.time import Time
 from rclpy.time_source import TimeSource
-
-
-def until(condition: Callable[[], object]) -> None:
-    limit = time.monotonic() + 5
-    while not condition():
-        assert time.monotonic() < limit, "it did not come about in time"
-        time.sleep(0.001)
+from tests.until import until
 
 
 def set_simulated(node: Node, value: object) -> bool:

@@ -14,6 +14,7 @@ from graphflow.tf.poses import Pose
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time
+from tests.until import until
 
 S = 10**9
 
@@ -28,11 +29,10 @@ def test_what_is_said_can_be_looked_up(node: Node) -> None:
     buffer = Buffer()
     listener = TransformListener(buffer, node)
     moving = TransformBroadcaster(node)
-    while not moving.pub_tf.get_subscription_count():
-        time.sleep(0.001)
+    until(moving.pub_tf.get_subscription_count)
     moving.sendTransform([at("odom", "base", 2.0), at("map", "odom", 30.0)])
-    until = time.monotonic() + 10
-    while not buffer.can_transform("map", "laser", Time()) and time.monotonic() < until:
+    limit = time.monotonic() + 10
+    while not buffer.can_transform("map", "laser", Time()) and time.monotonic() < limit:
         rclpy.spin_once(node, timeout_sec=0.1)
     assert buffer.lookup_transform("map", "laser", Time()).transform.translation.x == 32.5
     listener.unregister()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 from example_interfaces.action import Fibonacci
@@ -13,6 +12,7 @@ from graphflow.analysis.class_source import ANSWERED
 from rclpy.action import ActionClient, ActionServer
 from rclpy.impl.entities import after_answers, arrived, role_of
 from rclpy.node import Node
+from tests.until import until
 
 
 def test_each_is_called_by_its_callback(node: Node) -> None:
@@ -56,8 +56,5 @@ def test_a_call_that_is_lost_has_no_answer(node: Node) -> None:
     client, actions = node.create_client(Trigger, "ask"), ActionClient(node, Fibonacci, "count")
     client.call_async(Trigger.Request())
     actions.send_goal_async(Fibonacci.Goal())
-    limit = time.monotonic() + 10.0
-    while not (client._endpoint.inbox.items and actions._graphflow_goals.inbox.items):
-        assert time.monotonic() < limit
-        time.sleep(0.01)
+    until(lambda: client._endpoint.inbox.items and actions._graphflow_goals.inbox.items)
     assert arrived(client) == arrived(actions) == ((), 0)

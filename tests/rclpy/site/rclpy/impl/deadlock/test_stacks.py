@@ -3,26 +3,15 @@
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
 
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.deadlock.stacks import Stack, stacks, standing
 from rclpy.node import Node
+from tests.until import until
 
 LIMIT = 20.0
-
-
-def until(found: Callable[[], Any]) -> Any:
-    """What is found once something is."""
-    end = time.monotonic() + LIMIT
-    while not (seen := found()):
-        assert time.monotonic() < end
-        time.sleep(0.005)
-    return seen
 
 
 def spin(executor: Executor) -> None:

@@ -22,6 +22,7 @@ from rclpy.node import Node
 from tests.cases import sample, slow
 from tests.flat import flat
 from tests.rclpy import planted, waiting_programs
+from tests.until import until
 
 LIMIT = 20.0
 
@@ -29,14 +30,6 @@ LIMIT = 20.0
 def reports(caplog: pytest.LogCaptureFixture) -> list[str]:
     """What was said of deadlocks."""
     return [r.getMessage() for r in caplog.records if "DEADLOCK" in r.getMessage() or "IN VAIN" in r.getMessage()]
-
-
-def until(condition: Callable[[], Any], what: str) -> None:
-    """Wait until a condition holds."""
-    end = time.monotonic() + LIMIT
-    while not condition():
-        assert time.monotonic() < end, f"not within {LIMIT} s: {what}"
-        time.sleep(0.01)
 
 
 @pytest.fixture(autouse=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -17,6 +16,7 @@ from rclpy.context import Context
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.mistakes import unreached
 from rclpy.node import Node
+from tests.until import until
 
 Caplog = pytest.LogCaptureFixture
 HEAD = """
@@ -76,10 +76,7 @@ def told(node: Node, tmp_path: Path, caplog: Caplog) -> Callable[[str], list[str
         assert life is not None
         watches = life.network().elsewhere[0].watches  # type: ignore[attr-defined]
         watch = next(one for one in watches.each if isinstance(one, unreached.Unreached))
-        until = time.monotonic() + 5.0
-        while not any(code.co_filename == str(file) for code, _ in list(watch._read)):
-            assert time.monotonic() < until
-            time.sleep(0.01)
+        until(lambda: any(code.co_filename == str(file) for code, _ in list(watch._read)))
         texts = [r.getMessage() for r in caplog.records if "comes after" in r.getMessage()]
         rclpy.shutdown()
         thread.join(5.0)
@@ -123,9 +120,7 @@ def test_several_contexts(node: Node) -> None:
     thread.start()
     assert own is not None
     assert other.life is not None
-    until = time.monotonic() + 5.0
-    while not (spinning := list(unreached._spinning(own))):
-        assert time.monotonic() < until
+    spinning = until(lambda: list(unreached._spinning(own)))
     assert [frame.f_code.co_name for frame in spinning] == ["main"]
     assert list(unreached._spinning(other.life)) == []
     rclpy.shutdown(context=other)

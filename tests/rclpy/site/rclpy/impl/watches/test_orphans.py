@@ -15,6 +15,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.watches import orphans
 from rclpy.node import Node
 from rclpy.task import Future
+from tests.until import until
 
 
 @contextmanager
@@ -38,13 +39,6 @@ def spun(node: Node) -> Iterator[SingleThreadedExecutor]:
 
 def told(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.getMessage() for record in caplog.records if "no longer spun" in record.getMessage()]
-
-
-def until(condition: Callable[[], Any]) -> None:
-    limit = time.monotonic() + 10
-    while not condition():
-        assert time.monotonic() < limit, "it did not come about in time"
-        time.sleep(0.01)
 
 
 def test_a_spin_in_a_callback(node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:

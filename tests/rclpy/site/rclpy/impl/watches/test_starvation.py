@@ -21,6 +21,7 @@ from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, Si
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.watches import starvation
 from rclpy.node import Node
+from tests.until import until
 
 Caplog = pytest.LogCaptureFixture
 LIMIT = 10.0
@@ -34,13 +35,6 @@ def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def told(caplog: Caplog) -> list[str]:
     return [r.getMessage() for r in caplog.records if r.name == "graphflow" and r.levelname == "WARNING"]
-
-
-def until(condition: Callable[[], Any]) -> None:
-    limit = time.monotonic() + LIMIT
-    while not condition():
-        assert time.monotonic() < limit, "it did not come about in time"
-        time.sleep(0.01)
 
 
 @contextmanager
@@ -235,12 +229,12 @@ def test_an_init_that_does_not_return(node: Node, caplog: Caplog) -> None:
 def test_a_node_that_nobody_spins(node: Node, caplog: Caplog) -> None:
     """Told with what should have been called, and where the program is; and that it is spun."""
     node.create_timer(0.01, lambda: None)
-    until(lambda: told(caplog))  # here
+    until(lambda: told(caplog))
     with spun(node):
         until(lambda: len(told(caplog)) > 1)
     text, over = told(caplog)
     assert text.startswith(f"/{node.get_name()} has not been spun for ")
-    assert "timer <lambda> should be called: the program is in test_starvation.py:" in text
+    assert "timer <lambda> should be called: the program is in until.py:" in text
     assert text.endswith("; have it call rclpy.spin(node)")
     assert over.startswith("/node is spun after ")
 

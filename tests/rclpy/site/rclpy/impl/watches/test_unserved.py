@@ -23,6 +23,7 @@ from rclpy.impl.watches.unserved import Unserved
 from rclpy.node import Node
 from rclpy.parameter_client import AsyncParameterClient
 from tests.cases import slow
+from tests.until import until
 
 Caplog = pytest.LogCaptureFixture
 LIMIT = 10.0
@@ -36,13 +37,6 @@ def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def told(caplog: Caplog) -> list[str]:
     return [r.getMessage() for r in caplog.records if r.name == "graphflow" and r.levelname == "WARNING"]
-
-
-def until(condition: Callable[[], Any]) -> None:
-    limit = time.monotonic() + LIMIT
-    while not condition():
-        assert time.monotonic() < limit, "it did not come about in time"
-        time.sleep(0.01)
 
 
 @contextmanager

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.watches import starvation
 from rclpy.impl.watches.watches import Watches
 from rclpy.node import Node
+from tests.until import until
 
 
 def test_they_look_and_keep_what_still_holds(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -21,13 +20,8 @@ def test_they_look_and_keep_what_still_holds(node: Node, monkeypatch: pytest.Mon
     watches: Watches = life.network().elsewhere[0].watches  # type: ignore[attr-defined]
     assert watches.texts == []
     timer = node.create_timer(0.01, lambda: None)
-    until = time.monotonic() + 5.0
-    while not watches.texts and time.monotonic() < until:
-        time.sleep(0.01)
-    [text] = watches.texts
+    [text] = until(lambda: watches.texts)
     assert text.startswith("/node has not been spun for ")
     timer.cancel()
     node.destroy_node()
-    while watches.texts and time.monotonic() < until:
-        time.sleep(0.01)
-    assert watches.texts == []
+    until(lambda: watches.texts == [])
