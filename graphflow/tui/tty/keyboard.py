@@ -13,8 +13,8 @@ from collections.abc import Awaitable, Callable
 
 from textual import events
 from textual.message import Message
-from textual.screen import Screen
 from textual.timer import Timer
+from textual.widget import Widget
 
 from graphflow.tui.commands.actions import OPTION_KEYS, by_chord, shown
 from graphflow.tui.context import ConsoleApp
@@ -24,8 +24,8 @@ WHICH_KEY_AFTER = 0.4
 """Seconds after the prefix at which the possible next keys are shown."""
 ROUNDS = 2
 """Rounds of the marker: the first arrives behind the key itself, the second behind the effects of the key."""
-DONE_AFTER = 0.25
-"""Seconds after which a key counts as done: its widget may have been removed, and the marker with it."""
+DONE_AFTER = 2.0
+"""Seconds after which a key counts as done although its marker has not come back: its widget is busy with something."""
 QUEUE_BOUND = 10_000
 """Maximum number of queued keys; beyond it, the oldest are dropped."""
 
@@ -62,7 +62,8 @@ class Keyboard:
         self._queue: deque[Typed] = deque(maxlen=QUEUE_BOUND)
         self._number = 0
         self._under_way_since: float | None = None
-        self._screen: Screen[object] | None = None
+        self._marked: Widget | None = None
+        """The widget or screen to which the marker was posted."""
 
     @property
     def is_quiet(self) -> bool:
@@ -84,7 +85,7 @@ class Keyboard:
             event = self._queue.popleft()
             self._number += 1
             self._under_way_since = time.monotonic()
-            self._screen = console.screen
+            self._marked = None
             if not (isinstance(event, events.Key) and self._takes_as_chord(event)):
                 await self._pass_on(event)
             self._post_marker(ROUNDS)
@@ -100,9 +101,9 @@ class Keyboard:
         await self.go_on()
 
     async def look(self, now: float) -> None:
-        """Stop waiting for a key whose target is gone."""
+        """Stop waiting for a marker that was removed together with its widget, or that is held up by it."""
         since = self._under_way_since
-        if since is not None and (now - since > DONE_AFTER or self._console.screen is not self._screen):
+        if since is not None and (now - since > DONE_AFTER or self._is_marker_lost()):
             self._under_way_since = None
         await self.go_on()
 
@@ -112,7 +113,14 @@ class Keyboard:
 
     def _post_marker(self, rounds: int) -> None:
         console = self._console
-        (console.focused or console.screen).post_message(self.Marker(self._number, rounds))
+        self._marked = console.focused or console.screen
+        self._marked.post_message(self.Marker(self._number, rounds))
+
+    def _is_marker_lost(self) -> bool:
+        marked = self._marked
+        if marked is None:  # not posted yet
+            return False
+        return not marked.is_attached or marked.screen not in self._console.screen_stack
 
     # the prefix
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import time
+
 import pytest
 from textual import events
 from textual.widgets import Input
@@ -68,3 +71,19 @@ async def test_more_keys_than_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         for key in "abc":
             queue.append(events.Key(key, key))
         assert [each.key for each in queue if isinstance(each, events.Key)] == ["b", "c"]
+
+
+async def test_a_console_that_is_slow() -> None:
+    """However long its turns take, a dialog gets the keys that are typed for it."""
+
+    async def take_long(s: Stage) -> None:
+        """Have the console believe that each of its turns takes a second."""
+        while True:
+            await s.console.keyboard.look(time.monotonic() + 1.0)
+            await asyncio.sleep(0)
+
+    async with stage(Content("nodes")) as s:
+        turns = asyncio.create_task(take_long(s))
+        await type_ahead(s, "ctrl+b", "colon", *"ab")
+        assert s.console.screen.query_one(Input).value == "ab"
+        turns.cancel()
