@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import sys
 import threading
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -505,8 +507,7 @@ class N:
             time.sleep(60)
 
     def look(self):
-        LOOKED_AT.set()
-        LOOKER.join()
+        GATE.acquire()
 
     def on_arrive(self):
         self.there = True
@@ -528,13 +529,21 @@ async def test_a_loop_that_polls(
         node.there = True
 
     def watch() -> None:
-        module.LOOKED_AT.wait(20)
-        found.append(scene.snapshot.take())
+        looks = type(node).look.__code__
+        while sys._current_frames()[loops_thread].f_code is not looks:  # elsewhere, it would do something else
+            os.sched_yield()
+        try:
+            found.append(scene.snapshot.take())
+        finally:
+            module.GATE.release()
 
-    module.LOOKED_AT, module.LOOKER = threading.Event(), threading.Thread(target=watch)
-    module.LOOKER.start()
+    loops_thread, module.GATE = threading.get_ident(), threading.Lock()
+    module.GATE.acquire()
+    looker = threading.Thread(target=watch)
+    looker.start()
     monkeypatch.setattr("time.sleep", pause)
     await begin(scene.stage.handler(scene.actor, "on_go", node.on_go), "message")
+    looker.join()
 
     [view] = found[0].activities.values()
     assert isinstance(view.wait, SetBy)
