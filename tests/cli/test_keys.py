@@ -11,6 +11,7 @@ import termios
 import pytest
 
 from graphflow.cli.keys import DOWN, RIGHT, UP, key_presses
+from tests.until import eventually
 
 
 def test_keys_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -25,9 +26,9 @@ def test_keys_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
         async def press() -> None:
             with key_presses(found.append) as has_keys:
                 assert has_keys
-                for text in (" ", "\x1b[A\x1bOBa", "b\x1b[C"):
+                for text, count in ((" ", 1), ("\x1b[A\x1bOBa", 4), ("b\x1b[C", 6)):
                     os.write(ours, text.encode())
-                    await asyncio.sleep(0.02)
+                    await eventually(lambda: len(found) == count)  # noqa: B023
 
         asyncio.run(press())
         assert found == [" ", UP, DOWN, "a", "b", RIGHT]

@@ -46,7 +46,7 @@ for key, value in {
     config.insert_json5(key, json.dumps(value))
 session: Any = zenoh.open(config)
 sequence = 0
-cancel_shown = threading.Event()
+cancel_shown, second_told = threading.Event(), threading.Event()
 
 
 def say(*words: object) -> None:
@@ -90,6 +90,8 @@ def numbers(data: bytes) -> tuple[int, ...]:
 def heard_feedback(sample: Any) -> None:
     data = sample.payload.to_bytes()[4:]
     say("FEEDBACK", data[:16].hex()[:4], *numbers(data[16:]))
+    if data[:16] == second:
+        second_told.set()
 
 
 def heard_status(sample: Any) -> None:
@@ -120,7 +122,7 @@ send(first, 3)
 result(first)
 result(first)
 send(second, 40)
-time.sleep(1.5)
+assert second_told.wait(LIMIT)
 answer = call(CANCEL, second + struct.pack("<iI", 0, 0))
 code, count = answer[0], struct.unpack_from("<I", answer, 4)[0]
 say("CANCEL", code, count, answer[8:10].hex())

@@ -55,7 +55,7 @@ def test_a_kill(machine: Machine, project: Path, seed: int) -> None:
     up = machine.start("up", "-d", write(project, NURSERY), cwd=project)
     machine.until(lambda: bool(list(machine.run_directory.glob("graphflow/*/*/run.json"))), "it begins")
     run = supervisor_of(machine)
-    time.sleep(chance.uniform(0.0, 0.5))
+    time.sleep(chance.uniform(0.0, 0.5))  # the moment is what differs between the cases
     parts = family_of(run["pid"])
     guardian = psutil.Process(parts["guardian"])
     everybody = [guardian.pid, *(child.pid for child in guardian.children(recursive=True))]

@@ -17,7 +17,7 @@ from graphflow.markup import source
 from graphflow.supervisor.launching.debugging import debugged
 from graphflow.supervisor.processes.messages import InterfacesJson, Job, ProcessEvent
 from graphflow.supervisor.supervisor import Supervisor
-from graphflow.testing.clock import ManualClock
+from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
 from tests.until import eventually
 
@@ -284,7 +284,7 @@ async def test_nothing_is_started_while_others_take_long_to_stop(tmp_path: Path,
         stage.supervisor.begin_stop(now=False, reason="down")
         if how == "restarting":
             stage.workers.end("/a", -15)
-        await asyncio.sleep(0.05)  # more than the delay
+        await asyncio.sleep(0.05)  # more than the delay, which runs by the loop's own clock
         assert stage.states() == {"/a": "failed" if how == "waiting" else "ended", "/b": "stopping"}
         assert stage.workers.spawned.count("/a") == 1
         stage.workers.end("/b", -15)
@@ -297,5 +297,5 @@ async def test_how_long_a_start_may_take(tmp_path: Path, is_debugged: bool) -> N
     debug = ["/a"] if is_debugged else []
     async with graph("nodes: {a: {class: x:Y}}", tmp_path, "/a", debug=debug) as stage:
         await stage.until(a="starting")
-        await asyncio.sleep(0.01)
+        await settle()
         assert (stage.supervisor._processes["/a"].alarm is None) is is_debugged

@@ -34,7 +34,7 @@ def test_a_publisher_that_cannot_be_asked_yet_is_asked_again(monkeypatch: pytest
         receiver = session.open_receiver("0/map", Qos(depth=5, durability=Durability.TRANSIENT_LOCAL), inbox)
         publisher = f"0/map/@adv/pub/{'a' * 32}/7/_"
         session.raw.liveliness().declare_token(publisher)
-        await asyncio.sleep(0.1)
+        await asyncio.sleep(0.1)  # Zenoh's own subscriber asks meanwhile, and nothing tells when it has
         session.raw.declare_queryable(publisher, answer)
         async with asyncio.timeout(LIMIT):
             await arrived.wait()

@@ -17,7 +17,7 @@ from graphflow.transport.inbox import Inbox
 from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine
-from tests.until import eventually
+from tests.until import eventually, until
 
 pytestmark = pytest.mark.real
 
@@ -38,14 +38,14 @@ def raw(machine: Machine) -> Iterator[zenoh.Session]:
 
 def tokens(session: zenoh.Session, domain: int) -> list[str]:
     """Those of the talker, once the session knows the last that it declares."""
-    deadline = time.monotonic() + LIMIT
-    while True:
+
+    def complete() -> list[str]:
         replies = session.liveliness().get(f"@ros2_lv/{domain}/**", timeout=5.0)
         found = sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
-        if any("chatter" in token for token in found) and any("%rosout" in token for token in found):
-            return found
-        assert time.monotonic() < deadline, found
-        time.sleep(0.05)
+        return found if all(any(name in token for token in found) for name in ("chatter", "%rosout")) else []
+
+    found: list[str] = until(complete)
+    return found
 
 
 def test_a_running_talker_is_exactly_what_the_specification_says(raw: zenoh.Session, machine: Machine) -> None:
@@ -53,10 +53,7 @@ def test_a_running_talker_is_exactly_what_the_specification_says(raw: zenoh.Sess
     samples: list[zenoh.Sample] = []
     key = f"{machine.domain}/robot1/chatter/std_msgs::msg::dds_::String_/{STRING}"
     with raw.declare_subscriber(f"{machine.domain}/**", samples.append):
-        deadline = time.monotonic() + LIMIT
-        while len([s for s in samples if "chatter" in str(s.key_expr)]) < 3:
-            assert time.monotonic() < deadline
-            time.sleep(0.01)
+        until(lambda: sum("chatter" in str(s.key_expr) for s in samples) >= 3)
     said = [s for s in samples if "chatter" in str(s.key_expr)]
 
     assert {str(s.key_expr) for s in said} == {key}

@@ -241,7 +241,7 @@ async def test_a_full_disk(graph: Graph, session: Session, monkeypatch: pytest.M
         publisher.publish(String(data=os.urandom(500).hex()))
         await graph.settle()
         if n % 20 == 0:  # by and by, as messages come
-            await session.until(lambda: not recorder._queue)
+            await session.until(lambda: not recorder._queue or recorder.failed.done())
     await session.until(recorder.failed.done)
     with pytest.raises(BagError, match="the disk is full"):
         await session.task

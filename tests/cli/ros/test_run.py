@@ -150,7 +150,7 @@ def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machin
     node.process.send_signal(signal.SIGINT)
     status = Path(f"/proc/{node.pid}/status")
     machine.until(lambda: "ShdPnd:\t0000000000000000" in status.read_text(), "the first signal has arrived")
-    time.sleep(2 * SAME_SIGNAL)
+    time.sleep(2 * SAME_SIGNAL)  # signals that come together count as one, by the node's own clock
     assert node.end() == 1
     assert "asked twice" in node.text
 

@@ -503,6 +503,6 @@ async def test_a_program_that_may_go_on(graph: Graph, caplog: Caplog, program: t
     await graph.start(program())
     await say(graph, "/go", "/arrive")
     for _ in range(4):
-        await asyncio.sleep(0.02)
+        await asyncio.sleep(0.02)  # some wait in threads, for which the graph's clock is none
         await graph.clock.advance(0.5)
     assert reports(caplog) == []

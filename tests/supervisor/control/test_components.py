@@ -14,6 +14,7 @@ from graphflow.machines.process import State
 from graphflow.supervisor.control import components
 from graphflow.supervisor.control.components import Components
 from graphflow.supervisor.processes.process import Process
+from graphflow.testing.clock import settle
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 HERE = Place("g.yaml", 1)
@@ -174,7 +175,7 @@ async def test_orders_to_one_process_wait_for_each_other() -> None:
     stage = Stage()
     stage.worker.is_silent = True
     tasks = [asyncio.create_task(stage.components.load("/c", node(name))) for name in ("/x", "/y")]
-    await asyncio.sleep(0.01)
+    await settle()
     assert len(stage.worker.orders) == 1
     stage.processes[1].state = State.ENDED
     stage.components.lost(stage.processes[1])

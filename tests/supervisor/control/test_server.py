@@ -21,6 +21,7 @@ from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.control.clients import Clients
 from graphflow.supervisor.control.server import ControlServer
 from graphflow.system import is_portable
+from graphflow.testing.clock import settle
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
@@ -110,7 +111,7 @@ async def test_nobody_is_waited_for_who_has_gone(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(control_server, "FOLLOW_LIMIT", 60.0)
     server = ControlServer(Graph())
     waiting = asyncio.create_task(server.wait_followed())
-    await asyncio.sleep(0.01)
+    await settle()
     assert not waiting.done()
     server.expect_nobody()
     await asyncio.wait_for(waiting, 5.0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -80,8 +79,7 @@ def test_a_node_waits_for_its_debugger(machine: Machine, tmp_path: Path) -> None
     machine.env["PYTHONPATH"] = str(tmp_path)
     up = machine.start("up", "--no-console", "--debug", "/listener", "graphs/talker_listener.yaml", "rate:=50.0")
     up.wait_for("/listener waits for a debugger on 127.0.0.1:4711")
-    up.wait_for("Publishing: 'Hello World: 3'")
-    time.sleep(0.1)
+    up.wait_for("Publishing: 'Hello World: 9'")
     assert "is up" not in up.text
     (tmp_path / "attached").touch()
     up.wait_for("graph talker_listener is up: 2 nodes")

@@ -240,11 +240,11 @@ def test_ctrl_c_at_any_moment(machine: Machine, project: Path, moment: float) ->
     deadline = time.monotonic() + moment
     while time.monotonic() < deadline:
         seen.update(family_of(up.pid))
-        time.sleep(0.01)
+        time.sleep(0.01)  # the moment is what differs between the cases
     for _ in range(1 + round(moment * 40) % 2):
         seen.update(family_of(up.pid))
         up.process.send_signal(signal.SIGINT)
-        time.sleep(0.15)
+        time.sleep(0.15)  # more than signals that count as one
     up.process.wait(15.0)
     nothing_is_left(machine, sorted(seen))
     assert "Traceback" not in up.text

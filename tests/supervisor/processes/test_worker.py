@@ -21,6 +21,7 @@ from graphflow.supervisor.processes import worker
 from graphflow.supervisor.processes.orphaned import Orphan
 from graphflow.supervisor.processes.worker import PIPE_BUF, PipeReporter, SocketReporter, _one_line, make_node
 from graphflow.testing import Graph
+from graphflow.testing.clock import settle
 from nodes.talker import Talker
 from tests.cases import slow
 from tests.conftest import Machine
@@ -200,9 +201,9 @@ async def test_orders_come_over_a_pipe(graphflow_runner: asyncio.Runner) -> None
     PipeReporter(-1, read, Attended(0, -1, read, "")).listen(lambda: None, heard.append)
     for part in (b'{"order": 1', b'}\n{"order"', b": 2}\n"):
         os.write(write, part)
-        await asyncio.sleep(0.01)
+        await settle()
     os.close(write)
-    await asyncio.sleep(0.01)
+    await settle()
     assert heard == [b'{"order": 1}', b'{"order": 2}']
     os.close(read)
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -39,6 +39,22 @@ def spun(node: Node) -> Iterator[SingleThreadedExecutor]:
 
 def told(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.getMessage() for record in caplog.records if "no longer spun" in record.getMessage()]
+
+
+def postponed(monkeypatch: pytest.MonkeyPatch) -> tuple[list[Callable[[], object]], list[Any]]:
+    """The checks that are to be made later, which a test makes itself; and the executors that they ask about."""
+    checks: list[Callable[[], object]] = []
+    looks: list[Any] = []
+    loop = SimpleNamespace(call_later=lambda _, check: checks.append(check))
+    is_spun = orphans._is_spun
+
+    def look(executor: Any) -> bool:
+        looks.append(executor)
+        return is_spun(executor)
+
+    monkeypatch.setattr(orphans, "LOOP", SimpleNamespace(start=lambda: loop))
+    monkeypatch.setattr(orphans, "_is_spun", look)
+    return checks, looks
 
 
 def test_a_spin_in_a_callback(node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,22 +95,18 @@ def test_a_node_that_is_spun_again(
     node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By its executor or by a loop, or one that is destroyed, or whose executor spins no more: nothing is told."""
-    monkeypatch.setattr(orphans, "WARN_AFTER", 0.05)
-    looks, is_spun = [], orphans._is_spun
-
-    def look(executor: Any) -> bool:
-        looks.append(executor)
-        return is_spun(executor)
-
-    monkeypatch.setattr(orphans, "_is_spun", look)
+    checks, looks = postponed(monkeypatch)
     with spun(node) as executor:
         rclpy.spin_once(node, timeout_sec=0.01)
         executor.add_node(node)
-        time.sleep(0.15)
+        until(lambda: checks)
+        checks.pop()()
         assert not looks
     with spun(node):
         rclpy.spin_once(node, timeout_sec=0.01)
-    until(lambda: looks)
+    until(lambda: checks)
+    checks.pop()()
+    assert looks
     assert told(caplog) == []
 
 
@@ -103,14 +115,7 @@ def test_a_callback_that_destroys_its_node(
     node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, limit: float | None
 ) -> None:
     """It is told where the spin waits for ever; a loop of the program's own may end by itself."""
-    monkeypatch.setattr(orphans, "WARN_AFTER", 0.05)
-    looks, is_spun = [], orphans._is_spun
-
-    def look(executor: Any) -> bool:
-        looks.append(executor)
-        return is_spun(executor)
-
-    monkeypatch.setattr(orphans, "_is_spun", look)
+    checks, looks = postponed(monkeypatch)
     done = threading.Event()
 
     def tick() -> None:
@@ -128,11 +133,9 @@ def test_a_callback_that_destroys_its_node(
     thread = threading.Thread(target=lambda: suppressed(spin))
     thread.start()
     assert done.wait(10)
-    if limit is None:
-        until(lambda: "goes on without a node" in caplog.text)
-    else:
-        time.sleep(0.2)
-        assert not looks
+    until(lambda: checks)
+    checks.pop()()
+    assert bool(looks) is (limit is None)
     waited.append(True)
     rclpy.try_shutdown()
     thread.join(10)

@@ -21,6 +21,7 @@ from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, Si
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.watches import starvation
 from rclpy.node import Node
+from tests.rclpy.looking import ManualTime, look
 from tests.until import until
 
 Caplog = pytest.LogCaptureFixture
@@ -96,7 +97,7 @@ def test_a_callback_that_keeps_others_waiting(node: Node, caplog: Caplog, thread
         assert slow.began.wait(LIMIT)
         chat.publish(String())
         until(lambda: any("running" in text for text in told(caplog)))
-        time.sleep(0.1)
+        look(times=5)
         slow.may_end.set()
         until(lambda: any("returned" in text for text in told(caplog)))
     long, over = told(caplog)
@@ -116,8 +117,9 @@ def test_a_timer_that_keeps_itself(node: Node, caplog: Caplog) -> None:
     assert "MultiThreadedExecutor" not in told(caplog)[0]
 
 
-def test_a_goal_whose_result_is_asked_for(node: Node, caplog: Caplog) -> None:
+def test_a_goal_whose_result_is_asked_for(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """That waits for the end as it should: nothing is told before a request to cancel waits, or a new goal."""
+    monkeypatch.setattr(starvation, "time", clock := ManualTime())
     may_end, server_node = threading.Event(), rclpy.create_node("server")
 
     def execute(goal_handle: Any) -> Any:
@@ -133,7 +135,9 @@ def test_a_goal_whose_result_is_asked_for(node: Node, caplog: Caplog) -> None:
             until(sent.done)
             result = sent.result().get_result_async()
             until(lambda: server._graphflow_results.inbox.items)
-            time.sleep(0.5)
+            look()
+            clock.advance(0.5)
+            look()
             assert told(caplog) == []
             sent.result().cancel_goal_async()
             until(lambda: told(caplog))

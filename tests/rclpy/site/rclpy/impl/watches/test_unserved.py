@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -16,6 +15,7 @@ from std_srvs.srv import Trigger
 
 import rclpy
 from graphflow.deadlock.search import Search
+from graphflow.runtime.mistakes.network.unserved import GAP
 from rclpy.action import ActionClient, ActionServer
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.watches import unserved
@@ -23,6 +23,7 @@ from rclpy.impl.watches.unserved import Unserved
 from rclpy.node import Node
 from rclpy.parameter_client import AsyncParameterClient
 from tests.cases import slow
+from tests.rclpy.looking import ManualTime, look
 from tests.until import until
 
 Caplog = pytest.LogCaptureFixture
@@ -98,20 +99,22 @@ def test_a_wait_for_what_nobody_offers(
     serve(node)
     with waiting_for(make(node)):
         until(lambda: told(caplog))
-        time.sleep(0.2)
+        look(times=5)
     [only] = told(caplog)
     line = waiting_for.__wrapped__.__code__.co_firstlineno + 6  # type: ignore[attr-defined]
     assert only.startswith("/node has waited for 0.")
     assert only.endswith(f" s in test_unserved.py:{line} in loop: {text}")
 
 
-def test_a_server_that_comes(node: Node, caplog: Caplog) -> None:
+def test_a_server_that_comes(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is told of it."""
+    monkeypatch.setattr(unserved, "time", clock := ManualTime())
     client = node.create_client(Trigger, "switch")
     with waiting_for(client.wait_for_service):
-        until(lambda: client._changed)
+        until(lambda: client in watch()._since)
         serve(node)
-    time.sleep(0.2)
+    clock.advance(0.2)
+    look()
     assert told(caplog) == []
 
 
@@ -141,7 +144,7 @@ def test_a_call_that_nobody_answers(
     call()
     until(lambda: told(caplog))
     call()
-    time.sleep(0.1)
+    look()
     lost = "a call of /node will never be answered, since it has no server"
     assert told(caplog) == [f"{lost} {text}"]
 
@@ -187,10 +190,11 @@ def test_a_wait_of_which_the_search_tells(node: Node, caplog: Caplog, monkeypatc
 @slow
 def test_a_program_that_asks_now_and_then(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Does without the server: the time between its waits does not count."""
-    monkeypatch.setattr(unserved, "WARN_AFTER", 1.0)
-    monkeypatch.setattr(unserved, "GAP", 0.1)
+    monkeypatch.setattr(unserved, "time", clock := ManualTime())
     client = node.create_client(Trigger, "swich")
     for _ in range(5):
-        assert not client.wait_for_service(0.05)
-        time.sleep(0.3)
+        with waiting_for(client.wait_for_service):
+            until(lambda: watch()._last.get(client) == clock.now)
+        clock.advance(2 * GAP)
+    look()
     assert told(caplog) == []
