@@ -33,7 +33,7 @@ class NetToken(NamedTuple):
 
 def token(domain: int, zid: str, file: str, allow: Iterable[str]) -> str:
     """Return the token of a link."""
-    return f"@graphflow/{domain}/net/{zid}/{quote(file, safe='')}/{quote(' '.join(allow), safe='')}".replace("*", "%2A")
+    return f"@graphflow/{domain}/net/{zid}/{quote(file, safe='')}/{quote(' '.join(allow), safe='')}"
 
 
 def watch_key(domain: int) -> str:

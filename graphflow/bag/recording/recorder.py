@@ -342,9 +342,11 @@ class Recorder:
                 self._queue.clear()
                 self._waiting = 0
             if self._is_snapshot and batch:
-                batch, came = [*self._kept.before(batch[0].log_ns, batch), *batch], batch
-                for record in came:
+                repeated = self._kept.before(batch[0].log_ns, batch)
+                for record in batch:
                     self._kept.put(record)
+                batch = [*repeated, *batch]
+                split_after = None if split_after is None else split_after + len(repeated)
             self._split_after, self._is_writing_snapshot = None, False
         # Without the lock: a slow disk must not hold up the loop.
         for topic in topics:
