@@ -15,6 +15,7 @@ from graphflow.qos import Durability, Qos
 from graphflow.runtime.declarations.creator import Creator, Owner
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints
 from graphflow.tf.faults import fault_of
 from graphflow.tf.frames import Frames, seconds
 from graphflow.tf.reports import Reports
@@ -91,7 +92,7 @@ class _Wait:
     lacking: str = ""
 
 
-class TransformBuffer:
+class TransformBuffer(AttributeHints):
     """The transforms that a node receives, and those that it sends. Declared by `Transforms`.
 
     Args:

@@ -14,6 +14,7 @@ from graphflow.msgs.geometry_msgs.msg import PointStamped
 from graphflow.msgs.std_msgs.msg import Header
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.msgs.tf2_msgs.msg import TFMessage
+from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 from graphflow.testing import Graph
 from graphflow.tf import Transform, Transforms
 
@@ -296,3 +297,10 @@ async def test_a_wait_without_limit(graph: Graph) -> None:
     await graph.start(Odometry())
     await graph.clock.advance(0.1)
     assert waits.found.translation == pytest.approx((0.1, 0.0, 0.0))
+
+
+def test_words_of_rclpy() -> None:
+    """An error names the method to call."""
+    with pytest.raises(AttributeError) as caught:
+        Listener().tf.lookup_transform("map", "base")  # type: ignore[attr-defined]
+    assert "self.tf.lookup(target, source" in better_text(caught.value)

@@ -342,7 +342,7 @@ class Recorder:
                 self._queue.clear()
                 self._waiting = 0
             if self._is_snapshot and batch:
-                repeated = self._kept.before(batch[0].log_ns, batch)
+                repeated = list(self._kept.before(batch[0].log_ns, batch))
                 for record in batch:
                     self._kept.put(record)
                 batch = [*repeated, *batch]

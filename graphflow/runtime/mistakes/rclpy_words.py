@@ -229,7 +229,25 @@ EQUIVALENTS = (
         "`create_publisher(...)`, or a declared `Publisher`: in a `LifecycleNode` they send only while it is active",
         "create_lifecycle_publisher destroy_lifecycle_publisher add_managed_entity",
     ),
-    Equivalent("`tf2_ros`", "in [code written for rclpy](rclpy.md); not yet in native nodes"),
+    Equivalent(
+        "`Buffer()`, `TransformListener(buffer, self)`", "`tf = Transforms()` in the class: [transforms](transforms.md)"
+    ),
+    Equivalent(
+        "`buffer.lookup_transform(target, source, time, timeout)`",
+        "`await self.tf.lookup(target, source, at=time, timeout=1.0)`, or `self.tf.get(...)`",
+        "lookup_transform lookup_transform_async can_transform",
+    ),
+    Equivalent(
+        "`lookup_transform_full(...)`",
+        '`self.tf.get(target, source, at=then, fixed="odom", target_at=now)`',
+        "lookup_transform_full lookup_transform_full_async",
+    ),
+    Equivalent(
+        "`TransformBroadcaster(self).sendTransform(t)`",
+        "`self.tf.send(t)`; static: `self.tf.send_static(t)`",
+        "sendTransform send_transform",
+    ),
+    Equivalent("`tf2_geometry_msgs.do_transform_point(p, t)`", '`t.apply(p)`, or `await self.tf.transform(p, "map")`'),
     Equivalent("`use_sim_time`, `/clock`", "the same"),
     Equivalent(
         "`SubscriptionEventCallbacks`, `PublisherEventCallbacks`", "`on_event=` with a method that takes a `QosEvent`"
