@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-from collections.abc import Coroutine, Iterator, Sequence
-from typing import Any, Generic, TypeVar
+from collections.abc import Coroutine, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
@@ -24,6 +25,9 @@ from graphflow.testing.forgotten import awaited
 from graphflow.testing.outside import outside
 from graphflow.transport.memory import Network
 from graphflow.wire.liveliness import Kind
+
+if TYPE_CHECKING:
+    from graphflow.testing.graph_file import PlanRun
 
 logger = logging.getLogger("graphflow")
 
@@ -97,6 +101,7 @@ class Graph(AttributeHints):
         self._waits_outside = True
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
+        self._runs: list[PlanRun] = []
         self.tester: Node | None = None
         """The test's own node, created on first use."""
         self.taps: list[tuple[str, Tap[Any]]] = []
@@ -132,6 +137,32 @@ class Graph(AttributeHints):
             heard = {endpoint.name for endpoint in node.endpoints if endpoint.kind is Kind.SUBSCRIPTION}
             self.unheard += [(p, p.published, node.full_name) for p in early if p.name in heard]
         await settle()
+
+    @awaited
+    async def up(self, file: str | Path, **arguments: object) -> Mapping[str, Node]:
+        """Start the nodes of a graph file and carry out its steps, as `graphflow up` does, in memory.
+
+        What needs time, such as a step that sends a goal, goes on while the clock advances.
+
+        Args:
+            file: The file; a relative path starts at the working directory.
+            arguments: The file's arguments, as in `target="carrot1", delay=5.0`.
+
+        Returns:
+            The nodes by full name, with those that start later.
+
+        Raises:
+            GraphFileError: The file has mistakes.
+            GraphflowError: A node could not be made, a step has failed, or a node is a foreign program.
+        """
+        from graphflow.testing.graph_file import PlanRun, plan_of
+
+        run = PlanRun(plan_of(file, arguments), self._context, self.start, self.failed.append)
+        self._runs.append(run)
+        run.begin()
+        await settle()
+        self.raise_failed()
+        return run.nodes
 
     def make(
         self,
@@ -205,6 +236,8 @@ class Graph(AttributeHints):
 
     async def close(self) -> None:
         """Stop all nodes; raises a failed node's error that the test did not catch, or a failed assertion."""
+        for run in self._runs:
+            await run.close()
         for node in reversed(self.nodes):
             await core_of(node).stop()
         for context in self._contexts:
