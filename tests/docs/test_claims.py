@@ -13,6 +13,7 @@ import click
 import pytest
 
 import graphflow
+import graphflow.simulator
 import graphflow.tui
 from graphflow import errors
 from graphflow.cli.main import cli
@@ -20,7 +21,8 @@ from tests.conftest import PROJECT
 from tests.docs.test_docs import PAGES, blocks
 
 PUBLIC_MODULES = (
-    *("graphflow.msgs.", "graphflow.testing.", "graphflow.qos.", "graphflow.bag.", "graphflow.nodes."),
+    *("graphflow.msgs.", "graphflow.testing.", "graphflow.qos.", "graphflow.bag.", "graphflow.nodes.", "graphflow.tf."),
+    *(f"graphflow.simulator.{name}." for name in graphflow.simulator.__all__),
     *(f"graphflow.tui.{name}." for name in graphflow.tui.__all__),
 )
 """What users import beside `graphflow` itself; `graphflow.qos` has ROS 2's named profiles, `tui` the views."""

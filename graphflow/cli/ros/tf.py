@@ -20,6 +20,7 @@ from graphflow.runtime.node_core import core_of
 from graphflow.tf import Transform, TransformBuffer
 from graphflow.tf.text import described, monitored, remark, tree
 from graphflow.times import Time, to_ns
+from graphflow.wire.liveliness import Kind
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -42,6 +43,8 @@ def _listen(work: Callable[[TransformBuffer, Node], Awaitable[int]]) -> int:
     """Run `work` with the transforms that arrive meanwhile; returns its exit code."""
 
     async def run(node: Node) -> int:
+        if node.context.cache.endpoints(Kind.PUBLISHER, "/clock"):  # ages and delays are those of the simulation
+            node.parameters.set({"use_sim_time": True})
         return await work(TransformBuffer(node, core_of(node), to_ns(10.0), listen=True), node)
 
     return run_with_node(run)

@@ -1,0 +1,33 @@
+"""Worlds, wheeled robots and their sensors on the physics engine MuJoCo (extra `sim`).
+
+    simulation = simulate("hexagon", seed=1)
+    simulation.robots[""].command(0.1, 0.3)
+    simulation.tick()
+
+Read `simulation` first: what a node steps and reads. `world` and `robot` are the files that describe worlds and robots,
+`files` reads them, `mjcf` converts them to MuJoCo's model, `sensors` has the errors of real sensors, and `loading` puts
+them together. The bundled worlds are in `worlds/`, the robots in `robots/`. Knows no node; the only package that
+imports mujoco, when a simulation begins.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from graphflow.simulator.loading import simulate
+from graphflow.simulator.robot import Robot
+from graphflow.simulator.world import World
+
+if TYPE_CHECKING:
+    from graphflow.simulator.simulation import ImuReading, Pose2D, SimulatedRobot, Simulation
+
+__all__ = ["ImuReading", "Pose2D", "Robot", "SimulatedRobot", "Simulation", "World", "simulate"]
+
+
+def __getattr__(name: str) -> object:
+    if name in __all__:  # these need mujoco, which may not be installed
+        from graphflow.simulator import simulation
+
+        value: object = getattr(simulation, name)
+        return value
+    raise AttributeError(f"module 'graphflow.simulator' has no attribute {name!r}")

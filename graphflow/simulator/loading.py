@@ -1,0 +1,36 @@
+"""A simulation of a world by its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from graphflow.errors import GraphflowError
+from graphflow.introspect.installation import requirement
+from graphflow.simulator.files import find, read_world
+
+if TYPE_CHECKING:
+    from graphflow.simulator.simulation import Simulation
+
+
+def simulate(world: str, seed: int = 0) -> Simulation:
+    """Return the simulation of a world.
+
+    Args:
+        world: A bundled world, or the path of a world file.
+        seed: Of all noise; the same seed gives the same run.
+
+    Raises:
+        GraphflowError: MuJoCo or the world is missing; the text says what to install, or which worlds there are.
+        GraphFileError: The file has mistakes.
+    """
+    try:
+        from graphflow.simulator.simulation import Simulation
+    except ImportError as error:
+        if error.name != "mujoco":
+            raise
+        raise GraphflowError(f"the simulator needs MuJoCo: pip install {requirement('sim')}") from None
+    try:
+        return Simulation(*read_world(find(world, "worlds", Path.cwd())), seed)
+    except (FileNotFoundError, ValueError) as error:
+        raise GraphflowError(str(error)) from None

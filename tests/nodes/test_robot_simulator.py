@@ -1,0 +1,119 @@
+"""The simulator of robots as a node."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import pytest
+
+from graphflow import GraphflowError, Node
+from graphflow.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from graphflow.msgs.nav_msgs.msg import Odometry
+from graphflow.msgs.rosgraph_msgs.msg import Clock
+from graphflow.msgs.sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
+from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.testing import Graph
+from graphflow.tf import Transforms
+from nodes.robot_simulator import RobotSimulator
+
+FORWARD = Twist(linear=Vector3(x=0.2))
+
+
+class Listener(Node):
+    tf = Transforms()
+
+
+async def test_topics_and_rates(graph: Graph) -> None:
+    """Each sensor has the rate of the real one, by simulated time."""
+    await graph.start(RobotSimulator())
+    kinds: dict[str, Any] = {"scan": LaserScan, "odom": Odometry, "imu": Imu, "joint_states": JointState}
+    taps = {name: graph.tap(kind, f"/{name}") for name, kind in {**kinds, "battery_state": BatteryState}.items()}
+    clock = graph.tap(Clock, "/clock")
+    await graph.clock.advance(2.0)
+    counts = {name: len(tap) for name, tap in taps.items()}
+    assert counts == pytest.approx({"scan": 10, "odom": 60, "imu": 400, "joint_states": 60, "battery_state": 2}, abs=2)
+    assert clock.latest.clock.sec + clock.latest.clock.nanosec / 1e9 == pytest.approx(2.0, abs=0.02)
+    assert len(taps["scan"].latest.ranges) == 360
+
+
+@pytest.mark.parametrize("kind", [Twist, TwistStamped])
+async def test_commands_and_frames(graph: Graph, kind: Any) -> None:
+    """Both types drive it; its frames are those of a TurtleBot3, and the scanner is where it belongs."""
+    listener = Listener(use_sim_time=True)
+    await graph.start(RobotSimulator(world="empty", stamped=kind is TwistStamped), listener)
+    drive = graph.publisher(kind, "/cmd_vel")
+    for _ in range(10):
+        drive.publish(FORWARD if kind is Twist else TwistStamped(twist=FORWARD))
+        await graph.clock.advance(0.2)
+    scanner = listener.tf.get("odom", "base_scan")
+    assert scanner.translation == pytest.approx((0.37 - 0.032, 0.0, 0.182), abs=0.04)
+    assert listener.tf.parent("wheel_left_link") == "base_link"
+    assert abs(listener.tf.get("base_link", "wheel_left_link").translation[1]) == pytest.approx(0.08)
+
+
+async def test_pause_and_reset(graph: Graph) -> None:
+    """Time stands still, or begins again."""
+    node = RobotSimulator(world="empty", rate=2.0)
+    await graph.start(node)
+    await graph.clock.advance(1.0)
+    assert node.simulation.time == pytest.approx(2.0, abs=0.03)
+    await graph.call(Empty, "/pause_physics", Empty.Request())
+    await graph.clock.advance(1.0)
+    paused = node.simulation.time
+    await graph.clock.advance(1.0)
+    assert node.simulation.time == paused
+    await graph.call(Empty, "/reset_simulation", Empty.Request())
+    await graph.call(Empty, "/unpause_physics", Empty.Request())
+    odoms = graph.tap(Odometry, "/odom")
+    await graph.clock.advance(0.5)
+    assert node.simulation.time == pytest.approx(1.0, abs=0.05)
+    assert len(odoms) > 25
+
+
+async def test_several_robots(graph: Graph, tmp_path: Any) -> None:
+    """Topics and frames are below the names."""
+    file = tmp_path / "two.yaml"
+    file.write_text("robots: [{name: a}, {name: b, at: [1.0, 0.0]}]")
+    node, listener = RobotSimulator(world=str(file)), Listener()
+    await graph.start(node, listener)
+    drive = graph.publisher(Twist, "/b/cmd_vel")
+    drive.publish(FORWARD)
+    await graph.clock.advance(0.5)
+    assert node.simulation.robots["b"].pose.x > 1.02
+    assert node.simulation.robots["a"].pose.x == pytest.approx(0.0, abs=0.01)
+    assert {"a/base_scan", "b/base_scan", "a/odom"} <= set(listener.tf.frames)
+
+
+async def test_commands_that_are_none_and_robots_in_trouble(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Both are reported, once, and the simulation goes on."""
+    node = RobotSimulator(world="empty")
+    await graph.start(node)
+    drive = graph.publisher(Twist, "/cmd_vel")
+    drive.publish(Twist(linear=Vector3(x=float("nan"))))
+    await graph.clock.advance(0.1)
+    assert "cmd_vel: a velocity of nan m/s and 0.0 rad/s is not a command; it is left out" in caplog.text
+    node.simulation.robots[""].place(500.0, 0.0, 0.0)
+    await graph.clock.advance(0.5)
+    assert caplog.text.count("robot burger: it has left the world; call reset_simulation") == 1
+    await graph.call(Empty, "/reset_simulation", Empty.Request())
+    await graph.clock.advance(0.1)
+    assert node.simulation.robots[""].trouble == ""
+
+
+@pytest.mark.parametrize(
+    ("world", "text"),
+    [("hexagn", "there is no world 'hexagn'; did you mean 'hexagon'"), ("/nope.yaml", "there is no file /nope.yaml")],
+)
+async def test_a_world_that_is_not_there(graph: Graph, world: str, text: str) -> None:
+    """The node does not start, and says what there is."""
+    with pytest.raises(GraphflowError, match=text):
+        await graph.start(RobotSimulator(world=world))
+
+
+async def test_without_mujoco(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The error is the line that installs it."""
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    monkeypatch.delitem(sys.modules, "graphflow.simulator.simulation", raising=False)
+    with pytest.raises(GraphflowError, match=r"the simulator needs MuJoCo: pip install .*\[sim\]"):
+        await graph.start(RobotSimulator())
