@@ -34,6 +34,7 @@ class RobotSimulator(Node):
     dynamic_names = True
 
     world = Param("hexagon", read_only=True, doc="A bundled world, or a world file's path.")
+    model = Param("", read_only=True, doc="A robot in place of those of the world: burger, waffle, rover, or a file.")
     seed = Param(0, ge=0, read_only=True, doc="Of all noise; the same seed gives the same run.")
     rate = Param(1.0, gt=0.0, le=100.0, doc="How fast simulated time runs; 2.0 is twice as fast.")
     paused = Param(False, doc="Whether simulated time stands still.")
@@ -42,11 +43,11 @@ class RobotSimulator(Node):
     tf = Transforms(listen=False)
 
     async def on_start(self) -> None:
-        self.simulation = simulate(self.world, self.seed)
+        self.simulation = simulate(self.world, self.seed, self.model)
         self.robots: dict[str, RobotTopics] = {}
         for name in self.simulation.robots:
             self.announce(name)
-        self.log.info("world %s with %d robots", self.world, len(self.robots))
+        self.log.info("world %s: %s", self.world, ", ".join(t.title for t in self.robots.values()) or "no robot")
         self.clock_due = Due(CLOCK_HZ)
         self.owed, self.before = 0.0, self.context.clock.monotonic_ns()
         self.in_trouble: set[str] = set()

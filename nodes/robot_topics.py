@@ -72,6 +72,12 @@ class RobotTopics:
         }
         self._was_touching = False
 
+    @property
+    def title(self) -> str:
+        """Its model, and its name if it has one: `burger`, `burger /second`."""
+        name = self.robot.placed.name
+        return f"{self.robot.robot.name} /{name}" if name else self.robot.robot.name
+
     def restart(self) -> None:
         """Begin again at time 0."""
         for due in self.dues.values():

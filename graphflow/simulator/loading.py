@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 from graphflow.errors import GraphflowError
 from graphflow.introspect.installation import requirement
-from graphflow.simulator.files import find, read_world
+from graphflow.simulator.files import find, read_robot, read_world
 
 if TYPE_CHECKING:
     from graphflow.simulator.simulation import Simulation
 
 
-def simulate(world: str, seed: int = 0) -> Simulation:
+def simulate(world: str, seed: int = 0, model: str = "") -> Simulation:
     """Return the simulation of a world.
 
     Args:
         world: A bundled world, or the path of a world file.
+        model: A robot in place of those of the world, by its name or the path of its file.
         seed: Of all noise; the same seed gives the same run.
 
     Raises:
@@ -31,6 +32,9 @@ def simulate(world: str, seed: int = 0) -> Simulation:
             raise
         raise GraphflowError(f"the simulator needs MuJoCo: pip install {requirement('sim')}") from None
     try:
-        return Simulation(*read_world(find(world, "worlds", Path.cwd())), seed)
+        described, robots = read_world(find(world, "worlds", Path.cwd()))
+        if model:
+            robots = dict.fromkeys(robots, read_robot(find(model, "robots", Path.cwd())))
+        return Simulation(described, robots, seed)
     except (FileNotFoundError, ValueError) as error:
         raise GraphflowError(str(error)) from None

@@ -36,6 +36,8 @@ EXECUTABLES = {
     ("demo_nodes_py", "add_two_ints_server"): "nodes.add_two_ints_server:AddTwoIntsServer",
     ("composition", "talker"): "nodes.talker:Talker",
     ("composition", "listener"): "nodes.listener:Listener",
+    ("turtlebot3_gazebo", "simulator"): "nodes.robot_simulator:RobotSimulator",
+    ("turtlebot3_teleop", "teleop_keyboard"): "nodes.robot_teleop:RobotTeleop",
     ("lifecycle", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
     ("lifecycle", "lifecycle_listener"): "nodes.lifecycle_listener:LifecycleListener",
     ("lifecycle_py", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",

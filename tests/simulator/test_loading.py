@@ -16,5 +16,5 @@ def test_a_bundled_world() -> None:
 
 def test_no_world() -> None:
     """The error lists those there are."""
-    with pytest.raises(GraphflowError, match=r"there is no world 'moon'; bundled are empty, hexagon, house, maze$"):
+    with pytest.raises(GraphflowError, match=r"no world 'moon'; bundled are empty, hexagon, house, maze, two$"):
         simulate("moon")
