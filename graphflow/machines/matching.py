@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from graphflow.machines.cache import ACTION_SEND_GOAL
 from graphflow.names import is_hidden
-from graphflow.qos import incompatible, on_offer
+from graphflow.qos import Qos, incompatible, on_offer
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.profile import PROFILES, advice
 
@@ -79,8 +79,20 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
         True,
         policies,
         f"{own.name}: the publisher of {offered.node_name} offers less than the subscription of "
-        f"{requested.node_name} asks for: {', '.join(policies)}. Over Zenoh messages pass; over DDS none would: "
-        f"have the subscription ask for {on_offer(offered.qos, policies)}",
+        f"{requested.node_name} asks for: {', '.join(policies)}. {_remedy(offered.qos, policies)}",
+    )
+
+
+def _remedy(offered: Qos, policies: Sequence[str]) -> str:
+    """Return the effect of incompatible policies, and the change that ends it."""
+    weaker = on_offer(offered, [policy for policy in policies if policy != "durability"])
+    if "durability" not in policies:
+        return f"Over Zenoh messages pass; over DDS none would: have the subscription ask for {weaker}"
+    # A subscription that asks for TRANSIENT_LOCAL needs earlier messages: asking for less would only silence this.
+    also = f", and the subscription ask for {weaker}" if weaker else ""
+    return (
+        "Over Zenoh messages pass, but not those published before the subscription opened; over DDS none would: have "
+        f"the publisher offer durability TRANSIENT_LOCAL{also}"
     )
 
 

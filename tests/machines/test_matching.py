@@ -86,9 +86,24 @@ def test_policies_that_dds_refuses_are_named_and_messages_pass() -> None:
         assert judged.policies == ("reliability", "durability")
         assert judged.complaint == (
             "/t: the publisher of /there offers less than the subscription of /here asks for: reliability, "
-            "durability. Over Zenoh messages pass; over DDS none would: have the subscription ask for "
-            "reliability BEST_EFFORT, durability VOLATILE"
+            "durability. Over Zenoh messages pass, but not those published before the subscription opened; over DDS "
+            "none would: have the publisher offer durability TRANSIENT_LOCAL, and the subscription ask for "
+            "reliability BEST_EFFORT"
         )
+
+
+def test_who_asks_for_kept_messages_is_told_how_to_receive_them() -> None:
+    """The remedy for durability is a publisher that keeps messages; for another policy alone, a weaker request."""
+    wish = endpoint(Kind.SUBSCRIPTION, "here", durability=Durability.TRANSIENT_LOCAL)
+    judged = verdict(wish, endpoint(Kind.PUBLISHER))
+    assert judged is not None
+    assert judged.complaint.endswith("none would: have the publisher offer durability TRANSIENT_LOCAL")
+    judged = verdict(endpoint(Kind.SUBSCRIPTION), endpoint(Kind.PUBLISHER, reliability=Reliability.BEST_EFFORT))
+    assert judged is not None
+    assert judged.complaint.endswith("have the subscription ask for reliability BEST_EFFORT")
+    judged = verdict(wish, endpoint(Kind.PUBLISHER, durability=Durability.TRANSIENT_LOCAL))
+    assert judged is not None
+    assert not judged.complaint
 
 
 def test_services_of_several_nodes() -> None:
