@@ -33,6 +33,8 @@ _FLAGS = {
     for what in ("rosout", "stdout", "external-lib")
 }
 _DASHES = ("-", *DASHES)
+_OPTION = re.compile(f"[{''.join(_DASHES)}]+[A-Za-z]")
+"""The beginning of an option, unlike that of a negative number."""
 _OPTIONS = (*_VALUED, *_LEFT_OUT, *_FLAGS, "--ros-args", "--")
 
 
@@ -108,10 +110,30 @@ def parse_ros_args(arguments: Sequence[str], *, refuses_unknown: bool = True) ->
         elif in_ros and not refuses_unknown:
             result.unknown.append(argument)
         elif in_ros or _slip(argument):
-            raise GraphflowError(f"{argument!r} is not a ROS argument{cut_off(argument, arguments) or meant(argument)}")
+            raise GraphflowError(f"{argument!r} is not a ROS argument{unrecognized(argument, arguments)}")
         else:
             result.rest.append(argument)
     return result
+
+
+def unrecognized(argument: str, arguments: Sequence[str]) -> str:
+    """Return a hint on an argument that ROS 2 does not know, as the end of a sentence; "" if there is none.
+
+    Args:
+        arguments: The whole command line.
+    """
+    return cut_off(argument, arguments) or _with_value(argument, arguments) or meant(argument)
+
+
+def _with_value(argument: str, arguments: Sequence[str]) -> str:
+    """Return a hint on an option that is misspelt, from the value after it: `--params rate:=2`."""
+    [value] = arguments[list(arguments).index(argument) + 1 :][:1] or [""]
+    near = nearest(argument, _VALUED) if argument.startswith("--") else None
+    if near in ("--param", "--params-file") and ":=" in value:
+        return f"; write -p {value}"
+    if near in ("--param", "--params-file") and value.endswith((".yaml", ".yml")):
+        return f"; write --params-file {value}"
+    return ""
 
 
 def meant(argument: str) -> str:
@@ -138,7 +160,7 @@ def cut_off(argument: str, arguments: Sequence[str]) -> str:
     """
     place = list(arguments).index(argument)
     option, before = arguments[place - 2 : place] if place > 1 else ("", "")
-    is_cut = option in _VALUED and ":=" in before
+    is_cut = option in _VALUED and ":=" in before and not _OPTION.match(argument)
     return f"; quote a value that contains a space: {option} '{before} {argument}'" if is_cut else ""
 
 

@@ -15,7 +15,7 @@ from weakref import WeakMethod, ref
 
 from graphflow.errors import GraphflowError
 from graphflow.rclpy.context_state import ContextState
-from graphflow.runtime.args import cut_off, meant, missed
+from graphflow.runtime.args import missed, unrecognized
 from graphflow.runtime.logs.rosout import log_level, setup_console
 from graphflow.runtime.mistakes import unrun
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
@@ -72,7 +72,7 @@ class Context(AbstractContextManager["Context"]):
                 life = ContextState(words, domain_id)
                 if life.args.unknown:
                     unknown = life.args.unknown
-                    hint = cut_off(unknown[0], words) or meant(unknown[0])
+                    hint = unrecognized(unknown[0], words)
                     raise UnknownROSArgsError(f"Found unknown ROS arguments: {unknown}{hint}")
                 if initialize_logging:
                     setup_console(is_quiet=not life.args.has_stdout)

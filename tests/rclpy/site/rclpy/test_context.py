@@ -31,6 +31,7 @@ def test_it_begins_and_ends_once() -> None:
     [
         (["--ros-args", "unknown"], UnknownROSArgsError, r"\['unknown'\]$"),
         (["--ros-args", "-params-file", "a"], UnknownROSArgsError, r"\['-params-file', 'a'\]; write --params-file$"),
+        (["--ros-args", "-r", "__name:=bob", "--params", "a:=2"], UnknownROSArgsError, r"'a:=2'\]; write -p a:=2$"),
         (["--ros-args", "a:=b"], UnknownROSArgsError, r"\['a:=b'\]; write --ros-args -r a:=b$"),
         (["--ros-args", "-r", "no-rule"], RuntimeError, "no-rule"),
         (["--ros-args", "--log-level", "loud"], RuntimeError, "loud"),
