@@ -65,6 +65,8 @@ class TopicPublisher(Endpoint, Generic[M]):
     """A publisher."""
 
     kind = Kind.PUBLISHER
+    unheard = 0
+    """Messages published while there was no subscription."""
 
     def __init__(self, host: Host, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
         super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
@@ -161,6 +163,8 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     def _matched(self, other: Entity, alive: bool) -> None:
         self._look_for_readers()
+        if alive:
+            self.host.context.unkept.matched(self, other, self.host.log)
 
     def _silence_timer(self, period_ns: int, silent: Callable[[], None]) -> SilenceTimer:
         timer = SilenceTimer(self.host.clock, period_ns, silent)
@@ -209,8 +213,10 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._complain(f"what is published on {self.name} is not sent: {self.idle_because}")
             return
         else:
-            self._announced()
+            if self.entity is None:
+                self._announced()  # raises the error
             self._order.number += 1
+            self.unheard += 1
         if self._deadline is not None:
             self._deadline.touch()
         if self._lease is not None:
@@ -338,6 +344,8 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     def close(self) -> None:
         self._lengthen()
+        if self.entity is not None:
+            self.host.context.unkept.forget(self)
         for timer in (self._deadline, self._lease):
             if timer is not None:
                 timer.stop()

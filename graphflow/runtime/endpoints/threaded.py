@@ -34,9 +34,6 @@ from graphflow.wire.liveliness import Kind
 class ThreadedPublisher(TopicPublisher[Any]):
     """A publisher of serialized messages, for any thread."""
 
-    unheard = 0
-    """Messages published while there was no subscription."""
-
     def put(self, payload: bytes) -> None:
         """Send a message. Never waits.
 

@@ -54,7 +54,7 @@ def _slips(cls: type) -> Iterator[str]:
         source = definition_of(parent) if is_users_module(parent.__module__) else None
         if source is not None:
             definition, file = source
-            mentioned = _mentioned(syntax_of(file).module)
+            mentioned = words_in(syntax_of(file).module)
             space = vars(sys.modules[parent.__module__])
             yield from _idle_methods(parent, definition, file, mentioned, space)
             yield from _stray_attributes(cls, definition, file, mentioned)
@@ -70,7 +70,7 @@ def _slips(cls: type) -> Iterator[str]:
             yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
 
-def _other_modules(file: str) -> Iterator[ast.Module]:
+def other_modules(file: str) -> Iterator[ast.Module]:
     """Parse the project's other modules, which may use a file's definitions."""
     from graphflow.workspace.project import project_root
 
@@ -83,7 +83,7 @@ def _other_modules(file: str) -> Iterator[ast.Module]:
 
 
 @cache
-def _mentioned(module: ast.Module) -> set[str]:
+def words_in(module: ast.Module) -> set[str]:
     """Return the attributes and names that a module reads, and the words in its strings."""
     found: set[str] = set()
     for node in ast.walk(module):
@@ -108,7 +108,7 @@ def _idle_methods(
         arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
         kind = _received(arguments[0], space) if len(arguments) == 1 else ""
         is_like_one = kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1)
-        if is_like_one and not any(method.name in _mentioned(module) for module in _other_modules(file)):
+        if is_like_one and not any(method.name in words_in(module) for module in other_modules(file)):
             if not arguments and (hook := _hook_meant(cls, method.name)):
                 yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}; {hook}"
                 continue
@@ -158,7 +158,7 @@ def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned:
             near = nearest(node.attr, names, cutoff=0.75)
             if near is None or _is_another(node.attr, near):
                 continue
-            if not any(node.attr in _mentioned(module) for module in _other_modules(file)):
+            if not any(node.attr in words_in(module) for module in other_modules(file)):
                 yield f"{Place(file, node.lineno)}: self.{node.attr} is set and never read; did you mean self.{near}?"
 
 
