@@ -34,8 +34,8 @@ def uncalled(source: str, file: str) -> str:
         module = ast.parse(source)
     except (SyntaxError, ValueError):
         return ""
-    for line, text in _other_names(module):
-        return f"{file}:{line}: __name__ is never {text!r}, so nothing runs; write: if __name__ == '__main__':"
+    for line, text in misspelt_main(module):
+        return f"{file}:{line}: {text}"
     statements = {id(node.value): node.lineno for node in ast.walk(module) if isinstance(node, ast.Expr)}
     names = [node for node in ast.walk(module) if isinstance(node, ast.Name)]
     used = {name.id for name in names if id(name) not in statements}
@@ -106,14 +106,15 @@ def _own_attributes(code: ast.AST) -> set[str]:
     return found
 
 
-def _other_names(module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the strings other than `__main__` that `__name__` is compared with, each with its line."""
+def misspelt_main(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the lines that compare `__name__` with another string than `__main__`, each with a message."""
     for node in module.body:
         match node:
             case ast.If(
                 test=ast.Compare(left=ast.Name("__name__"), ops=[ast.Eq()], comparators=[ast.Constant(value=str(name))])
             ) if name not in ("__main__", "__mp_main__"):  # the second is its name in a process of multiprocessing
-                yield node.lineno, name
+                text = f"__name__ is never {name!r}, so nothing runs; write: if __name__ == '__main__':"
+                yield node.lineno, text
 
 
 def _runs_nodes(function: ast.AST) -> bool:

@@ -171,8 +171,8 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
 
     Deadlocks visible in the source are reported: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
     names that nothing in the graph provides, and mistakes in the source that Python does not report. Given a Python
-    file or a folder, node classes are imported, and nodes written for rclpy are only read. A Python launch file is
-    executed in a process of its own.
+    file or a folder, node classes are imported, and nodes written for rclpy are only read. A graph's programs are read
+    if they are written for rclpy, and else counted. A Python launch file is executed in a process of its own.
     """
     path = _graph_meant(graph)
     if path is None:
@@ -180,6 +180,9 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
 
         return check_sources([Path(graph), *map(Path, args)], as_json=as_json)
     from graphflow.analysis.deadlock_check import findings
+    from graphflow.analysis.rclpy_check import findings_in
+    from graphflow.cli.graphs.programs import sources
+    from graphflow.cli.graphs.sources import rclpy_remarks
     from graphflow.errors import GraphFileError
     from graphflow.graph.checks.loose_ends import loose_ends
 
@@ -192,12 +195,15 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
         else:
             output_problems(problems)
         return exits.USAGE
-    ways = findings(resolved, found)
+    programs, unread = sources(resolved)
+    ways = [*findings(resolved, found), *(way for program in programs for way in findings_in(program))]
+    slips += [text for program in programs for text in rclpy_remarks(program)]
     remarks = [*resolved.remarks, *map(str, sorted(loose_ends(resolved, found))), *slips]
     certain = [way for way in ways if way.grade == "CERTAIN"]
     if as_json:
         deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
-        output.as_json({"problems": [], "remarks": remarks, "deadlocks": deadlocks})
+        names = [node.name for node in unread]
+        output.as_json({"problems": [], "remarks": remarks, "deadlocks": deadlocks, "unread": names})
         return exits.FAILED if certain else exits.OK
     for text in (*remarks, *ways):
         output.talk(str(text))
@@ -213,7 +219,8 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
         )
         if things
     ]
-    more = f"no mistakes, {', '.join(counts)}" if counts else "no problems"
+    more = ", ".join(counts) or "no problems"
+    more += f", {_count(unread, 'unread program')}" if unread else ""
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
     return exits.FAILED if certain else exits.OK
 

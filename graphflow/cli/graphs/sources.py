@@ -17,7 +17,7 @@ from graphflow.graph.checks.check import check
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import Interface
 from graphflow.reading import found_text
-from graphflow.runtime.mistakes.source.called_early import results_passed, spins_called
+from graphflow.runtime.mistakes.source import rclpy_source
 from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces, slips_in
 from graphflow.workspace.node_classes import node_classes_in
@@ -43,7 +43,7 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
             elif uses_ros(file):
                 found.is_rclpy = True
                 found.ways += findings_in(file)
-                found.slips += _rclpy_slips(file)
+                found.slips += rclpy_remarks(file)
                 found.unfollowed += unfollowed_in(file)
             elif classes := node_classes_in(file):
                 found.nodes += len(classes)
@@ -89,13 +89,11 @@ def _unreadable(file: Path) -> Problem | None:
     return None
 
 
-def _rclpy_slips(file: Path) -> list[str]:
+def rclpy_remarks(file: Path) -> list[str]:
     """Return the remarks on source that is written for rclpy, and is not run."""
     module = ast.parse(found_text(file))
-    slips = [(early.line, early.text) for early in spins_called(module)]
-    for is_of_threads in (True, False):
-        slips += results_passed(module, is_of_threads=is_of_threads)
-    return [f"{Place(shown(file), line)}: {text}" for line, text in sorted(slips)]
+    found = sorted({*rclpy_source.slips(module), *rclpy_source.foreseen(module)})
+    return [f"{Place(shown(file), line)}: {text}" for line, text in found]
 
 
 def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[Finding], list[str]]:
@@ -145,8 +143,10 @@ def _counts(found: _Findings) -> Iterator[str]:
     if found.ways:
         yield f"{_count(found.ways, 'deadlock')} in the source"
     if not found.problems and not found.ways:
-        of_nodes = "no mistakes" if found.slips else "no problems"
-        yield of_nodes if found.nodes else "no deadlocks visible in the source"
+        if not found.nodes:
+            yield "no deadlocks visible in the source"
+        elif not found.slips:
+            yield "no problems"
     if found.slips:
         yield _count(found.slips, "remark")
     if found.unfollowed:

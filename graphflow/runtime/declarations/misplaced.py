@@ -125,11 +125,15 @@ def check_made(node: object) -> None:
     """
     for attribute, value in vars(node).items():
         if isinstance(value, Held) and not value.attribute:
-            kind = type(value).__name__
-            way = f"write {attribute} = {kind}(...) in the body of the class"
-            if not isinstance(value, Param):
-                way += f", or self.{attribute} = self.{value.MAKER.partition('(')[0]}(...) here"
-            raise DeclarationError(f"{value.place}: self.{attribute} is not a {kind} of the node; {way}")
+            raise DeclarationError(f"{value.place}: {not_of_node(attribute, type(value))}")
+
+
+def not_of_node(attribute: str, kind: type[Held]) -> str:
+    """Return the sentence for a declaration that is assigned to an attribute of a node."""
+    way = f"write {attribute} = {kind.__name__}(...) in the body of the class"
+    if not issubclass(kind, Param):
+        way += f", or self.{attribute} = self.{kind.MAKER.partition('(')[0]}(...) here"
+    return f"self.{attribute} is not a {kind.__name__} of the node; {way}"
 
 
 def check_hooks(cls: type) -> None:

@@ -226,8 +226,8 @@ def _instead_of(word: str) -> str:
 def interfaces(class_paths: list[str], *, with_slips: bool = False) -> InterfacesJson:
     """Return interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
 
-    Each also has `needs_numpy`, whether nodes of the class will load NumPy, and with `with_slips` the slips in its
-    source, which a node logs when it starts.
+    Each also has `needs_numpy`, whether nodes of the class will load NumPy, and with `with_slips` the mistakes in its
+    source that a node logs when it starts, and those that are foreseen.
     """
     found: InterfacesJson = {}
     for path in class_paths:
@@ -240,7 +240,10 @@ def interfaces(class_paths: list[str], *, with_slips: bool = False) -> Interface
             has_arrays = any(registry.has_numeric_arrays(e.type) for e in interface.endpoints if e.type)
             found[path] = {**interface.to_json(), "needs_numpy": has_arrays or "numpy" in sys.modules}
             if with_slips:
-                found[path]["slips"] = [*slips(cls)]  # type: ignore[arg-type] # it can be hashed
+                from graphflow.runtime.mistakes.source.foreseen import check_init, foreseen  # nodes do not need it
+
+                check_init(cls)
+                found[path]["slips"] = [*slips(cls), *foreseen(cls)]  # type: ignore[arg-type] # it can be hashed
         except GraphflowError as error:
             found[path] = {"problem": str(error)}
     return found

@@ -11,11 +11,8 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from graphflow.analysis.syntax import syntax_of
-from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.analysis.user_code import is_users, short_place
-from graphflow.runtime.mistakes.source.called_early import results_passed
-from graphflow.runtime.mistakes.source.ineffective import ineffective
-from graphflow.runtime.mistakes.source.misgiven import misgiven
+from graphflow.runtime.mistakes.source.rclpy_source import slips
 from rclpy.impl.entities import entities_of
 from rclpy.impl.nodes import internals_of, nodes_of
 
@@ -52,9 +49,7 @@ class Uncalled:
             self._files.add(file)
             with suppress(OSError, SyntaxError, ValueError):  # its source is not available
                 module = syntax_of(file).module
-                told = (*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module))
-                told = (*told, *results_passed(module, is_of_threads=True))
-                for line, text in told:
+                for line, text in slips(module):
                     logger.warning("%s: %s", short_place(file, line), text)
 
 

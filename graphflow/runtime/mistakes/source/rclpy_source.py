@@ -1,0 +1,25 @@
+"""Mistakes in the source of a program for rclpy: for the program itself as it runs, and for `graphflow check`.
+
+`slips` has those that nothing else would report while it runs; `foreseen` has those that are reported as they occur.
+"""
+
+from __future__ import annotations
+
+import ast
+
+from graphflow.analysis.uncalled import misspelt_main, uncalled_methods
+from graphflow.runtime.mistakes.source.called_early import results_passed, spins_called
+from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.misgiven import misgiven
+
+
+def slips(module: ast.Module) -> list[tuple[int, str]]:
+    """Return the lines of a file that Python runs without an error and without effect, each with a sentence."""
+    found = [*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module)]
+    return [*found, *results_passed(module, is_of_threads=True)]
+
+
+def foreseen(module: ast.Module) -> list[tuple[int, str]]:
+    """Return the lines of a file that fail, or do the wrong thing, when the program comes to them."""
+    found = [(early.line, early.text) for early in spins_called(module)]
+    return [*found, *results_passed(module, is_of_threads=False), *misspelt_main(module)]
