@@ -18,6 +18,8 @@ SIZE = 11.088889122009277
 """Metres from wall to wall: 499 pixels of 45 to the metre, rounded to float32 as turtlesim does."""
 COMMAND_LIFE_NS = 1_000_000_000
 """Nanoseconds that a velocity command lasts."""
+DEGREES = 5
+"""Angles in degrees are mostly multiples of this."""
 LIMIT = 1e5
 """Limit of a turtle's position and speed, in metres, radians and seconds."""
 
@@ -154,6 +156,15 @@ def check_numbers(*values: float) -> None:
     for value in values:
         if not abs(value) < LIMIT:  # also true of a NaN
             raise ValueError(f"{value} is out of a turtle's range: give a number between {-LIMIT:g} and {LIMIT:g}")
+
+
+def in_degrees(angle: float, before: float = 0.0) -> bool:
+    """Whether an angle in radians seems to be given in degrees: 90, but not the next of a series such as 9.5, 10.0.
+
+    Args:
+        before: The angle given before it.
+    """
+    return abs(angle) > math.tau and angle % DEGREES == 0 and abs(angle - before) > math.tau
 
 
 def normalize(angle: float) -> float:

@@ -15,6 +15,7 @@ Source: turtlesim 1.8.
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -30,7 +31,7 @@ from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, 
 from .turtle_canvas import Colour, Pen
 from .turtle_picture import svg
 from .turtle_view import TurtleView
-from .turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
+from .turtle_world import SIZE, TICK, NameTaken, Turtle, World, in_degrees, normalize
 
 TURNING_SPEED = 1.0
 """Turning speed of `rotate_absolute`, in rad/s."""
@@ -65,6 +66,7 @@ class TurtleSim(Node):
         super().__init__(name, **options)
         self.world = World()
         self.reins: dict[str, Reins] = {}
+        self.explained_radians = False
         self.hatch_first()
 
     async def on_start(self) -> None:
@@ -119,6 +121,7 @@ class TurtleSim(Node):
     @service(Spawn, "spawn")
     async def spawn_turtle(self, request: Spawn.Request) -> Spawn.Response:
         name = request.name or self.world.free_name()
+        self.explain_radians("theta", request.theta)
         try:
             turtle = self.hatch(name, request.x, request.y, request.theta)
         except NameTaken:
@@ -177,6 +180,12 @@ class TurtleSim(Node):
     def announce(self, turtle: Turtle) -> None:
         self.log.info("Spawning turtle [%s] at x=[%f], y=[%f], theta=[%f]", turtle.name, *turtle.position, turtle.theta)
 
+    def explain_radians(self, field: str, angle: float, before: float = 0.0) -> None:
+        """Warn, once, of an angle that seems to be in degrees, which is obeyed all the same."""
+        if not self.explained_radians and in_degrees(angle, before):
+            self.explained_radians = True
+            self.log.warning("%s is in radians; %g degrees are %.4g", field, angle, math.radians(angle))
+
     def remove(self, name: str) -> None:
         """Remove a turtle with its topics and services."""
         self.reins.pop(name).close()
@@ -198,6 +207,8 @@ class Reins:
 
     def __init__(self, node: TurtleSim, turtle: Turtle) -> None:
         self.node, self.turtle = node, turtle
+        self.told_theta = turtle.theta
+        """The last heading that a client gave."""
         name = turtle.name
         self.endpoints = (
             # The longest name first: if it is legal, so are the others.
@@ -226,6 +237,7 @@ class Reins:
         self.color.publish(Color(r=r, g=g, b=b))
 
     async def rotate_absolute(self, goal: RotateAbsolute.Handle) -> RotateAbsolute.Result:
+        self.heading_given(goal.request.theta)
         rotation = self.rotation = Rotation(goal, self.turtle.theta)
         try:
             await rotation.ended
@@ -242,6 +254,11 @@ class Reins:
         self.stand_still()
         self.node.log.info("Rotation goal completed successfully")
         return goal.partial
+
+    def heading_given(self, theta: float) -> None:
+        """Note a heading that a client gives."""
+        self.node.explain_radians("theta", theta, self.told_theta)
+        self.told_theta = theta
 
     def stand_still(self) -> None:
         """End the current command, if any."""
@@ -274,9 +291,11 @@ class Reins:
         self.turtle.pen = None if request.off else Pen(colour, request.width or 1)
 
     def teleport_absolute(self, request: TeleportAbsolute.Request) -> None:
+        self.heading_given(request.theta)
         self.node.world.teleport(self.turtle, request.x, request.y, request.theta)
 
     def teleport_relative(self, request: TeleportRelative.Request) -> None:
+        self.node.explain_radians("angular", request.angular)
         self.node.world.jump(self.turtle, request.linear, request.angular)
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from nodes.turtle_canvas import Pen
-from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
+from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World, in_degrees, normalize
 
 
 def run(world: World, turtle: Turtle, ticks: int) -> None:
@@ -141,3 +141,22 @@ def test_what_is_no_number_is_refused() -> None:
 def test_angles_come_round(angle: float, same: float) -> None:
     """From -pi to pi, without pi itself."""
     assert normalize(angle) == pytest.approx(same, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("angle", "before", "told"),
+    [
+        (90.0, 0.0, True),
+        (-45.0, 3.0, True),
+        (10.0, 0.0, True),
+        (5.0, 0.0, False),
+        (10.0, 9.5, False),
+        (6.3, 0.0, False),
+        (18.85, 0.0, False),
+        (math.nan, 0.0, False),
+        (math.inf, 0.0, False),
+    ],
+)
+def test_an_angle_that_seems_to_be_in_degrees(angle: float, before: float, told: bool) -> None:
+    """Is a round number beyond 2 pi, and far from the one before."""
+    assert in_degrees(angle, before) is told

@@ -515,3 +515,42 @@ async def test_a_colour_of_300_is_refused(graph: Graph) -> None:
     assert sim.background == (69, 86, 255)
     with pytest.raises(ParameterError, match="0 to 255"):
         TurtleSim(background_b=300)
+
+
+# angles
+
+
+@pytest.mark.parametrize("way", ["spawn", "absolute", "relative", "goal"])
+async def test_an_angle_in_degrees(graph: Graph, caplog: pytest.LogCaptureFixture, way: str) -> None:
+    """Is explained once, however it is given, and obeyed as radians."""
+    await graph.start(TurtleSim())
+    poses = graph.tap(Pose, "/turtle1/pose")
+    for _ in range(2):
+        match way:
+            case "spawn":
+                await graph.call(Spawn, "/spawn", Spawn.Request(theta=90.0))
+            case "absolute":
+                there = TeleportAbsolute.Request(x=2.0, theta=90.0)
+                await graph.call(TeleportAbsolute, "/turtle1/teleport_absolute", there)
+            case "relative":
+                turn = TeleportRelative.Request(angular=90.0)
+                await graph.call(TeleportRelative, "/turtle1/teleport_relative", turn)
+            case "goal":
+                await rotation(graph, 90.0)
+        await graph.clock.advance(6.0)
+    field = "angular" if way == "relative" else "theta"
+    assert [r.message for r in caplog.records if r.levelno == logging.WARNING] == [
+        f"{field} is in radians; 90 degrees are 1.571"
+    ]
+    if way == "absolute":
+        assert poses.latest.theta == pytest.approx(90.0 - 14 * math.tau, abs=1e-4)
+
+
+async def test_angles_that_go_on_growing(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Are radians, as any below 2 pi are, and any that is no round number of degrees."""
+    await graph.start(TurtleSim())
+    for theta in (5.0, -6.0, 6.28, 7.1, *(0.5 * n for n in range(13, 40))):
+        request = TeleportAbsolute.Request(theta=theta)
+        await graph.call(TeleportAbsolute, "/turtle1/teleport_absolute", request)
+    await graph.call(TeleportRelative, "/turtle1/teleport_relative", TeleportRelative.Request(angular=2 * math.tau))
+    assert [r.message for r in caplog.records if r.levelno == logging.WARNING] == []
