@@ -20,7 +20,7 @@ from graphflow.machines.cache import GraphCache
 from graphflow.machines.domains import COMMANDS, elsewhere
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Answer
-from graphflow.transport.client import Client
+from graphflow.transport.client import Client, Hearing
 from graphflow.wire import attachment, net, process
 from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import NODES, Kind, watch_key
@@ -154,6 +154,12 @@ class View:
             raise RemoteError.from_payload(reply.payload, name)
         codec = registry.plain_codec if plain else registry.codec
         return codec(service.response.name).decode(reply.payload)
+
+    def hear(self, name: str, type_name: str, bound: int) -> Hearing:
+        """Receive what is published on a topic from now on, serialized; the newest `bound` messages are kept."""
+        from graphflow.msgs import registry
+
+        return self._client.hear(str(DataKey(self.domain, name, type_name, registry.hash_of(type_name))), bound)
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
         """Query all graphflow processes on one of graphflow's keys; return their answers."""

@@ -7,14 +7,14 @@ import concurrent.futures
 import inspect
 from asyncio import CancelledError
 from collections import deque
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from contextlib import AsyncExitStack
 from functools import cache
 from typing import Any, TypeVar, TypeVarTuple
 
 from graphflow.deadlock import races
 from graphflow.deadlock.protocols import Unopened
-from graphflow.errors import ClosedError, DeclarationError, ParameterError, UsageFault
+from graphflow.errors import ClosedError, DeclarationError, ParameterError, Place, UsageFault
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
@@ -163,11 +163,16 @@ class NodeCore:
     @property
     def unopened(self) -> list[Unopened]:
         found = [Unopened(part.handler_title, _services(part)) for part in self._late or ()]
-        tasks = [name for name, h in declared.handlers(type(self.instance)).items() if h.kind == "task"]
-        return [*found, *(Unopened(f"task {name}") for name in tasks)] if self._late is not None else []
+        tasks = [Unopened(f"task {n}") for n, h in declared.handlers(type(self.instance)).items() if h.kind == "task"]
+        return [*found, *tasks] if self._late is not None else []
 
     def serves(self, service: str) -> bool:
         return any(e.kind is Kind.SERVICE and e.name == service for e in self.endpoints)
+
+    def single_sends(self, publisher: Part) -> Sequence[Place]:
+        from graphflow.runtime.mistakes.source.single_sends import single_sends  # most nodes never need it
+
+        return single_sends(self.instance, publisher)
 
     def statistics(self) -> dict[str, dict[str, object]]:
         """Return counters since the start, by the name of each handler, endpoint and group."""
@@ -264,10 +269,9 @@ class NodeCore:
             DeclarationError: Its `__init__` has overwritten an attribute that every node has.
             ParameterError: There is an override for a parameter that the node does not have.
         """
-        for attribute, value in self._made.items():
-            if vars(self.instance).get(attribute) is not value:
-                cls = type(self.instance).__name__
-                raise DeclarationError(f"{cls}: every node has self.{attribute}; choose another name")
+        cls, own = type(self.instance).__name__, vars(self.instance)
+        for attribute in (attribute for attribute, value in self._made.items() if own.get(attribute) is not value):
+            raise DeclarationError(f"{cls}: every node has self.{attribute}; choose another name")
         check_made(self.instance)
         if unused := self.parameters.unused_overrides(type(self.instance)):
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from graphflow.errors import Place
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
@@ -48,6 +49,9 @@ class Host(Protocol):
 
     def serves(self, service: str) -> bool:
         """Whether the node offers the service of that full name."""
+
+    def single_sends(self, publisher: Part) -> Sequence[Place]:
+        """Return the lines at which the node's source publishes with a publisher, if each runs at most once."""
 
     def runner(self, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> Runner:
         """Make a runner for a handler; without a group its runs queue only behind each other."""

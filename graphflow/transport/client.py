@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import queue
 import time
-from typing import Any
+from collections import deque
+from typing import Any, Self
 
 import zenoh
 from zenoh.handlers import Callback
@@ -97,8 +98,32 @@ class Client:
         beside = reply.ok.attachment
         return Answer(reply.ok.payload.to_bytes(), beside.to_bytes() if beside is not None else None, False)
 
+    def hear(self, key: str, bound: int) -> Hearing:
+        """Receive what is published on a key from now on.
+
+        Args:
+            bound: Number of payloads that are kept, the newest.
+        """
+        return Hearing(self._session, key, bound)
+
     def close(self) -> None:
         close_session(self._session)
+
+
+class Hearing:
+    """The payloads that arrive on a key, until it is closed. A context manager."""
+
+    def __init__(self, session: zenoh.Session, key: str, bound: int) -> None:
+        self.payloads: deque[bytes] = deque(maxlen=bound)
+        # Direct, so that a response cannot overtake what its server has published before.
+        heard: Any = Callback(lambda sample: self.payloads.append(sample.payload.to_bytes()), indirect=False)
+        self._subscriber: Any = session.declare_subscriber(key, heard)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._subscriber.undeclare()
 
 
 def _nobody() -> str:

@@ -118,3 +118,19 @@ def test_a_list_that_still_grows(
     assert client.tokens("test/*") == []
     monkeypatch.setattr(client_module, "MANY_TOKENS", 0)
     assert sorted(client.tokens("test/*")) == ["test/0", "test/1", "test/2"]
+
+
+def test_messages_from_now_on(foreign_router: zenoh.Session, client: Client) -> None:
+    """Those on the key, the newest; none when the block has ended."""
+    foreign_router.put("test/log", b"before")
+    with client.hear("test/log", 2) as heard:
+        serve(foreign_router, "test/end", lambda query: query.reply("test/end", b""))
+        client.call("test/end", b"", b"", 5.0)
+        for payload in (b"1", b"2", b"3"):
+            foreign_router.put("test/log", payload)
+        foreign_router.put("test/other", b"4")
+        client.call("test/end", b"", b"", 5.0)
+        assert list(heard.payloads) == [b"2", b"3"]
+    foreign_router.put("test/log", b"5")
+    client.call("test/end", b"", b"", 5.0)
+    assert list(heard.payloads) == [b"2", b"3"]

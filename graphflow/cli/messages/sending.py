@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from asyncio import CancelledError
+from collections import deque
+from collections.abc import Iterable
 from textwrap import indent
 from typing import Any, NamedTuple
 
 from graphflow.cli import exits, output
 from graphflow.cli.temporary_node import run_with_node
-from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected, ServiceUnavailable
+from graphflow.errors import GoalAborted, GoalCanceled, GoalError, GoalLost, GoalRejected, ServiceUnavailable
+from graphflow.introspect import server_logs
 from graphflow.introspect.messages.echo import block, plain
+from graphflow.machines.cache import ACTION_SEND_GOAL
 from graphflow.msgs.base import Message
 from graphflow.runtime.actions.client import ClientGoalHandle
 from graphflow.runtime.node import Node
+from graphflow.wire.liveliness import Kind
 
+AT_ONCE = 1.0
+"""Seconds after a goal was sent in which a server checks the request."""
 STRAGGLERS = 0.1
 """Seconds in which feedback may still arrive after the goal has ended."""
 
@@ -37,7 +45,7 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
     reporter = _Reporter(as_json)
 
     async def work(node: Node) -> int:
-        client = node.create_action_client(type_, name)
+        client, logs = node.create_action_client(type_, name), _Logs(node, f"{name}{ACTION_SEND_GOAL}")
         reporter.report("Waiting for an action server to become available...")
         try:
             await client.expect_ready(timeout)
@@ -46,16 +54,46 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
             return exits.TIMEOUT
         reporter.report(f"Sending goal:\n{_indented(goal)}")
         try:
-            return await _follow(client.send(goal, timeout=timeout), show_feedback, reporter)
+            return await _follow(client.send(goal, timeout=timeout), show_feedback, reporter, logs)
         except GoalRejected as error:
             reporter.report("Goal was rejected.", "rejected")
             output.talk(str(error))
+            await logs.explain(error)
             return exits.FAILED
 
     return run_with_node(work)
 
 
-async def _follow(sending: Any, show_feedback: bool, reporter: _Reporter) -> int:
+class _Logs:
+    """The lines that the servers of an action log from now on."""
+
+    def __init__(self, node: Node, service: str) -> None:
+        from graphflow.msgs.rcl_interfaces.msg import Log
+
+        self._node, self._service = node, service
+        self._began = time.monotonic()
+        self._heard: deque[tuple[float, Log]] = deque(maxlen=server_logs.BOUND)
+        node.create_subscription(Log, server_logs.TOPIC, self._hear, 100)
+
+    def _hear(self, log: Any) -> None:
+        self._heard.append((time.monotonic(), log))
+
+    async def explain(self, error: GoalError) -> None:
+        """Show the warnings and errors that may explain why a goal has failed."""
+        await asyncio.sleep(server_logs.PATIENCE)
+        self._show((log for _, log in self._heard), str(error).partition(" the goal: ")[2])
+
+    def tell(self) -> None:
+        """Show those that came when the goal had just been sent, as they may be about its request."""
+        self._show(log for heard, log in self._heard if heard - self._began < AT_ONCE)
+
+    def _show(self, logs: Iterable[Any], known: str = "") -> None:
+        servers = {server.node_name for server in self._node.context.cache.endpoints(Kind.SERVICE, self._service)}
+        for text in server_logs.lines(logs, servers, known):
+            output.talk(text)
+
+
+async def _follow(sending: Any, show_feedback: bool, reporter: _Reporter, logs: _Logs) -> int:
     sent: ClientGoalHandle[Any, Any, Any] | None = None
     try:
         async with sending as sent:
@@ -67,7 +105,7 @@ async def _follow(sending: Any, show_feedback: bool, reporter: _Reporter) -> int
                     # The result takes another route than feedback and may overtake the last of it.
                     await asyncio.sleep(STRAGGLERS)
                     await _show_feedback(sent, reporter)
-                return await _result(sent, reporter)
+                return await _result(sent, reporter, logs)
             except CancelledError:
                 reporter.report("Canceling goal...", "canceling")
                 raise
@@ -87,13 +125,15 @@ async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any], reporter: _Repor
         reporter.report(f"Feedback:\n{_indented(feedback)}", "feedback", feedback=plain(feedback))
 
 
-async def _result(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter) -> int:
+async def _result(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter, logs: _Logs) -> int:
     code = exits.FAILED
     try:
         result = await sent.result()
         code = exits.OK
+        logs.tell()
     except (GoalAborted, GoalCanceled) as error:
         output.talk(str(error))
+        await logs.explain(error)
         result = error.result
     except GoalLost as error:
         output.error(str(error))

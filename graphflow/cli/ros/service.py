@@ -17,9 +17,11 @@ from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import GraphflowError, ServiceUnavailable, UsageFault
+from graphflow.introspect import server_logs
 from graphflow.introspect.graph_view import View
 from graphflow.machines.matching import shared
 from graphflow.names import expand
+from graphflow.transport.client import Hearing
 from graphflow.wire.liveliness import Kind
 
 
@@ -163,18 +165,32 @@ def call(
         actual = agree(wanted, view.service_types(full), full)
         _warn_if_shared(view, full)
         request = from_plain(registry.interface_class(registry.service_schema(actual).request.name), values_read)
-        while True:
-            started = time.monotonic()
-            if not as_json:
-                output.data(f"requester: making request: {request!r}\n")
-            response = view.call(full, actual, request, timeout)
-            if as_json:
-                output.as_json(plain(response))
-            else:
-                output.data(f"response:\n{response!r}\n")
-            if rate is None:
-                return exits.OK
-            time.sleep(max(0.0, 1 / rate - (time.monotonic() - started)))
+        servers = {server.node_name for server in view.cache.endpoints(Kind.SERVICE, full)}
+        with view.hear(server_logs.TOPIC, server_logs.TYPE, server_logs.BOUND) as logs:
+            while True:
+                started = time.monotonic()
+                if not as_json:
+                    output.data(f"requester: making request: {request!r}\n")
+                response = view.call(full, actual, request, timeout)
+                if as_json:
+                    output.as_json(plain(response))
+                else:
+                    output.data(f"response:\n{response!r}\n")
+                _tell_logs(logs, servers, is_empty=response == type(response)())
+                if rate is None:
+                    return exits.OK
+                time.sleep(max(0.0, 1 / rate - (time.monotonic() - started)))
+
+
+def _tell_logs(logs: Hearing, servers: set[str], *, is_empty: bool) -> None:
+    """Show the warnings and errors that the servers have logged; for an empty response, they are the only reason."""
+    found = server_logs.lines(server_logs.read(logs.payloads), servers)
+    if not found and is_empty:
+        time.sleep(server_logs.PATIENCE)
+        found = server_logs.lines(server_logs.read(logs.payloads), servers)
+    logs.payloads.clear()
+    for text in found:
+        output.talk(text)
 
 
 def _meant(types: list[str], words: Sequence[str]) -> str:

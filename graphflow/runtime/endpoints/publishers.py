@@ -9,7 +9,7 @@ from threading import get_ident
 from time import sleep
 from typing import Any, Generic, TypeVar
 
-from graphflow.errors import ClosedError, EncodeError
+from graphflow.errors import ClosedError, EncodeError, Place
 from graphflow.executor.runner import Runner
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
@@ -165,6 +165,10 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._look_for_readers()
         if alive:
             self.host.context.unkept.matched(self, other, self.host.log)
+
+    def single_sends(self) -> Sequence[Place]:
+        """Return the lines at which its node publishes; empty if one may run twice, or that is unknown."""
+        return self.host.single_sends(self)
 
     def _silence_timer(self, period_ns: int, silent: Callable[[], None]) -> SilenceTimer:
         timer = SilenceTimer(self.host.clock, period_ns, silent)

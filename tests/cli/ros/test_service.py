@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -85,3 +86,50 @@ def test_a_call_that_is_repeated(standing: Machine) -> None:
     calls.text = ""
     calls.wait_for("sum=9")
     assert calls.end() == 0
+
+
+ZOO = """\
+from graphflow import Abort, Node, action, service
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.std_srvs.srv import SetBool
+
+
+class Zoo(Node):
+    async def on_start(self):
+        self.log.info("the zoo is open")
+
+    @service(SetBool, "open")
+    async def open(self, request):
+        if not request.data:
+            self.log.error("it is closed already")
+            return SetBool.Response()
+        return SetBool.Response(success=True)
+
+    @action(Fibonacci, "feed")
+    async def feed(self, goal):
+        if goal.request.order > 1:
+            self.log.warning("that is too much")
+        if goal.request.order > 2:
+            raise Abort() if goal.request.order > 3 else Abort("no food")
+        return Fibonacci.Result()
+"""
+
+
+def test_what_the_server_logs(machine: Machine, tmp_path: Path) -> None:
+    """A response without a reason, and a goal's end, come with the problems that the server has logged meanwhile."""
+    (tmp_path / "zoo.py").write_text(ZOO)
+    zoo = machine.start("run", "zoo:Zoo", cwd=tmp_path)
+    zoo.wait_for("open")
+    call = ("service", "call", "/open", "std_srvs/srv/SetBool")
+    assert "meanwhile /zoo logged an error: it is closed already" in machine.look(*call, "data: false")
+    assert "meanwhile" not in machine.look(*call, "data: true")
+    goal = ("action", "send_goal", "/feed", "example_interfaces/action/Fibonacci")
+    assert "meanwhile" not in machine.look(*goal, "order: 1")
+    assert machine.look(*goal, "order: 2").count("meanwhile /zoo logged a warning: that is too much") == 1
+    text = machine.look(*goal, "order: 3", code=1)
+    assert "/feed aborted the goal: no food" in text
+    assert text.count("meanwhile") == 1
+    assert "/feed aborted the goal\nmeanwhile /zoo logged a warning: that is too" in machine.look(
+        *goal, "order: 4", code=1
+    )
+    assert zoo.end() == 0

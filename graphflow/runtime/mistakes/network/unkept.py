@@ -7,10 +7,12 @@ listens. Hence a warning requires that the node's source publishes nothing else 
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from functools import partial
 from typing import Protocol
 
 from graphflow.deadlock.protocols import ProcessContext
+from graphflow.errors import Place
 from graphflow.executor.clock import Alarm
 from graphflow.machines.near_topics import is_everybodys
 from graphflow.names import is_hidden
@@ -34,6 +36,9 @@ class Unlatched(Protocol):
 
     @property
     def published(self) -> int: ...
+
+    def single_sends(self) -> Sequence[Place]:
+        """Return the lines at which its node publishes; empty if one may run twice, or that is unknown."""
 
 
 class Unkept:
@@ -64,10 +69,7 @@ class Unkept:
             return
         if not publisher.unheard == publisher.published == count:
             return
-        from graphflow.runtime.mistakes.source.single_sends import single_sends  # most processes never need it
-
-        node = next((node.instance for node in self._here.nodes if node.full_name == own.node_name), None)
-        places = [] if node is None else single_sends(node, publisher)
+        places = publisher.single_sends()
         if 0 < len(places) <= count:
             what, it = ("the only message was", "it is") if count == 1 else (f"all {count} messages were", "they are")
             log.warning(
