@@ -9,6 +9,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from rclpy.impl.mistakes.refused_transforms import check
+from rclpy.impl.mistakes.unstamped_transforms import Unstamped
 from rclpy.qos import QoSProfile
 
 if TYPE_CHECKING:
@@ -20,12 +21,14 @@ class TransformBroadcaster:
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", 100 if qos is None else qos)
+        self._unstamped = Unstamped(node)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
         """Publish one transform, or several."""
         transforms = as_list(transform)
         for one in transforms:
             check(one)
+            self._unstamped.check(one)
         self.pub_tf.publish(TFMessage(transforms=transforms))
 
 
