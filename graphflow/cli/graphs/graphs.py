@@ -17,7 +17,7 @@ from graphflow.cli.graphs.files import find_graph
 from graphflow.cli.net_options import apply_reach, reach_options
 from graphflow.cli.verbs import Verb
 from graphflow.domain import ENDPOINT_VARIABLE, domain_id, go_to
-from graphflow.errors import SupervisorError
+from graphflow.errors import SupervisorError, UsageFault
 from graphflow.times import ago
 from graphflow.wire.profile import PROFILES, VARIABLE
 
@@ -204,8 +204,18 @@ def _to_stop(name: str | None, *, everything: bool) -> list[GraphRun]:
             return running_here(everything=True) if everything else [choose(name)]
         except SupervisorError as error:
             if error.exit_code != exits.NOT_RUNNING or has_waited or not wait_started(_report_start):
+                if name is not None and (meant := _node_meant(name)):
+                    raise UsageFault(meant) from None
                 raise
             has_waited = True
+
+
+def _node_meant(word: str) -> str:
+    """Return the error text for the name of a node in the place of a graph; empty if it is none."""
+    from graphflow.cli.graphs import not_graphs
+    from graphflow.cli.graphs.nodes import by_itself
+
+    return not_graphs.answer(word, not_graphs.running()) or by_itself(f"/{word.strip('/')}")
 
 
 def _report_start(start: Start) -> None:

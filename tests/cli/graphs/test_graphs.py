@@ -33,6 +33,8 @@ def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Pat
     assert "red" in machine.run("service", "call", "/b/ask", "std_srvs/srv/Trigger")
 
     assert "graph 'nolab' is not running; did you mean 'lab'?" in machine.look("down", "nolab", code=3)
+    said = "/a is a node of the graph lab; stop it with: graphflow stop /a"
+    assert said in machine.look("down", "/a", code=2)
     assert "graph lab is down" in machine.run("down", "lab")
 
     nothing_is_left(machine, pids)
