@@ -20,7 +20,7 @@ from graphflow.errors import CallError, EncodeError, GraphflowError, UsageFault
 from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
-from graphflow.machines.matching import verdict
+from graphflow.machines.matching import Verdict, verdict
 from graphflow.names import expand, is_hidden
 from graphflow.qos import DEFAULT, INFINITE_NS
 from graphflow.wire.gid import gid_text
@@ -97,10 +97,15 @@ def _incompatibilities(e: Entity, cache: GraphCache) -> list[str]:
     """Describe why an endpoint does not connect to others on its topic, here or over DDS."""
     judged = [(other, verdict(e, other)) for other in cache.named(e.name)]
     return [
-        f"INCOMPATIBLE with {other.node_name}: {', '.join(found.policies) or _difference(e, other)}"
+        f"INCOMPATIBLE with {other.node_name}: {', '.join(found.policies) or _difference(e, other)}{_kept(found)}"
         for other, found in judged
         if found is not None and found.complaint
     ]
+
+
+def _kept(found: Verdict) -> str:
+    """Return the way for a subscription to receive what was published before it opened, if it asks for that."""
+    return "; give the publisher TRANSIENT_LOCAL, which keeps messages" if "durability" in found.policies else ""
 
 
 def _difference(e: Entity, other: Entity) -> str:

@@ -7,6 +7,10 @@ import re
 
 import pytest
 
+from graphflow.cli.ros.topic import _incompatibilities
+from graphflow.machines.cache import GraphCache
+from graphflow.qos import Durability, Qos
+from graphflow.wire.liveliness import Entity, Kind
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -34,6 +38,20 @@ def test_list_with_counts(standing: Machine) -> None:
     assert subscribed == (
         f"Subscribed topics:\n * /chatter [{STRING}] 1 subscriber\n * /office/minutes [{STRING}] 1 subscriber"
     )
+
+
+def test_a_publisher_that_keeps_nothing() -> None:
+    """Is the end to change, for a subscription that asks for kept messages."""
+    ends = [
+        Entity(7, "z", 1, n, kind, "/", node, "/map", STRING, "RIHS01_1", Qos(durability=durability))
+        for n, (kind, node, durability) in enumerate(
+            [(Kind.PUBLISHER, "server", Durability.VOLATILE), (Kind.SUBSCRIPTION, "nav", Durability.TRANSIENT_LOCAL)]
+        )
+    ]
+    cache = GraphCache(end.token for end in ends)
+    way = "durability; give the publisher TRANSIENT_LOCAL, which keeps messages"
+    assert _incompatibilities(ends[0], cache) == [f"INCOMPATIBLE with /nav: {way}"]
+    assert _incompatibilities(ends[1], cache) == [f"INCOMPATIBLE with /server: {way}"]
 
 
 def test_info(standing: Machine) -> None:

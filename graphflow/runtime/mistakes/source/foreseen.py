@@ -16,6 +16,7 @@ from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import DeclarationError, Place
 from graphflow.runtime.declarations.declare import Held
 from graphflow.runtime.declarations.misplaced import not_of_node
+from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.early_waits import early_waits
 from graphflow.runtime.mistakes.source.never_awaited import never_awaited
 from graphflow.runtime.mistakes.source.shadowing import definition_of
@@ -41,6 +42,7 @@ def _foreseen(cls: type) -> Iterator[str]:
         definition, file = source
         space = vars(sys.modules[parent.__module__])
         found = [*never_awaited(cls, parent, definition, space), *early_waits(cls, definition)]
+        found += results_passed(definition, is_of_threads=False)
         yield from (f"{Place(file, line)}: {text}" for line, text in sorted(found))
 
 

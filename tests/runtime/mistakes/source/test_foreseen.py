@@ -105,6 +105,15 @@ def test_a_declaration_in_init(robot: Make) -> None:
     check_init(Node)
 
 
+def test_a_callback_that_is_called_at_once(robot: Make) -> None:
+    """Is found; one that is passed, or that returns a callback, is not."""
+    body = "def __init__(self):\n    super().__init__()\n    self.create_timer(1.0, {})\ndef work(self):\n    {}\n"
+    [text] = foreseen(robot(body.format("self.work()", "self.n = 1")))
+    assert "create_timer(..., self.work()) calls work at once, and passes on its result, None; write self.work" in text
+    assert foreseen(robot(body.format("self.work", "self.n = 1"))) == []
+    assert foreseen(robot(body.format("self.work()", "return print"))) == []
+
+
 def test_a_forgotten_await(robot: Make) -> None:
     """Is found with its file and line, also in a parent."""
     cls = robot("@timer(1.0)\nasync def tick(self):\n    self.clock.sleep(1.0)")
