@@ -27,7 +27,6 @@ from graphflow.runtime.endpoints.direct_calls import Switchboard
 from graphflow.runtime.endpoints.intra_process import IntraProcess
 from graphflow.runtime.endpoints.shared_memory import Readers
 from graphflow.runtime.mistakes.network.same_names import Twins
-from graphflow.runtime.mistakes.network.unkept import Unkept
 from graphflow.runtime.mistakes.network.unlatched import Unlatched
 from graphflow.runtime.mistakes.network.unmatched import Unmatched
 from graphflow.transport.base import Closable, Session
@@ -109,7 +108,6 @@ class Context:
         self.unmatched = Unmatched(self)
         self.on_change(self.unmatched.changed)
         self.unlatched = Unlatched(self)
-        self.unkept = Unkept(self)
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
 
     @classmethod
@@ -317,7 +315,6 @@ class Context:
         self.twins.close()
         self.unmatched.close()
         self.unlatched.close()
-        self.unkept.close()
         self._inspection.close()
         self.reasons.close()
         if self._link is not None:

@@ -85,6 +85,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._here: Sequence[Receiver] = ()
         """The subscriptions of this process with intra-process delivery."""
         self._unfollow: Callable[[], None] = _nothing
+        self._is_checked = False
+        """Whether the messages that its first subscription has missed are checked."""
         self._paused: tuple[Sender, Sequence[Receiver]] | None = None
         """The sender and receivers of a paused publisher; None while it is not paused."""
 
@@ -163,8 +165,10 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     def _matched(self, other: Entity, alive: bool) -> None:
         self._look_for_readers()
-        if alive:
-            self.host.context.unkept.matched(self, other, self.host.log)
+        if alive and 0 < self.unheard == self.published and not self._is_checked:
+            from graphflow.runtime.mistakes.network.unkept import check_later  # most processes never need it
+
+            self._is_checked = check_later(self, other, self.host.context.clock, self.host.log)
 
     def single_sends(self) -> Sequence[Place]:
         """Return the lines at which its node publishes; empty if one may run twice, or that is unknown."""
@@ -348,8 +352,6 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     def close(self) -> None:
         self._lengthen()
-        if self.entity is not None:
-            self.host.context.unkept.forget(self)
         for timer in (self._deadline, self._lease):
             if timer is not None:
                 timer.stop()

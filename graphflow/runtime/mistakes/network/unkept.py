@@ -11,9 +11,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Protocol
 
-from graphflow.deadlock.protocols import ProcessContext
 from graphflow.errors import Place
-from graphflow.executor.clock import Alarm
+from graphflow.executor.clock import Clock
 from graphflow.machines.near_topics import is_everybodys
 from graphflow.names import is_hidden
 from graphflow.qos import Durability
@@ -41,50 +40,34 @@ class Unlatched(Protocol):
         """Return the lines at which its node publishes; empty if one may run twice, or that is unknown."""
 
 
-class Unkept:
-    """The publishers of a process with a first subscription, each checked once."""
+def check_later(publisher: Unlatched, subscription: Entity, clock: Clock, log: logging.Logger) -> bool:
+    """Check a publisher that nobody has heard, as its first subscription has just appeared.
 
-    def __init__(self, here: ProcessContext) -> None:
-        self._here = here
-        self._heard: dict[Unlatched, Alarm | None] = {}
-        """The publishers that have had a subscription, with the check of those that had published before."""
+    Returns:
+        False if the subscription does not matter: it is a tool's, or asks for kept messages, and is told that there
+        are none.
+    """
+    own = publisher.entity
+    if own is None or is_everybodys(own.name) or is_hidden(own.node_name) or is_hidden(subscription.node_name):
+        return False
+    if not own.qos.durability is subscription.qos.durability is Durability.VOLATILE:
+        return False
+    due = partial(_check, publisher, publisher.published, subscription, log)
+    clock.call_at(clock.monotonic_ns() + to_ns(WARN_AFTER), due)
+    return True
 
-    def matched(self, publisher: Unlatched, subscription: Entity, log: logging.Logger) -> None:
-        """Note the appearance of a subscription."""
-        own = publisher.entity
-        if own is None or publisher in self._heard or is_everybodys(own.name) or is_hidden(own.node_name):
-            return
-        if is_hidden(subscription.node_name):
-            return
-        self._heard[publisher] = None
-        volatile = own.qos.durability is subscription.qos.durability is Durability.VOLATILE  # others are told as such
-        if publisher.unheard and volatile:
-            clock = self._here.clock
-            due = partial(self._check, publisher, publisher.published, subscription, log)
-            self._heard[publisher] = clock.call_at(clock.monotonic_ns() + to_ns(WARN_AFTER), due)
 
-    def _check(self, publisher: Unlatched, count: int, subscription: Entity, log: logging.Logger) -> None:
-        own = publisher.entity
-        if own is None or subscription.token not in publisher.matched:
-            return
-        if not publisher.unheard == publisher.published == count:
-            return
-        places = publisher.single_sends()
-        if 0 < len(places) <= count:
-            what, it = ("the only message was", "it is") if count == 1 else (f"all {count} messages were", "they are")
-            log.warning(
-                "%s: %s published before the subscription of %s opened (%s), and %s not kept for it; give both "
-                "Qos(depth=%d, durability=Durability.TRANSIENT_LOCAL)",
-                *(own.name, what, subscription.node_name, ", ".join(map(str, places)), it, count),
-            )
-
-    def forget(self, publisher: Unlatched) -> None:
-        """Stop the check of a publisher."""
-        alarm = self._heard.pop(publisher, None)
-        if alarm is not None:
-            alarm.cancel()
-
-    def close(self) -> None:
-        """Stop reporting."""
-        for publisher in list(self._heard):
-            self.forget(publisher)
+def _check(publisher: Unlatched, count: int, subscription: Entity, log: logging.Logger) -> None:
+    own = publisher.entity
+    if own is None or subscription.token not in publisher.matched:
+        return
+    if not publisher.unheard == publisher.published == count:
+        return
+    places = publisher.single_sends()
+    if 0 < len(places) <= count:
+        what, it = ("the only message was", "it is") if count == 1 else (f"all {count} messages were", "they are")
+        log.warning(
+            "%s: %s published before the subscription of %s opened (%s), and %s not kept for it; give both "
+            "Qos(depth=%d, durability=Durability.TRANSIENT_LOCAL)",
+            *(own.name, what, subscription.node_name, ", ".join(map(str, places)), it, count),
+        )
