@@ -41,8 +41,8 @@ def test_every_bundled_interface_is_whole(name: str) -> None:
     assert registry.hash_of(name).startswith("RIHS01_")
     assert registry.interface_class(name).__name__ == found.name.rpartition("/")[2]
     for part in [name] if isinstance(found, Message) else sent_parts(found):
-        example = registry.example(part)
-        assert registry.codec(part).decode(example.to_bytes()) == example
+        data = registry.example(part).to_bytes()
+        assert registry.codec(part).decode(data).to_bytes() == data  # as bytes: a float32 rounds a default such as 0.3
 
 
 @pytest.mark.parametrize("name", sample(BUNDLED))

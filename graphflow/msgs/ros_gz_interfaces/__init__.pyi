@@ -1,0 +1,1 @@
+# Written by `python -m graphflow.msgs.stubs`; do not edit.
