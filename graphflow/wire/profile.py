@@ -5,10 +5,13 @@
 | package of turtlesim's interfaces | turtlesim | turtlesim_msgs | turtlesim_msgs |
 | lifecycle_msgs/msg/TransitionEvent | uint64 timestamp | uint64 timestamp | Time stamp |
 | a chunk about buffers in tokens of uint8[] topics | no | no | yes |
+| version of nav2_msgs | 1.3 | 1.4 | 1.5 |
+| version of simulation_interfaces | 1.5 | 1.6, which is 1.5 | 2.1 |
 
-Everything else on the wire is the same in all three. Humble has no type hashes at all, and is recognised by that.
+The definitions that a profile has of its own are in `msgs/<profile>`. Everything else on the wire is the same in all
+three. Humble has no type hashes at all, and is recognised by that.
 
-Source: rcl_interfaces 2.4.3; ros_tutorials 1.9.2; rmw_zenoh_cpp 0.10.
+Source: rcl_interfaces 2.4.3; ros_tutorials 1.9.2; rmw_zenoh_cpp 0.10; navigation2 1.3.13, 1.4.2 and 1.5.1.
 """
 
 from __future__ import annotations

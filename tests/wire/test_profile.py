@@ -12,6 +12,13 @@ from graphflow.wire.profile import PROFILES, advice, speakers, wire_profile, wir
 NEW_EVENT = "RIHS01_78b19e2be41a797fc009c96bda68944182edabec7852cccd928a40bc06f6f9d7"
 OLD_EVENT = "RIHS01_d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38"
 EVENT = "lifecycle_msgs/msg/TransitionEvent"
+DIFFERENT = sorted(
+    (profile, f"{file.parent.parent.name}/{file.parent.name}/{file.stem}")
+    for profile in PROFILES
+    for kind in registry.KINDS
+    for file in (registry.BUNDLED / profile).glob(f"*/{kind}/*.{kind}")
+)
+"""The definitions that a profile has of its own."""
 
 
 def entity(type_: str, hash_: str = "RIHS01_0", more: str = "") -> Entity:
@@ -60,6 +67,36 @@ def test_transition_event_is_the_profiles(
     monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
     assert registry.hash_of(EVENT) == digest
     assert registry.message_schema(EVENT).fields[0].name == first_field
+
+
+@pytest.mark.parametrize(("profile", "name"), DIFFERENT)
+def test_a_profiles_own_definitions_are_whole(
+    profile: str, name: str, monkeypatch: pytest.MonkeyPatch, fresh_registry: None
+) -> None:
+    """Each has a hash and a class, is written without comments, and is not what Jazzy has."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
+    text = registry.definition(name)
+    assert "#" not in text
+    assert registry.definition_file(name).is_relative_to(registry.BUNDLED / profile)
+    usual = registry.BUNDLED / f"{name}.{name.split('/')[1]}"
+    assert not usual.exists() or usual.read_text(encoding="utf-8") != text
+    assert registry.hash_of(name).startswith("RIHS01_")
+    assert registry.interface_class(name).__name__ == name.rpartition("/")[2]
+
+
+@pytest.mark.parametrize(
+    ("profile", "digest"),
+    [
+        ("jazzy", "5a590fa8e9a32b7b9c838fdf5939a2fb8858d6cfd25bdf2f2e5f0f7bbb25f52b"),
+        ("kilted", "0fb14135a40c3900a9a184f95b2ed6966a0ffd298739cc9de7903ebc6dc06a25"),
+    ],
+)
+def test_nav2s_goals_are_the_profiles(
+    profile: str, digest: str, monkeypatch: pytest.MonkeyPatch, fresh_registry: None
+) -> None:
+    """A goal of Nav2 has the hash that rosidl gives it in the distribution."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
+    assert registry.hash_of("nav2_msgs/action/NavigateThroughPoses_SendGoal") == f"RIHS01_{digest}"
 
 
 @pytest.mark.parametrize(("profile", "package"), [("jazzy", "turtlesim"), ("lyrical", "turtlesim_msgs")])

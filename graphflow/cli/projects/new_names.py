@@ -84,7 +84,7 @@ def check_dependencies(names: Sequence[str], folder: Path) -> None:
             way = f"; write spaces between them: --dependencies {' '.join(parts)}" if len(parts) > 1 else ""
             raise UsageFault(f"{name!r} cannot be the name of a package{way}")
         near = nearest(name, known - {name}, cutoff=SLIP) if name not in known else None
-        if near is not None and re.sub(r"\d", "", near) != re.sub(r"\d", "", name):  # nav2_msgs is not nav_msgs
+        if near is not None and re.sub(r"\d", "", near) != re.sub(r"\d", "", name):  # turtlebot4_msgs is no slip
             output.talk(f"note: the dependency {name!r} is not known here; did you mean {near!r}?")
 
 

@@ -48,7 +48,7 @@ def test_dependencies(source: Path, capsys: pytest.CaptureFixture[str]) -> None:
         check_dependencies(["lamp", "rclpy,std_msgs"], source / "new")
     with pytest.raises(UsageFault, match=r"'<x>' cannot be the name of a package$"):
         check_dependencies(["<x>"], source / "new")
-    check_dependencies(["rclpy", "rclcpp", "nav2_msgs", "lamp"], source / "new")
+    check_dependencies(["rclpy", "rclcpp", "turtlebot4_msgs", "lamp"], source / "new")
     assert capsys.readouterr().err == ""
     check_dependencies(["rclpi"], source / "new")
     assert capsys.readouterr().err == "note: the dependency 'rclpi' is not known here; did you mean 'rclpy'?\n"
