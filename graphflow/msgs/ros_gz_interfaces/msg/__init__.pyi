@@ -13,6 +13,18 @@ from graphflow.msgs.geometry_msgs import msg as geometry_msgs
 from graphflow.msgs.rcl_interfaces import msg as rcl_interfaces
 from graphflow.msgs.std_msgs import msg as std_msgs
 
+class AirSpeed(base.Message):
+    header: std_msgs.Header
+    diff_pressure: float
+    temperature: float
+    def __init__(
+        self,
+        *,
+        header: std_msgs.Header | Mapping[str, object] = ...,
+        diff_pressure: float = ...,
+        temperature: float = ...,
+    ) -> None: ...
+
 class Altimeter(base.Message):
     header: std_msgs.Header
     vertical_position: float
