@@ -22,6 +22,8 @@ _NOT_THEIRS = ("graphflow", "rclpy", "builtins", "typing", "abc")
 _COMPILED = (".pyx", ".pxi")
 """Suffixes of the files that Cython names in tracebacks; they are relative, and seldom exist."""
 _PYTHONS = sysconfig.get_path("stdlib")
+_LOOPS = (asyncio.Runner.run.__code__, asyncio.BaseEventLoop.run_forever.__code__)
+"""Functions that run an event loop; uvloop's have no frames."""
 
 
 def is_users_module(name: str) -> bool:
@@ -43,10 +45,14 @@ def is_users(file: str) -> bool:
     return not file.startswith(_PYTHONS) or "site-packages" in file
 
 
-def _is_users_frame(frame: FrameType) -> bool:
-    """Whether a frame is of the user's code; a method that `dataclass` generates belongs to its class's module."""
-    file = frame.f_code.co_filename
-    return is_users(file) and (file != "<string>" or is_users_module(frame.f_globals.get("__name__", "")))
+def is_users_frame(frame: Frame | FrameType) -> bool:
+    """Whether a frame is of the user's code, and not of a method that `dataclass` or `namedtuple` has generated."""
+    code = frame.f_code
+    if code.co_filename != "<string>":
+        return is_users(code.co_filename)
+    module = str(frame.f_globals.get("__name__", ""))
+    is_generated = code.co_qualname.startswith("__create_fn__.") or module.startswith("namedtuple_")
+    return is_users_module(module) and not is_generated
 
 
 def is_installed(file: str) -> bool:
@@ -68,21 +74,21 @@ def innermost(frames: Iterable[Frame]) -> Frame | None:
     """Return the last of the frames that is the user's own code; the outermost frame comes first."""
     found = None
     for frame in frames:
-        if is_users(frame.f_code.co_filename):
+        if is_users_frame(frame):
             found = frame
     return found
 
 
 def users_frame(frame: FrameType | None) -> FrameType | None:
     """Return the nearest frame of the user's own code, among a frame and its callers; None if there is none."""
-    while frame is not None and not is_users(frame.f_code.co_filename):
+    while frame is not None and not is_users_frame(frame):
         frame = frame.f_back
     return frame
 
 
 def called_by_loop(frames: Sequence[Frame]) -> Sequence[Frame]:
     """Return the part of a stack that an event loop has called; the whole stack if no loop is in it."""
-    begun = [i for i, frame in enumerate(frames) if frame.f_code is asyncio.Runner.run.__code__]
+    begun = [i for i, frame in enumerate(frames) if frame.f_code in _LOOPS]
     return frames[begun[-1] + 1 :] if begun else frames
 
 
@@ -124,7 +130,7 @@ def where(frames: Sequence[Frame], instance: object, pause: Pause | None = None)
 
 
 def _called_in(frames: Iterable[Frame], instance: object) -> str:
-    own = [frame for frame in frames if is_users(frame.f_code.co_filename)]
+    own = [frame for frame in frames if is_users_frame(frame)]
     of_it = [frame for frame in own if frame.f_locals.get("self") is instance]
     if not of_it or of_it[0] is own[-1]:
         return ""
@@ -139,7 +145,7 @@ def users_part(error: BaseException) -> TracebackType | None:
     argument, it ends with the user's last line, which the error is about.
     """
     parts = list(parts_of(error.__traceback__))
-    own = [place for place, part in enumerate(parts) if _is_users_frame(part.tb_frame)]
+    own = [place for place, part in enumerate(parts) if is_users_frame(part.tb_frame)]
     end = own[-1] + 1 if own and is_refusal(parts[-1]) else len(parts)
     begins = next((i for i, part in enumerate(parts) if not is_ours(part.tb_frame.f_code.co_filename)), 0)
     last = own[-1] if own else begins
@@ -177,7 +183,7 @@ def place_in(error: BaseException) -> str:
     place, is_theirs, trace = "", False, error.__traceback__
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
-        if _is_users_frame(trace.tb_frame) and not (is_theirs and is_installed(file)):
+        if is_users_frame(trace.tb_frame) and not (is_theirs and is_installed(file)):
             place, is_theirs = f"{file}:{trace.tb_lineno}", not is_installed(file)
         trace = trace.tb_next
     return place

@@ -20,7 +20,7 @@ from collections.abc import Callable
 from types import CodeType
 
 from graphflow.analysis.frames import Frame, stack_of
-from graphflow.analysis.user_code import called_by_loop, innermost, is_ours, is_users
+from graphflow.analysis.user_code import called_by_loop, innermost, is_ours, is_users, is_users_frame
 
 logger = logging.getLogger("graphflow")
 
@@ -174,11 +174,14 @@ class Watchdog:
 
     def _report(self) -> None:
         """Report a loop that is blocked now, with the stack from the user's code inwards."""
-        frames = called_by_loop(stack_of(self._loop_thread))
+        stack = stack_of(self._loop_thread)
+        frames = called_by_loop(stack)
         files = [frame.f_code.co_filename for frame in frames]
         shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
-        begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # the frames before started graphflow
-        last = max((i for i, file in enumerate(files) if i >= begun and is_users(file)), default=-1)
+        begun = 0
+        if len(frames) == len(stack):  # no loop is to be seen: the frames before graphflow's have started it
+            begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)
+        last = max((i for i, frame in enumerate(frames) if i >= begun and is_users_frame(frame)), default=-1)
         seconds = self.blocked_for
         if last < 0 and seconds < REPORT_OTHERS_AFTER:
             return
@@ -190,8 +193,8 @@ class Watchdog:
         else:
             blocked = f"the event loop has been blocked for {seconds:.1f} s in {shown[last]}: {_NOTHING_RUNS}"
             level, text = logging.ERROR, f"{blocked}\n{_of_lock(frames[last]) or _REMEDY}"
-        stack = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
-        logger.log(level, "%s%s", text, stack)
+        lines = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
+        logger.log(level, "%s%s", text, lines)
 
     @property
     def is_closed(self) -> bool:

@@ -15,6 +15,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import starmap
 from queue import SimpleQueue
 from typing import Any, cast
@@ -23,6 +24,7 @@ import pytest
 
 from graphflow.deadlock import watchdog as module
 from graphflow.deadlock.watchdog import Watchdog
+from graphflow.runtime.logs import logger as logger_module
 
 LIMIT = 30.0
 """Seconds that the watching thread gets to do anything."""
@@ -103,6 +105,38 @@ async def test_the_report_of_a_blocked_loop(
     assert second.startswith("the event loop runs again after ")
 
 
+async def test_a_report_from_within_graphflow(
+    graphflow_runner: asyncio.Runner, watched: Watched, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The line of the program that called graphflow is named, although the loop called the program directly."""
+
+    @dataclass
+    class Generated:
+        """Its constructor is code without a file."""
+
+        times: int
+
+        def __post_init__(self) -> None:
+            while not told():
+                frozen(self.times)
+
+    def told() -> list[str]:
+        return [r.getMessage() for r in caplog.records if "has been blocked" in r.getMessage()]
+
+    def frozen(times: int) -> None:
+        for _ in range(times):
+            assert watched.seen.acquire(timeout=LIMIT)
+
+    # As if both were graphflow's own.
+    for fn in (Generated.__post_init__, frozen):
+        fn.__code__ = fn.__code__.replace(co_filename=logger_module.__file__)
+    watched.watchdog.start()
+    asyncio.get_running_loop().call_soon(lambda: Generated(times=1))
+    await asyncio.sleep(0)
+    assert f" in {__file__}:" in told()[0].partition("\n")[0]
+    assert " in <lambda>" in told()[0]
+
+
 @pytest.mark.parametrize(
     ("load", "processor_time", "level", "text"),
     [
@@ -131,6 +165,7 @@ async def test_a_block_without_code_of_the_users(
 ) -> None:
     """It is told later, and without advice to the user."""
     monkeypatch.setattr(module, "is_users", lambda _: False)
+    monkeypatch.setattr(module, "is_users_frame", lambda _: False)
     monkeypatch.setattr(module, "REPORT_OTHERS_AFTER", 0.2)
     watched.watchdog.start()
     while not (told := [r.getMessage() for r in caplog.records if "the event loop has" in r.getMessage()]):
