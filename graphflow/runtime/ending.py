@@ -1,4 +1,4 @@
-"""Orderly shutdown: signals that stop nodes, and the reasons why a process does not end."""
+"""Orderly shutdown: the signals that stop nodes."""
 
 from __future__ import annotations
 
@@ -7,25 +7,19 @@ import logging
 import os
 import signal
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from types import FunctionType, MethodType
+from types import FrameType, FunctionType, MethodType
 
-from graphflow.analysis.frames import stack_of
-from graphflow.analysis.user_code import called_by_loop, innermost
+from graphflow.runtime.stop_limit import StopLimit, say
 
 logger = logging.getLogger("graphflow")
 
 SAME_SIGNAL = 0.1
 """Seconds within which a second signal counts as the first."""
-REMIND_AFTER = 1.0
-"""Seconds after a signal at which a program that is still stopping reports what it waits for."""
 CHECK_AFTER, CHECK_EVERY = 1.0, 60.0
 """Seconds until the signal handlers are first checked, and the longest time between two checks.
 The interval doubles with each check, as libraries replace signal handlers when they are first used."""
-_MANAGER = "_ExecutorManagerThread"
-"""The class of the thread that keeps the interpreter alive until a `ProcessPoolExecutor` has finished."""
 
 
 class StopRequest(asyncio.Event):
@@ -38,6 +32,8 @@ class StopRequest(asyncio.Event):
     def __init__(self) -> None:
         super().__init__()
         self.when_set: Callable[[], object] | None = None
+        self.node_stopped: Callable[[], object] = int
+        """Called for each node that has stopped."""
 
     def set(self) -> None:
         is_first = not self.is_set()
@@ -46,37 +42,42 @@ class StopRequest(asyncio.Event):
             self.when_set()
 
 
-def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
+def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[[], None]:
     """Set `stop` on SIGINT, SIGTERM or SIGHUP; a second signal ends the process at once, even if the loop is blocked.
 
     Signals within `SAME_SIGNAL` count as one: a shell may signal a process and then its group. A library that replaces
     a handler prevents an orderly shutdown; a warning names it.
 
+    Args:
+        is_limited: Whether a process that does not end is ended, as `stop_limit` decides. The supervisor ends its own.
+
     Returns:
-        A function that restores the former handlers.
+        A function that restores the former handlers, once all nodes have stopped.
     """
     loop = asyncio.get_running_loop()
     first = 0.0
-    reminder = threading.Timer(REMIND_AFTER, _remind)
-    reminder.daemon = True
-
+    limit = StopLimit(loop, is_enforced=is_limited)
+    if isinstance(stop, StopRequest):
+        stop.node_stopped = limit.changed
     own = os.getpid()
 
-    def caught(number: int, _: object) -> None:
+    def caught(number: int, frame: FrameType | None) -> None:
         nonlocal first
         if os.getpid() != own:  # a forked child, such as a process pool's, inherits the handler
             signal.signal(number, signal.SIG_DFL)
             signal.raise_signal(number)
-        now, is_first = time.monotonic(), not first
+        if limit.interrupts:
+            limit.interrupt(frame)
+            return
+        now = time.monotonic()
         first = first or now
         if now - first > SAME_SIGNAL:
-            # By a system call: this may have interrupted `logging` or `print`, which cannot be entered again.
-            os.write(2, b"ended without cleanup: it was asked twice\n")
+            say("ended without cleanup: it was asked twice")
             os._exit(1)
         if not loop.is_closed():
             loop.call_soon_threadsafe(stop.set)
-        if is_first and not reminder.finished.is_set():  # a second signal may arrive while the thread is starting
-            reminder.start()
+        if not limit.is_started:  # a second signal may arrive while the thread is starting
+            limit.start(number)
 
     # Not loop.add_signal_handler: its callbacks would wait for a handler that blocks the loop.
     former = {number: signal.signal(number, caught) for number in _stop_signals()}
@@ -92,7 +93,7 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 
     def restore() -> None:
         watch.cancel()
-        reminder.cancel()
+        limit.closed()
         for number, handler in former.items():
             signal.signal(number, handler)
 
@@ -126,23 +127,3 @@ def _name(handler: object) -> str:
     if handler is None:
         return "code outside Python"
     return f"code that chose {handler}"
-
-
-def _remind() -> None:
-    reasons = [*hindrances()]
-    waits = f" (waiting for {'; '.join(reasons)})" if reasons else ""
-    os.write(2, f"still stopping{waits}; Ctrl-C again ends it without cleanup\n".encode())
-
-
-def hindrances() -> Iterator[str]:
-    """List the reasons why this process does not end: lines of user code, by thread, and work in process pools."""
-    for thread in threading.enumerate():
-        if thread.daemon or thread.ident is None:
-            continue
-        if type(thread).__name__ == _MANAGER:
-            import multiprocessing  # already imported by that thread's pool
-
-            workers = ", ".join(str(child.pid) for child in multiprocessing.active_children())
-            yield f"the work of a process pool, processes {workers}"
-        elif (frame := innermost(called_by_loop(stack_of(thread.ident)))) is not None:
-            yield f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}, thread {thread.name!r}"

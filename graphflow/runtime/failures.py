@@ -14,6 +14,7 @@ from graphflow.interface import OnError
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.errors.python_errors import remark_on
 from graphflow.runtime.part import Host
+from graphflow.runtime.stop_limit import Interrupted
 from graphflow.times import NANOSECONDS, to_ns
 
 
@@ -26,6 +27,8 @@ class ErrorBudget(NamedTuple):
 
 def report(log: logging.Logger, label: str, error: BaseException) -> None:
     """Log an error: graphflow's own as a sentence, any other with its traceback."""
+    if isinstance(error, Interrupted):  # the program was asked to end
+        return
     explain(error)
     if isinstance(error, (SystemExit, KeyboardInterrupt)):
         text = "%s: ends the process by %s (%s); self.shutdown() ends the node, and the process with its last node"

@@ -53,6 +53,7 @@ class Company:
             self._context.session.leave()
             for node in reversed(self.nodes):
                 await core_of(node).stop()
+                self._stop.node_stopped()
 
     def _begin_to_stop(self) -> None:
         """Quiesce the node that stops first; the others keep running until it has ended."""

@@ -31,6 +31,7 @@ from graphflow.runtime.node_arguments import refuse_keywords
 from graphflow.runtime.node_core import core_of
 from graphflow.runtime.node_options import NodeOptions, make_within
 from graphflow.runtime.process_nodes import Company
+from graphflow.runtime.stop_limit import Interrupted
 from graphflow.transport.event_loop import loop
 
 logger = logging.getLogger("graphflow")
@@ -131,6 +132,9 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
         logger.warning("%s", text)
     try:
         loop.run(_run(made))
+    except Interrupted as interrupted:
+        if interrupted.status:
+            raise SystemExit(interrupted.status) from None
     except KeyboardInterrupt:
         return
     except Exception as error:  # a node's, of any type
@@ -257,7 +261,7 @@ def make(cls: type[Node], ros: RosArgs) -> Node:
 async def _run(nodes: Sequence[Node]) -> None:
     context = await Context.open()
     stop = StopRequest()
-    restore = catch_signals(stop)
+    restore = catch_signals(stop, is_limited=True)
     try:
         await serve(nodes, context, stop)
     finally:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import signal
-import threading
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,7 +12,8 @@ from types import SimpleNamespace
 import pytest
 
 from graphflow.runtime import ending
-from graphflow.runtime.ending import _stop_signals, catch_signals, hindrances
+from graphflow.runtime.ending import _stop_signals, catch_signals
+from graphflow.runtime.stop_limit import StopLimit
 from tests.cases import slow
 from tests.conftest import Machine
 
@@ -61,10 +59,11 @@ def test_a_hangup_that_is_ignored() -> None:
 
 def test_signals_that_come_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """A process and its group may be signalled together: the second signal is ignored."""
-    started: list[threading.Timer] = []
+    started: list[int] = []
 
-    def start(reminder: threading.Timer) -> None:
-        started.append(reminder)
+    def start(limit: StopLimit, number: int) -> None:
+        limit.is_started = True
+        started.append(number)
         if len(started) == 1:
             signal.raise_signal(signal.SIGTERM)
 
@@ -76,7 +75,7 @@ def test_signals_that_come_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
         finally:
             restore()
 
-    monkeypatch.setattr(threading.Timer, "start", start)
+    monkeypatch.setattr(StopLimit, "start", start)
     asyncio.run(be_asked())
     assert len(started) == 1
 
@@ -132,42 +131,3 @@ def test_looks_become_rare(monkeypatch: pytest.MonkeyPatch) -> None:
         looks.pop()()
     restore()
     assert waits == [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0]
-
-
-def test_a_thread_that_works_is_named() -> None:
-    """With its line; daemon threads are left out, since the process does not wait for them."""
-    gate, inside = threading.Event(), threading.Semaphore(0)
-
-    def works() -> None:
-        inside.release()
-        gate.wait()
-
-    threads = [threading.Thread(target=works, name=name, daemon=name == "demon") for name in ("smith", "demon")]
-    for thread in threads:
-        thread.start()
-        assert inside.acquire(timeout=10.0)
-    told = [text for text in hindrances() if "'smith'" in text or "'demon'" in text]
-    gate.set()
-    for thread in threads:
-        thread.join()
-    assert [text.partition(" in ")[2] for text in told] == ["works, thread 'smith'"]
-
-
-def wait_for(gate: Path) -> None:
-    """Work for another process, until there is a file."""
-    while not gate.exists():
-        os.sched_yield()
-
-
-@pytest.mark.real
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_a_process_pool_at_work_is_named(tmp_path: Path) -> None:
-    """With its processes, which can then be ended."""
-    gate = tmp_path / "gate"
-    with ProcessPoolExecutor(1) as pool:
-        work = pool.submit(wait_for, gate)
-        told = [text for text in hindrances() if "process pool" in text]
-        gate.touch()
-        work.result(30.0)
-    assert len(told) == 1
-    assert told[0].startswith("the work of a process pool, processes ")

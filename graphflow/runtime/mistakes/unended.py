@@ -10,7 +10,7 @@ from typing import Any
 
 from graphflow.analysis.swallowed import catching
 from graphflow.analysis.syntax import first_line, syntax_of
-from graphflow.analysis.user_code import is_users, short_place
+from graphflow.analysis.user_code import innermost, is_users, short_place
 from graphflow.deadlock.asyncio_frames import TaskLike, frames_of
 from graphflow.executor.runner import Runner
 
@@ -29,6 +29,26 @@ def unended(stuck: Iterable[Future[Any]], names: Mapping[Future[Any], str], runn
     lines = " and ".join(dict.fromkeys(line for task in tasks for line in _caught_in(task)))
     way = f"; CancelledError is caught in {lines}: write except Exception, or raise it again" if lines else ""
     return ", ".join(names[future] for future in left) + way
+
+
+def left_over(tasks: Iterable[TaskLike]) -> str:
+    """Return the tasks that go on although they were cancelled: each with its function, its line and what catches."""
+    return ", ".join(filter(None, map(_described, tasks)))
+
+
+def _described(task: Any) -> str:
+    frame = innermost(frames_of(task))
+    if frame is None:
+        return ""
+    lines = catching_lines([frame.f_code])
+    way = f"; CancelledError is caught in {lines}: write except Exception, or raise it again" if lines else ""
+    return f"{frame.f_code.co_name} in {frame.f_code.co_filename}:{frame.f_lineno}{way}"
+
+
+def catching_lines(codes: Iterable[CodeType]) -> str:
+    """Return the lines of functions that catch CancelledError in a loop; empty if there are none."""
+    lines = (str(short_place(code.co_filename, line)) for code in codes for line in _in_loops(code))
+    return " and ".join(dict.fromkeys(lines))
 
 
 def _caught_in(task: TaskLike) -> Iterator[str]:
