@@ -21,6 +21,7 @@ from graphflow.rclpy.hints.names import missing_name, misspelt_init, unknown_nam
 from graphflow.rclpy.hints.pending import early_result
 from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages.classes import StrictMessage
+from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input
 
 
 def hint(error: BaseException) -> str:
@@ -87,6 +88,10 @@ def _hidden(error: BaseException, _: list[FrameType]) -> str:
     return hidden(error)
 
 
+def _without_terminal(error: BaseException, _: list[FrameType]) -> str:
+    return advise_on_input(error)
+
+
 _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _hidden,
     missing_field,
@@ -103,5 +108,6 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _stamp,
     _text,
     message_as_value,
+    _without_terminal,
 )
 """The rules, in order of precedence."""

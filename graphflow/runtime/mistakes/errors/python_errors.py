@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.user_code import place_in
+from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input
 from graphflow.runtime.mistakes.rclpy_words import EXAMPLES
 from graphflow.runtime.mistakes.source.name_errors import owner_of
 from graphflow.runtime.mistakes.source.text_numbers import text_for_number
@@ -202,6 +203,8 @@ def remark_on(error: BaseException) -> str:
     """Return advice on the line that raised an error; "" if there is none."""
     if isinstance(error, TimeoutError) and not str(error):
         return "a time limit has passed; catch TimeoutError around the block that has it"
+    if way := advise_on_input(error, ", and read with await self.offload(input)"):
+        return way
     if type(error) not in (TypeError, AttributeError, NameError, RuntimeError, ValueError):
         return ""
     if hides := hidden(error):
