@@ -64,6 +64,13 @@ def ticking(line: str) -> Mistake:
     return Mistake(f"{held}{served}@timer(0.1)\nasync def tick(self):\n    {line}", line)
 
 
+def asked(line: str) -> Mistake:
+    """A line of a service that a timer calls."""
+    served = f"@service(AddTwoInts, 'add')\nasync def add(self, request):\n    {line}\n"
+    asks = "@timer(0.1)\nasync def tick(self):\n    await self.adder.call(AddTwoInts.Request())"
+    return Mistake(f"adder = Client(AddTwoInts, 'add')\n{served}{asks}", line)
+
+
 def imported(line: str) -> Mistake:
     return Mistake(line, line)
 
@@ -253,6 +260,8 @@ MISTAKES = {
         ticking("goal = self.goals.send(Fibonacci.Goal()); goal.feedback"),
         ticking("goal = await self.goals.send_goal(Fibonacci.Goal())"),
         ticking('await self.create_client(AddTwoInts, "add").call(AddTwoInts.Request())'),
+        asked("return self.adder.call(request)"),
+        asked("return AddTwoInts.Response"),
     ],
 }
 

@@ -26,7 +26,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
 from graphflow.msgs import registry
-from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, Service, made_as, name_of
+from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, Service, made_as
 from graphflow.qos import ACTION_STATUS, Qos
 from graphflow.runtime.actions.goal_service import Answer, GoalService
 from graphflow.runtime.callables import name_of as callable_name
@@ -35,6 +35,7 @@ from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
+from graphflow.runtime.mistakes.wrong_returns import wrong_return
 from graphflow.runtime.part import Host, Part
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire.goal_status import GoalStates
@@ -437,7 +438,7 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def _why_no_result(self, returned: object) -> Exception | None:
         """Return the error that keeps a handler's return value from being sent as the result; None if it can be."""
         if returned.__class__ is not self.result_class:
-            return TypeError(f"it returned {returned!r}, not {name_of(self.result_class)}(...)")
+            return wrong_return(returned, self.result_class, self._callback)
         return self._why_unfit(returned)
 
     def _why_unfit(self, result: object) -> Exception | None:

@@ -18,12 +18,13 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.machines.cache import GraphChange
 from graphflow.msgs import registry
-from graphflow.msgs.base import Request, Response, Service, name_of
+from graphflow.msgs.base import Request, Response, Service
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.endpoints.direct_calls import DirectRequest, ServerLines, unanswered, warn_of_refused
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.mistakes.wrong_returns import wrong_return
 from graphflow.runtime.part import Host
 from graphflow.transport.base import request_size
 from graphflow.transport.inbox import BYTES_BOUND, REQUESTS_BOUND, RequestInbox
@@ -168,8 +169,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 if result is None and not self._response.SCHEMA.fields:
                     result = self._response()
                 if result.__class__ is not self._response:
-                    where = self.place and f" ({self.place})"
-                    raise TypeError(f"it returned {result!r}, not {name_of(self._response)}(...){where}")
+                    raise wrong_return(result, self._response, self._callback, self.place)
                 payload = self._responses.encode(result)
             except (TypeError, EncodeError) as wrong:
                 error = wrong
