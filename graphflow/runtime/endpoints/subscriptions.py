@@ -89,8 +89,9 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._taken = 0
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, Source] = {}
-        self._gaps = 0
-        self._losses = Losses(host, name, self._label)
+        self._gaps = self._jumps = 0
+        """Messages that are missing, and those that came right after them."""
+        self._losses = Losses(host, name, self._label, qos.depth)
         self._deadline: SilenceTimer | None = None
         self._echo: Echo | None = None
         self._rings: RingReading | None = None
@@ -330,6 +331,7 @@ class TopicSubscription(Endpoint, Generic[M]):
     def _count_missing(self, missing: int) -> None:
         """Count messages lost in transit, excluding those that the full queue dropped: both leave gaps."""
         self._gaps += missing
+        self._jumps += 1
         dropped = self.dropped
         self._warn_of_losses()
         lost = self._gaps - dropped - self.lost
@@ -341,7 +343,8 @@ class TopicSubscription(Endpoint, Generic[M]):
         is_unread = self._callback is None and not (self._taken or self._waiters)
         is_busy = self.runner is not None and bool(self.runner.active)
         deep = self._inbox.items.maxlen if isinstance(self._inbox, DeepInbox) else None
-        self._losses.warn(self.dropped, self.received, deep, is_unread=is_unread, is_busy=is_busy)
+        gaps = None if self._callback is not None else self._jumps
+        self._losses.warn(self.dropped, self.received, deep, is_unread=is_unread, is_busy=is_busy, gaps=gaps)
 
     def _invoker(self) -> Callable[[Any], Any]:
         """Return `_invoke`, with a fast path for the next message of a known publisher.

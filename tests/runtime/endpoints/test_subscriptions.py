@@ -15,6 +15,7 @@ import pytest
 from graphflow import (
     Node,
     Qos,
+    Subscription,
     subscription,
 )
 from graphflow.errors import ClosedError
@@ -262,22 +263,66 @@ async def test_a_busy_handler_drops_the_oldest_and_counts(graph: Graph) -> None:
     assert (subscribed.received, subscribed.dropped) == (6, 3)
 
 
-async def test_a_subscription_that_nobody_reads_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
-    """The warning differs from a slow reader's, which never causes it."""
-    node = Node("n")
-    node.create_subscription(Int32, "x", None, 1)
-    late = node.create_subscription(Int32, "x", None, 1)
-    await graph.start(node)
-    publisher = graph.publisher(Int32, "/x")
-    publisher.publish(Int32())
-    await graph.settle()
-    await anext(late)
-    for n in range(150):
+class Reader(Node):
+    """A node that has a subscription, and may read it."""
+
+    x = Subscription(Int32, "x", 3)
+    newest = Subscription(Int32, "newest", 1)
+
+    async def read(self) -> None:
+        async for _ in self.x:
+            pass
+
+
+async def flood(graph: Graph, subscription: TopicSubscription[Int32], topic: str, read: Callable[[int], bool]) -> None:
+    """Publish 300 messages; one is read after each whose number `read` accepts."""
+    publisher = graph.publisher(Int32, topic)
+    for n in range(300):
         publisher.publish(Int32(data=n))
         await graph.settle()
-    first, second = sorted(caplog.messages)
-    assert first.startswith("nothing has read /x yet, and its messages are lost, 100 so far: write `async for")
-    assert "most messages are lost" in second
+        if read(n):
+            await anext(subscription)
+
+
+async def test_a_subscription_that_nobody_reads_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Nothing in the class can read it."""
+    node = Node("n")
+    subscription = node.create_subscription(Int32, "x", None, 1)
+    await graph.start(node)
+    await flood(graph, subscription, "/x", lambda _: False)
+    [told] = caplog.messages
+    assert told.startswith("nothing has read /x yet, and its messages are lost, 100 so far: write `async for")
+
+
+async def test_a_loop_that_is_too_slow_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """It loses some messages between all that it reads."""
+    node = Reader()
+    await graph.start(node)
+    await flood(graph, node.x, "/x", lambda n: n % 3 == 0)
+    [told] = caplog.messages
+    assert "most messages are lost" in told
+    assert "faster than they are read. Do less in the loop, have less sent, or keep only the newest" in told
+
+
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [
+        ("newest", lambda n: n % 3 == 0),  # only the newest is wanted
+        ("newest", lambda n: n < 20),  # and only in some states
+        ("x", lambda n: n < 10 or 100 <= n < 110 or 200 <= n < 220),  # a loop that is left and entered again
+        ("x", lambda n: n == 0),
+        ("x", lambda _: False),  # a method reads it, which waits for something else first
+    ],
+)
+async def test_losses_on_purpose(
+    graph: Graph, caplog: pytest.LogCaptureFixture, name: str, read: Callable[[int], bool]
+) -> None:
+    """Nothing is told."""
+    node = Reader()
+    await graph.start(node)
+    await flood(graph, getattr(node, name), f"/{name}", read)
+    assert getattr(node, name).dropped >= 100
+    assert caplog.messages == []
 
 
 async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
