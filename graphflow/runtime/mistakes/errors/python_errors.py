@@ -19,7 +19,7 @@ class Remark(NamedTuple):
 
     Attributes:
         text: A pattern of the error's text.
-        line: A pattern of the user's line that raised it.
+        line: A pattern of the user's line that raised it; ATTRIBUTE in it stands for the `attribute` of `text`.
         remark: The advice, a format string with the named groups of both patterns.
     """
 
@@ -38,7 +38,7 @@ REMARKS = (
     Remark(r"NoneType\b.* '?await", _AWAITED + r"\(", "{name} returns at once: remove await"),
     Remark(
         r"^'NoneType' object has no attribute '(?P<attribute>\w+)'",
-        r"self\.(?P<name>\w+)\.\w",
+        r"self\.(?P<name>\w+)\.ATTRIBUTE\b",
         "self.{name} is None until something sets it: write if self.{name} is None: return",
     ),
     Remark(
@@ -217,8 +217,11 @@ def remark_on(error: BaseException) -> str:
     if isinstance(error, TypeError) and (way := text_for_number(error, line)):
         return way
     for row in OF_VALUES if isinstance(error, ValueError) else REMARKS:
-        found, written = re.search(row.text, text), re.search(row.line, line)
-        if found and written:
+        found = re.search(row.text, text)
+        if found is None:
+            continue
+        pattern = row.line.replace("ATTRIBUTE", found.groupdict().get("attribute") or "")
+        if written := re.search(pattern, line):
             return row.remark.format(**{**found.groupdict(), **written.groupdict()})
     call = _CALL.match(text)
     if call and call["owner"] in _OURS and call["name"] in EXAMPLES:

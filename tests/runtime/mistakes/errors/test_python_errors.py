@@ -133,6 +133,25 @@ def test_arrays(use: Any, remark: str) -> None:
     assert remark in remark_on(caught(use))
 
 
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("d = math.hypot(9 - self.pose.x, 9 - self.pose.y)", "pose"),
+        ("self.log.info('%f', self.pose.x)", "pose"),
+        ("self.log.info('%f', pose.x)", ""),
+        ("print(self.pose.position.x)", ""),
+    ],
+)
+def test_a_value_that_is_none(monkeypatch: pytest.MonkeyPatch, line: str, name: str) -> None:
+    """It is named, rather than another attribute of the line."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: line)
+    nothing: Any = None
+    remark = remark_on(caught(lambda: nothing.x))
+    assert remark == (
+        f"self.{name} is None until something sets it: write if self.{name} is None: return" if name else ""
+    )
+
+
 def test_a_timer_method_is_no_handle(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is made by hand where it shall be cancelled."""
     monkeypatch.setattr(linecache, "getline", lambda *_: "self.tick.cancel()")
