@@ -99,9 +99,11 @@ class Failures:
         if len(self._counted) > budget.errors:
             self._counted.clear()
             head = str(error).partition("\n")[0]
+            # What no message has set is None still; the check of names comes later than this.
+            unheard = self._host.context.unmatched.unheard(self._host.full_name) if "NoneType" in head else ""
             text = (
                 f"{budget.errors + 1} handler errors within {budget.per:g} s, the last in {label}: "
-                f"{type(error).__name__}: {head}. The node ends; on_error='log' keeps a handler out of the count, and "
-                f"the class's error_budget sets the limit"
+                f"{type(error).__name__}: {head}{f'; {unheard}' if unheard else '.'} The node ends; "
+                "on_error='log' keeps a handler out of the count, and the class's error_budget sets the limit"
             )
             self._end(TooManyErrors(text))

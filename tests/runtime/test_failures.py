@@ -7,9 +7,10 @@ import re
 
 import pytest
 
-from graphflow import ErrorBudget, Node, timer
+from graphflow import ErrorBudget, Node, subscription, timer
 from graphflow.errors import DeadlockError, TooManyErrors
 from graphflow.interface import OnError
+from graphflow.msgs.std_msgs.msg import Float64
 from graphflow.runtime.failures import report
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
@@ -56,6 +57,42 @@ async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None
 
     with pytest.raises(TooManyErrors, match=r"21 handler errors within 10 s, the last in failing: ValueError: aga"):
         await node.wait_ended()
+
+
+class Follower(Node):
+    """Reckons with a value that a message sets."""
+
+    x: Float64 | None = None
+
+    @subscription(Float64, "/x")
+    async def heard(self, message: Float64) -> None:
+        self.x = message
+
+    @timer(0.1)
+    async def follow(self) -> None:
+        self.log.debug("%f", self.x.data)  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("topic", "text"),
+    [
+        (
+            "/turtle1/x",
+            "'data'; nobody publishes /x [std_msgs/msg/Float64]; did you mean '/turtle1/x', which /leader pub",
+        ),
+        ("/y", "'data'. The node ends"),  # which may not be meant
+        ("", "'data'. The node ends"),
+    ],
+)
+async def test_a_node_that_fails_on_none(graph: Graph, topic: str, text: str) -> None:
+    """Its end names the topic that was probably meant, which is told of other nodes a second later."""
+    leader, follower = Node("leader"), Follower()
+    if topic:
+        leader.create_publisher(Float64, topic)
+    await graph.start(leader, follower)
+    await graph.clock.advance(2.1)
+    with pytest.raises(TooManyErrors, match=re.escape(text)):
+        await follower.wait_ended()
 
 
 async def test_rare_errors_are_borne_for_ever(graph: Graph) -> None:

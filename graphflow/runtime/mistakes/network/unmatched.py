@@ -97,6 +97,16 @@ class Unmatched:
         if left and self._alarm is None:
             self._alarm = self._here.clock.call_at(min(left), self._check)
 
+    def unheard(self, node: str) -> str:
+        """Return the names that a node's subscriptions may have meant, for a node that ends before the check."""
+        waiting = [own for same in self._waiting.values() for own in same if own.node_name == node]
+        subscriptions = [own for own in waiting if own.kind is Kind.SUBSCRIPTION and own.token in self._here.cache]
+        there = by_type(self._here.cache, {own.type for own in subscriptions})
+        texts = {own: text for own in subscriptions if (text := did_you_mean_topic(own, there))}
+        for own in texts:
+            self._forget(own)
+        return " ".join(texts.values())
+
     def _check_all(self, due: Sequence[tuple[Entity, _Waiting]]) -> None:
         there = by_type(self._here.cache, {own.type for own, _ in due})
         for own, waiting in due:
