@@ -11,6 +11,7 @@ from contextlib import closing, nullcontext
 from types import EllipsisType
 from typing import Any, Generic, NamedTuple
 
+from graphflow.deadlock.unanswered import where_served
 from graphflow.errors import (
     CallError,
     CallTimeout,
@@ -49,6 +50,8 @@ from graphflow.wire.liveliness import Entity, Kind
 
 DISCOVERY_GRACE = 1.0
 """Seconds that a call waits for a server to be announced."""
+EXPLAINED = 1.0
+"""Shortest time limit, in seconds, of a call whose CallTimeout says where the server is."""
 
 
 def nobody_serves(cache: GraphCache, name: str, type_name: str, *, is_own: bool = False) -> str:
@@ -273,12 +276,28 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
                 arrived = answered if self.runner is None else self._queued(answered, call_id(gid, sequence))
                 give_up = self._send(sequence, payload, beside, context.search.chain(call), arrived)
                 return await future
-        except (CallTimeout, ClosedError, CancelledError):
+        except CallTimeout as error:
+            try:
+                await self._explain(error, call_id(gid, sequence), timeout or 0.0)
+            finally:
+                give_up()
+            raise
+        except (ClosedError, CancelledError):
             give_up()
             raise
         finally:
             self._pending.discard(future)
             deadlines.discard(future)
+
+    async def _explain(self, error: CallTimeout, call: str, timeout: float) -> None:
+        """Add to the error where the server is, if it is graphflow's; not to errors of short calls, as of polls."""
+        server = next(iter(self.matched.values()), None)
+        is_heard = self._is_own() or (self._line is not None and self._line.is_heard)
+        if timeout < EXPLAINED or server is None or len(self.matched) != 1 or not is_heard:
+            return
+        context = self.host.context
+        if text := await where_served(context, context.search.snapshot, call, server.zid):
+            error.args = (f"{error}; {text}",)
 
     def _send(
         self, sequence: int, payload: bytes, beside: bytes, chain: bytes, arrived: Callable[[Answer | None], None]
