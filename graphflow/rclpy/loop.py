@@ -79,7 +79,9 @@ class LoopThread:
         Raises:
             TimeoutError: It took more than `timeout` seconds and was cancelled.
         """
-        asked = asyncio.run_coroutine_threadsafe(fn(*args), self.start())
+        loop = self.start()
+        # The coroutine is made on the loop: Ctrl-C here would lose it before it runs, and Python would warn of that.
+        asked = self.call(lambda: asyncio.run_coroutine_threadsafe(fn(*args), loop))
         try:
             return asked.result(timeout)
         except TimeoutError:

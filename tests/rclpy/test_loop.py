@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import threading
+from collections.abc import Coroutine
 
 import pytest
 
@@ -41,6 +43,30 @@ def test_a_wait_that_takes_too_long_is_cancelled() -> None:
     loop.call(lambda: None)
     loop.call(lambda: None)
     assert ended == [True]
+    loop._stop()
+
+
+@pytest.mark.parametrize("where", ["start", "call"])
+def test_an_interrupt_before_a_coroutine_runs(monkeypatch: pytest.MonkeyPatch, where: str) -> None:
+    """It leaves no coroutine behind that was never awaited."""
+    loop, made = LoopThread(), list[int]()
+
+    async def work() -> None:
+        """Do nothing."""
+
+    def make() -> Coroutine[object, object, None]:
+        made.append(threading.get_ident())
+        return work()
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(loop, where, interrupted)
+        loop.wait(make)
+    assert made == []
+    loop.wait(make)
+    assert made == [loop.call(threading.get_ident)]
     loop._stop()
 
 
