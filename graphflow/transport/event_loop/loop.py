@@ -47,11 +47,12 @@ def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
 
 def run(main: Coroutine[Any, Any, T]) -> T:
     """Run a coroutine as `asyncio.run`, on the best loop available, in a process tuned for large messages."""
-    keep_freed_memory()
-    collect_normally()
-    # If no loop can be made, `main` is never awaited, of which Python would warn.
-    with closing(main), asyncio.Runner(loop_factory=new_event_loop) as runner:
-        return runner.run(main)
+    # If no loop can be made, or Ctrl-C comes before, `main` is never awaited, of which Python would warn.
+    with closing(main):
+        keep_freed_memory()
+        collect_normally()
+        with asyncio.Runner(loop_factory=new_event_loop) as runner:
+            return runner.run(main)
 
 
 async def in_thread(fn: Callable[[], object]) -> None:
