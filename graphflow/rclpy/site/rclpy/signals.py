@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any
 from weakref import WeakSet
 
-from graphflow.rclpy.hints import tracebacks
+from graphflow.rclpy.hints import swallowed_interrupts, tracebacks
 from rclpy._rclpy_pybind11 import SignalHandlerOptions
 from rclpy.context import Context
 
@@ -97,11 +97,12 @@ def _caught(number: int, frame: FrameType | None) -> None:
         _thread.start_new_thread(_again, (number,))
         return
     _put_off.pop(number, None)
+    swallowed_interrupts.end_if_stuck(frame)
     is_ending = not threading.main_thread().is_alive()  # the interpreter waits only for other threads to end
-    for context in list(_watched):
-        life = context.life
-        if life is None or not life.end():
-            continue
+    ended = [context for context in list(_watched) if context.life is not None and context.life.end()]
+    if ended and not is_ending:
+        swallowed_interrupts.watch()
+    for context in ended:
         if is_ending:  # there can be no new thread, and this one holds nothing
             context.finish()
         else:
