@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode, last_name, walk
 
 _RUNNERS = ("run", "running", "init", "spin")
 """Names of functions by which a program runs nodes."""
 _METHODS = (
     *("cancel", "reset", "destroy", "destroy_node", "shutdown", "try_shutdown"),
     *("succeed", "abort", "canceled", "execute", "stop", "close"),
+    *("set", "clear", "acquire", "release", "notify", "notify_all", "start", "join", "wait", "popleft", "task_done"),
 )
-"""Methods of nodes and their parts that are called without arguments."""
+"""Methods of nodes, of their parts, and of events, locks, threads and queues that are called without arguments."""
+_HANDLERS = {"subscription", "service", "timer", "action", "task"}
+"""Decorators that leave a method as it is."""
 _QUESTIONS = ("service_is_ready", "server_is_ready", "wait_for_service", "wait_for_server", "is_canceled")
 """Methods that return a truth value."""
 _LAUNCH = "generate_launch_description"
@@ -61,16 +65,49 @@ def uncalled(source: str, file: str) -> str:
 def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Yield the lines that name a method without calling it, such as `self.timer.cancel`, each with a message."""
     own = _own_attributes(code)
-    for node in ast.walk(code):
+    for node, parents in walk(code):
         match node:
-            case ast.Expr(value=ast.Attribute(attr=name) as method) if name in _METHODS:
-                shown = ast.unparse(method)
-                yield node.lineno, f"{shown} without parentheses calls nothing; write: {shown}()"
+            case ast.Expr(value=ast.Attribute(attr=name) as method):
+                function = _method(method, parents)
+                is_known = name in _METHODS and not (is_own(method) and name in own)
+                if (is_known or function is not None) and not _is_tried(parents):
+                    shown = ast.unparse(method)
+                    yield node.lineno, f"{shown} without parentheses calls nothing; {_call(method, function)}"
             case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test) | ast.Assert(test=test):
                 for method in _conditions(test):
                     if _asks(method) and method.attr not in own:
                         shown = ast.unparse(method)
                         yield method.lineno, f"{shown} without parentheses is always true; write: {shown}()"
+
+
+def _method(named: ast.Attribute, parents: Sequence[ast.AST]) -> FunctionNode | None:
+    """Return the method of the enclosing class that `self.name` is; None for a property or any other attribute."""
+    owner = next((node for node in reversed(parents) if isinstance(node, ast.ClassDef)), None)
+    if owner is None or not is_own(named):
+        return None
+    found = [item for item in owner.body if isinstance(item, FunctionNode) and item.name == named.attr]
+    words = {last_name(d.func if isinstance(d, ast.Call) else d) for item in found for d in item.decorator_list}
+    return found[0] if len(found) == 1 and words <= _HANDLERS else None
+
+
+def _call(method: ast.Attribute, function: FunctionNode | None) -> str:
+    """Return the call that was meant, with the names of its arguments."""
+    arguments = function.args.args[1:] if function is not None else []
+    call = f"{ast.unparse(method)}({', '.join(argument.arg for argument in arguments)})"
+    return f"write: await {call}" if isinstance(function, ast.AsyncFunctionDef) else f"write: {call}"
+
+
+def _is_tried(parents: Sequence[ast.AST]) -> bool:
+    """Whether a statement may be there for its error, in a `try` or a `with` that expects one."""
+    match parents[-1]:
+        case ast.Try(handlers=handlers):
+            return any(
+                handler.type is not None and "AttributeError" in ast.unparse(handler.type) for handler in handlers
+            )
+        case ast.With(items=items):
+            calls = [item.context_expr.func for item in items if isinstance(item.context_expr, ast.Call)]
+            return any(last_name(call) in ("raises", "suppress") for call in calls)
+    return False
 
 
 def _conditions(test: ast.expr) -> Iterator[ast.Attribute]:

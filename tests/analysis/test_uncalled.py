@@ -87,3 +87,48 @@ def test_methods_without_parentheses() -> None:
     assert list(uncalled_methods(ast.parse(source))) == [
         (2, "self.timer.cancel without parentheses calls nothing; write: self.timer.cancel()")
     ]
+
+
+EVENTS = """
+class Robot(Node):
+    @subscription(Pose, "pose")
+    async def on_pose(self, pose):
+        {}
+
+    @timer(1.0)
+    async def drive(self): ...
+
+    def turn(self, angle): ...
+
+    @property
+    def reset(self): ...
+
+    @cached_property
+    def map(self): ...
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "call"),
+    [
+        ("self.near_wall.set", "self.near_wall.set()"),
+        ("event.clear", "event.clear()"),
+        ("self.timer.reset", "self.timer.reset()"),
+        ("self.lock.release", "self.lock.release()"),
+        ("self.turn", "self.turn(angle)"),
+        ("if pose.x > 9: self.drive", "await self.drive()"),
+        ("self.reset", ""),
+        ("self.map", ""),
+        ("self.near_wall.set()", ""),
+        ("self.callback = self.turn", ""),
+        ("self.start = 1; self.start", ""),
+        ("with pytest.raises(AttributeError): self.lock.release", ""),
+        ("with self.lock: self.near_wall.set", "self.near_wall.set()"),
+        ("try:\n            event.set\n        except AttributeError: pass", ""),
+        ("try:\n            event.set\n        except OSError: pass", "event.set()"),
+    ],
+)
+def test_events_locks_and_own_methods(line: str, call: str) -> None:
+    """Are told with their call; properties, and lines that are there for their error, are not."""
+    told = [text for _, text in uncalled_methods(ast.parse(EVENTS.format(line)))]
+    assert [text.partition("; write: ")[2] for text in told] == ([call] if call else [])

@@ -108,6 +108,16 @@ def test_slips_in_source(here: Machine, tmp_path: Path) -> None:
     assert json.loads(here.look("check", "graphs/g.yaml", "--json", cwd=tmp_path))["remarks"] == [said]
 
 
+def test_slips_in_rclpy_source(here: Machine, tmp_path: Path) -> None:
+    """They are remarks, too."""
+    body = "    def heard(self, message):\n        self.ready.set\n"
+    (tmp_path / "ros" / "move.py").write_text(RCLPY.replace("    pass\n", body))
+    assert here.look("check", "ros", cwd=tmp_path) == (
+        "ros/move.py:5: self.ready.set without parentheses calls nothing; write: self.ready.set()\n"
+        "ros: no deadlocks visible in the source, 1 remark\n"
+    )
+
+
 def test_functions_that_rclpy_source_calls_early(here: Machine, tmp_path: Path) -> None:
     """They are remarks, read from the source; a function that is passed is none."""
     body = "    def work(self):\n        self.on = True\n    def __init__(self):\n"
