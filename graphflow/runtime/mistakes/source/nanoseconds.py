@@ -75,8 +75,8 @@ def _small(limit: ast.expr, bindings: Bindings, parents: Sequence[ast.AST], *, i
             return number if 0 < number < _BOUND else None
         case ast.Name() | ast.Attribute():
             values = [value.expression for value in bindings.of(limit, parents)]
-            number = values[0].value if len(values) == 1 and isinstance(values[0], ast.Constant) else None
-            return number if isinstance(number, float) and 0 < number < _BOUND else None
+            given = values[0].value if len(values) == 1 and isinstance(values[0], ast.Constant) else None
+            return given if isinstance(given, float) and 0 < given < _BOUND else None
     return None
 
 

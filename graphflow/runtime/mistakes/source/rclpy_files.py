@@ -9,6 +9,7 @@ from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
+from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 
 
@@ -19,3 +20,4 @@ def slips_in_file(module: ast.Module) -> Iterator[tuple[int, str]]:
     yield from ineffective(module)
     yield from results_passed(module, is_of_threads=True)
     yield from compared_nanoseconds(module)
+    yield from mixed_angles(module)

@@ -29,6 +29,7 @@ from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
+from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.shadowing import definition_of
@@ -68,7 +69,8 @@ def _slips(cls: type) -> Iterator[str]:
             found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
             found = (*found, *ineffective(definition), *overridden(parent, definition))
             found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
-            of_file = [*compared_nanoseconds(syntax_of(file).module)]
+            module = syntax_of(file).module
+            of_file = (*compared_nanoseconds(module), *mixed_angles(module))
             found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
             yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
