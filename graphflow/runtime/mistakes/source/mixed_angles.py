@@ -122,12 +122,13 @@ def _mixed(module: ast.Module, names: _Names) -> Iterator[tuple[int, str]]:
                 if _unit(angle, names, parents) == "degrees":
                     name = names.called(function)
                     yield node.lineno, f"{ast.unparse(angle)} is in degrees, and {name} takes radians"
+        line = getattr(node, "lineno", 0)
         for left, right in pairs:
             units = {_unit(side, names, parents): side for side in (left, right)}
             if units.keys() == {"degrees", "radians"}:
                 degrees, radians = (ast.unparse(units[unit]) for unit in ("degrees", "radians"))
                 text = f"{degrees} is in degrees, and {radians} in radians; write both in radians"
-                yield node.lineno, text
+                yield line, text
 
 
 def _unit(expression: ast.expr, names: _Names, parents: Sequence[ast.AST], depth: int = 0) -> Unit:

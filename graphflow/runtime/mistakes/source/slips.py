@@ -31,6 +31,7 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
+from graphflow.runtime.mistakes.source.never_equal import never_equal
 from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
@@ -70,6 +71,7 @@ def _slips(cls: type) -> Iterator[str]:
             found = (*found, *ineffective(definition), *overridden(parent, definition))
             found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
             module = syntax_of(file).module
+            found = (*found, *never_equal(cls, parent, definition, module))
             of_file = (*compared_nanoseconds(module), *mixed_angles(module))
             found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
             yield from (f"{Place(file, line)}: {text}" for line, text in found)
