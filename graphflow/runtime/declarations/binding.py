@@ -56,7 +56,9 @@ class Binding:
         self._hooks = declared.param_hooks(self._class)
         self._followers: dict[str, _Follower] = {}
         self._settled = {*COMMON_PARAMETERS}
-        """Parameters whose attributes need no check when they are set, or have had it."""
+        """Parameters whose uses need no check when they are set, or have had it."""
+        self._of_class = set[str]()
+        """Parameters that the class declares."""
 
     def bind_parameters(self) -> None:
         """Declare the parameters; they come first, since the periods of timers may refer to them."""
@@ -65,7 +67,7 @@ class Binding:
         for attribute, item in declared.held(self._class).items():
             if isinstance(item, Param):
                 self.held[attribute] = item.create(self)
-                self._settled.add(item.parameter.name)
+                self._of_class.add(item.parameter.name)
         self._parameters.check(self._check)
         self._parameters.observe(self._changed)
 
@@ -134,11 +136,13 @@ class Binding:
 
     def _changed(self, changes: Mapping[str, ParameterChange]) -> None:
         for name, (old, new) in changes.items() if self.owner.is_running else ():
-            if old is not None and name not in self._settled:
+            if old is not None and old != new and name not in self._settled:
                 self._settled.add(name)
-                from graphflow.runtime.mistakes.source.copies import kept  # most nodes never need it
+                from graphflow.runtime.mistakes.source.copies import kept  # most nodes never need them
+                from graphflow.runtime.mistakes.source.read_once import without_effect
 
-                if text := kept(self.node, name, old, new):
+                text = kept(self.node, name, old, new) if name not in self._of_class else ""
+                if text or (text := without_effect(self._class, name)):
                     self.owner.log.warning("%s", text)
         for rate, timer in self._timers:
             if changes.keys() & rate.parameters():
