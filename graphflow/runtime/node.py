@@ -106,7 +106,7 @@ class Node(AttributeHints):
         enable_logger_service: bool = True,
         **params: object,
     ) -> None:
-        unrun.made()
+        unrun.made(type(self))
         given = node_options.take(self)
         rules = [*given.remaps, *rules_of(remap)]
         own_name = given.name or name or declared.default_name(type(self))

@@ -35,6 +35,7 @@ from graphflow.runtime.endpoints.services import ServiceServer
 from graphflow.runtime.failures import Failures, report
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import Rosout
+from graphflow.runtime.mistakes import unrun
 from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.repeats import Repeats
 from graphflow.runtime.mistakes.slow_hooks import when_slow
@@ -290,6 +291,7 @@ class NodeCore:
             state = "is already running" if self.is_running else "has been stopped; create a new one"
             raise ClosedError(f"node {self.full_name} {state}")
         self.ensure_made()
+        unrun.ran()
         self._context = context
         self.id = context.next_id()
         self._ended = context.loop.create_future()

@@ -5,8 +5,10 @@ from __future__ import annotations
 import atexit
 import re
 import sys
+from collections.abc import Collection
 from pathlib import Path
 
+from graphflow.analysis.discarded import discarded
 from graphflow.analysis.uncalled import uncalled
 from graphflow.analysis.user_code import is_installed, is_ours, place_in
 from graphflow.reading import found_text
@@ -19,6 +21,8 @@ _classes: list[str] = []
 """Node classes defined in the program's own file."""
 _file: str | None = None
 """The program's file, once it is watched."""
+_made: set[str] = set()
+"""Names of classes whose nodes the program has made."""
 _has_run = False
 
 
@@ -38,8 +42,13 @@ def watch() -> None:
         atexit.register(_at_exit)
 
 
-def made() -> None:
-    """Note that a node was made, or rclpy initialized."""
+def made(cls: type) -> None:
+    """Note that a node was made."""
+    _made.add(cls.__name__)
+
+
+def ran() -> None:
+    """Note that a node has joined a network, or that rclpy was initialized."""
     global _has_run
     _has_run = True
 
@@ -55,18 +64,26 @@ def _at_exit() -> None:
 def report(file: Path) -> None:
     """Report once that a program has ended without running its nodes."""
     if not _has_run:
-        made()
-        sys.stderr.write(advice(file, _classes))
+        ran()
+        sys.stderr.write(advice(file, _classes, _made))
 
 
-def advice(file: Path, classes: list[str]) -> str:
-    """Return a remark on a file that ended without running a node; "" if that seems intended."""
+def advice(file: Path, classes: list[str], made: Collection[str] = ()) -> str:
+    """Return a remark on a file that ended without running a node; "" if that seems intended.
+
+    Args:
+        classes: The node classes that it defines.
+        made: Those whose nodes it has made, which it may want only to look at.
+    """
     try:
         source = found_text(file)
     except (OSError, ValueError):
         return ""
     if file.is_relative_to(Path.cwd()):
         file = file.relative_to(Path.cwd())
+    if made:
+        text = discarded(source, str(file), made)
+        return f"{text}\n" if text else ""
     if text := uncalled(source, str(file)):
         return f"{text}\n"
     if _RUNS.search(source) or not classes:

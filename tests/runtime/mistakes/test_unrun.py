@@ -18,7 +18,7 @@ TALK = "from graphflow import Node\n\nclass Talk(Node):\n    pass\n"
     ("more", "is_told"),
     [
         ("", True),
-        ("Talk()\n", False),
+        ("talk = Talk()\nprint('', end=talk.namespace[:0])\n", False),
         ("import graphflow\nif False:\n    graphflow.run(Talk)\n", False),
         ("def helper():\n    pass\n", True),
     ],
@@ -60,3 +60,22 @@ def test_advice(tmp_path: Path) -> None:
     assert "graphflow run MODULE:A, or" in advice(file, ["A", "B"])
     file.write_text("\ufeffdef main():\n    pass\n", encoding="utf-8")
     assert "main() is defined and never called" in advice(file, []), "a byte order mark is no part of the text"
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("Talk()\n", "talk.py:5: Talk() makes a node and does not run it; write: graphflow.run(Talk)\n"),
+        (
+            "def main():\n    Talk().run()\n\nif __name__ == '__main__':\n    Talk()\n",
+            "talk.py:9: Talk() makes a node and does not run it; write: main()\n",
+        ),
+        ("import asyncio, graphflow\nasyncio.run(asyncio.sleep(0))\nTalk()\nprint(end='')\n", ""),
+    ],
+)
+def test_a_node_that_is_made_and_not_run(tmp_path: Path, more: str, told: str) -> None:
+    """It is told with its line, even if some function would run another; a program that goes on is not told."""
+    (tmp_path / "talk.py").write_text(TALK + more)
+    done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    assert done.returncode == 0
+    assert done.stderr == told

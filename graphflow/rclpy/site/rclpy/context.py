@@ -58,7 +58,7 @@ class Context(AbstractContextManager["Context"]):
         Raises:
             RuntimeError: It is already initialized, or an argument is wrong.
         """
-        unrun.made()
+        unrun.ran()
         words = list(sys.argv if args is None else args)
         # Bytes that are not UTF-8 come as lone surrogates. rclpy raises UnicodeEncodeError for them, as this does.
         for word in words:
