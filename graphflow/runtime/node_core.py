@@ -36,10 +36,10 @@ from graphflow.runtime.failures import Failures, report
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import Rosout
 from graphflow.runtime.mistakes import unrun
+from graphflow.runtime.mistakes.at_start import warn_at_start
 from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.repeats import Repeats
 from graphflow.runtime.mistakes.slow_hooks import when_slow
-from graphflow.runtime.mistakes.source.slips import slips
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_options import unused_remaps
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
@@ -301,8 +301,8 @@ class NodeCore:
         try:
             await self._open(context)
             self.warn_unused_remaps()
-            for slip in slips(type(self.instance)):
-                self.log.warning("%s", slip)
+            others = [(core.full_name, core.instance) for core in context.nodes if core is not self]
+            warn_at_start(self.log, self.instance, others)
             await self._begin()
         except BaseException:  # cancellation included: nothing stays open
             await self.stop()

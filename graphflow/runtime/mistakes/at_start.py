@@ -1,0 +1,23 @@
+"""Mistakes that are told when a node starts: slips in its class's source, and lists shared with other nodes."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+
+from graphflow.runtime.mistakes.source.slips import slips
+
+
+def warn_at_start(log: logging.Logger, instance: object, others: Sequence[tuple[str, object]]) -> None:
+    """Log such mistakes of a node.
+
+    Args:
+        others: The full names and the instances of the other nodes of its process.
+    """
+    for slip in slips(type(instance)):  # type: ignore[arg-type]  # it can be hashed
+        log.warning("%s", slip)
+    if others:
+        from graphflow.runtime.mistakes.source.shared_attributes import shared_attributes  # most are alone
+
+        for text in shared_attributes(instance, others):
+            log.warning("%s", text)
