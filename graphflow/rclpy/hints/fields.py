@@ -121,10 +121,12 @@ def no_message(error: BaseException, frames: list[FrameType]) -> str:
 def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
     """Name the field to use where a message was treated as a plain value."""
     users = own(frames)
-    if not isinstance(error, TypeError) or not users or not _RECKONED.search(str(error)):
+    if not isinstance(error, (AttributeError, TypeError)) or not users:
         return ""
     if "'property'" in str(error) or "'member_descriptor'" in str(error):
         return _class_as_message(line_of(frames), users[-1])
+    if not isinstance(error, TypeError) or not _RECKONED.search(str(error)):
+        return ""
     for path in PATH.findall(line_of(frames)):
         thing = named(path, users[-1])
         name = type(thing).__name__
@@ -140,9 +142,9 @@ def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
 
 def _class_as_message(line: str, frame: FrameType) -> str:
     """Show how to create a message where a line reads a field of its class."""
-    for path in PATH.findall(line):
-        owner = path.rpartition(".")[0]
-        cls = named(owner, frame) if owner else None
+    owners = (".".join(path.split(".")[:end]) for path in PATH.findall(line) for end in range(1, path.count(".") + 1))
+    for owner in owners:
+        cls = named(owner, frame)
         if isinstance(cls, type) and issubclass(cls, StrictMessage):
             is_kept = owner != cls.__name__
             return (

@@ -53,6 +53,7 @@ ONE = "dimensions, and the field one: write "
         ),
         ("t.linear.x = float32(n)", "write t.linear.x = float(float32(n))"),
         ("m.data = int64(n)", "write m.data = int(int64(n))"),
+        ("made.linear.x = 2.0", "made is the class Twist, not a message: write made = Twist()"),
         ("2.0 - made.linear", "made is the class Twist, not a message: write made = Twist()"),
         ("2.0 - Vector3.x", "Vector3 is a class, not a message: write Vector3(), or use a message object"),
         (

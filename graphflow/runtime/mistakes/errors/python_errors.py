@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.user_code import place_in
+from graphflow.runtime.mistakes.errors.class_errors import class_in_place
 from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input
 from graphflow.runtime.mistakes.rclpy_words import EXAMPLES
 from graphflow.runtime.mistakes.source.name_errors import owner_of
@@ -215,6 +216,8 @@ def remark_on(error: BaseException) -> str:
     if isinstance(error, NameError) and (way := owner_of(error)):
         return way
     if isinstance(error, TypeError) and (way := text_for_number(error, line)):
+        return way
+    if way := class_in_place(error):
         return way
     for row in OF_VALUES if isinstance(error, ValueError) else REMARKS:
         found = re.search(row.text, text)
