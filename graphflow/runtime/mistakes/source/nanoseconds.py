@@ -37,6 +37,9 @@ def compared_nanoseconds(module: ast.Module) -> tuple[tuple[int, str], ...]:
 
 
 def _compared(module: ast.Module) -> Iterator[tuple[int, str]]:
+    named = (node for node in ast.walk(module) if isinstance(node, (ast.Attribute, ast.Name)))
+    if not any(last_name(node) in (*_COUNTS, "nanoseconds") for node in named):
+        return
     bindings = bindings_of(module)
     for node, parents in walk(module):
         if not isinstance(node, ast.Compare) or any(map(_tests, parents)):

@@ -38,6 +38,9 @@ def never_equal(cls: type, owner: type, definition: ast.ClassDef, module: ast.Mo
     held, own = declared.held(cls), declared.held(owner)
     # A subclass may declare the parameter anew, with other choices.
     params = {k: v.parameter for k, v in held.items() if isinstance(v, Param) and own.get(k) is v}
+    words = {node.attr for node in ast.walk(definition) if isinstance(node, ast.Attribute)}
+    if words.isdisjoint({*params, "parameters", "status", "lifecycle_state"}):
+        return
     bindings = bindings_of(module)
     for found in _comparisons(module, definition):
         if (parameter := _parameter(found.subject, params)) is not None:
