@@ -28,6 +28,7 @@ from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
@@ -71,7 +72,7 @@ def _slips(cls: type) -> Iterator[str]:
             found = (*found, *ineffective(definition), *overridden(parent, definition))
             found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
             module = syntax_of(file).module
-            found = (*found, *never_equal(cls, parent, definition, module))
+            found = (*found, *never_equal(cls, parent, definition, module), *lost_updates(parent, definition, module))
             of_file = (*compared_nanoseconds(module), *mixed_angles(module))
             found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
             yield from (f"{Place(file, line)}: {text}" for line, text in found)
