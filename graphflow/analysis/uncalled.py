@@ -16,6 +16,8 @@ _METHODS = (
     *("set", "clear", "acquire", "release", "notify", "notify_all", "start", "join", "wait", "popleft", "task_done"),
 )
 """Methods of nodes, of their parts, and of events, locks, threads and queues that are called without arguments."""
+_ALSO_VALUES = ("start", "stop")
+"""Methods whose names slices and ranges have for values, which a script may look at."""
 _HANDLERS = {"subscription", "service", "timer", "action", "task"}
 """Decorators that leave a method as it is."""
 _QUESTIONS = ("service_is_ready", "server_is_ready", "wait_for_service", "wait_for_server", "is_canceled")
@@ -70,6 +72,7 @@ def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
             case ast.Expr(value=ast.Attribute(attr=name) as method):
                 function = _method(method, parents)
                 is_known = name in _METHODS and not (is_own(method) and name in own)
+                is_known &= name not in _ALSO_VALUES or any(isinstance(parent, FunctionNode) for parent in parents)
                 if (is_known or function is not None) and not _is_tried(parents):
                     shown = ast.unparse(method)
                     yield node.lineno, f"{shown} without parentheses calls nothing; {_call(method, function)}"

@@ -132,3 +132,8 @@ def test_events_locks_and_own_methods(line: str, call: str) -> None:
     """Are told with their call; properties, and lines that are there for their error, are not."""
     told = [text for _, text in uncalled_methods(ast.parse(EVENTS.format(line)))]
     assert [text.partition("; write: ")[2] for text in told] == ([call] if call else [])
+
+
+def test_a_value_of_a_slice() -> None:
+    """It is looked at outside functions, as in a notebook's cell."""
+    assert list(uncalled_methods(ast.parse("part.start\npart.stop\n"))) == []
