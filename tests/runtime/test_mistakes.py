@@ -250,6 +250,20 @@ MISTAKES = {
             "async def on_start(self):\n    self.spawn(self.begin)\nasync def begin(self):\n    self.rate = 2.0",
             "@rate.on_change def changed(self, old, new): self.rate = new + 1.0",
         ),
+        body("done = asyncio.Event()\n@timer(0.1)\nasync def tick(self):\n    self.done.set", "self.done.set"),
+        body(
+            "since = 0\n@timer(0.1)\nasync def tick(self):\n    if self.clock.monotonic_ns() - self.since > 0.5: pass",
+            "if self.clock.monotonic_ns() - self.since > 0.5: ...",
+        ),
+        body(
+            "on = Param(True)\n@timer(0.1)\nasync def tick(self):\n    if self.on == 'true': pass",
+            "if self.on == 'true': ...",
+        ),
+        body(
+            "n = 0\n@timer(0.1)\nasync def up(self):\n    self.n += 1\n@timer(1.0)\nasync def twice(self):\n"
+            "    n = self.n\n    await self.clock.sleep(0.5)\n    self.n = n + 2",
+            "n = self.n; await self.clock.sleep(0.5); self.n = n + 2",
+        ),
         ticking("await self.adder.call(AddTwoInts.Request(), timeout=-1)"),
         ticking("self.goals.send(Fibonacci.Goal())"),
         ticking("Fibonacci(order=3)"),

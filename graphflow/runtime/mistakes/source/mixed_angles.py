@@ -32,7 +32,7 @@ def mixed_angles(module: ast.Module) -> tuple[tuple[int, str], ...]:
 
 
 class _Names:
-    """What a file imports, and the bindings of its names."""
+    """The imports of a file, and the bindings of its names."""
 
     def __init__(self, module: ast.Module) -> None:
         self.bindings: Bindings = bindings_of(module)
