@@ -302,7 +302,7 @@ class NodeCore:
             await self._open(context)
             self.warn_unused_remaps()
             others = [(core.full_name, core.instance) for core in context.nodes if core is not self]
-            warn_at_start(self.log, self.instance, others)
+            warn_at_start(self.log, self.instance, others, is_regrouped=bool(self.groups.regrouping.groups))
             await self._begin()
         except BaseException:  # cancellation included: nothing stays open
             await self.stop()

@@ -256,7 +256,8 @@ def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces, list[st
     problems = check_plan(resolved, found)
     if problems:
         raise GraphFileError(problems)
-    return resolved, found, slips_in(data)
+    regrouped = {node.class_path for node in resolved.nodes if node.concurrency}
+    return resolved, found, slips_in(data, regrouped)
 
 
 def output_problems(problems: Sequence[Problem]) -> None:

@@ -5,16 +5,22 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 
-from graphflow.runtime.mistakes.source.slips import slips
+from graphflow.runtime.mistakes.source.slips import slips, slips_in_groups
 
 
-def warn_at_start(log: logging.Logger, instance: object, others: Sequence[tuple[str, object]]) -> None:
+def warn_at_start(
+    log: logging.Logger, instance: object, others: Sequence[tuple[str, object]], *, is_regrouped: bool = False
+) -> None:
     """Log such mistakes of a node.
 
     Args:
         others: The full names and the instances of the other nodes of its process.
+        is_regrouped: Whether a graph file changes its groups.
     """
-    for slip in slips(type(instance)):  # type: ignore[arg-type]  # it can be hashed
+    found = slips(type(instance))  # type: ignore[arg-type]  # it can be hashed
+    if not is_regrouped:
+        found = (*found, *slips_in_groups(type(instance)))  # type: ignore[arg-type]
+    for slip in found:
         log.warning("%s", slip)
     if others:
         from graphflow.runtime.mistakes.source.shared_attributes import shared_attributes  # most are alone

@@ -22,7 +22,7 @@ from graphflow.names import did_you_mean, nearest
 from graphflow.runtime.importing import importing
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.errors.python_errors import remark_on
-from graphflow.runtime.mistakes.source.slips import slips
+from graphflow.runtime.mistakes.source.slips import slips, slips_in_groups
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_options import why_not
 from graphflow.typographic import plain
@@ -227,7 +227,7 @@ def interfaces(class_paths: list[str], *, with_slips: bool = False) -> Interface
     """Return interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
 
     Each also has `needs_numpy`, whether nodes of the class will load NumPy, and with `with_slips` the mistakes in its
-    source that a node logs when it starts, and those that are foreseen.
+    source that a node logs when it starts, and those that are foreseen; those that other groups may prevent are apart.
     """
     found: InterfacesJson = {}
     for path in class_paths:
@@ -244,6 +244,7 @@ def interfaces(class_paths: list[str], *, with_slips: bool = False) -> Interface
 
                 check_init(cls)
                 found[path]["slips"] = [*slips(cls), *foreseen(cls)]  # type: ignore[arg-type] # it can be hashed
+                found[path]["slips_in_groups"] = [*slips_in_groups(cls)]  # type: ignore[arg-type]
         except GraphflowError as error:
             found[path] = {"problem": str(error)}
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from graphflow.errors import Place, Problem
@@ -19,7 +20,12 @@ def read_interfaces(data: InterfacesJson) -> dict[str, Interface | Problem]:
     }
 
 
-def slips_in(data: InterfacesJson) -> list[str]:
-    """Return the slips in the source of the classes, each once: derived classes repeat those of their base."""
-    found = (value.get("slips", ()) for value in data.values())
+def slips_in(data: InterfacesJson, regrouped: Collection[str] = ()) -> list[str]:
+    """Return the slips in the source of the classes, each once: derived classes repeat those of their base.
+
+    Args:
+        regrouped: The classes of which a graph file changes the groups.
+    """
+    found = [value.get("slips", ()) for value in data.values()]
+    found += [value.get("slips_in_groups", ()) for path, value in data.items() if path not in regrouped]
     return list(dict.fromkeys(str(text) for slips in found if isinstance(slips, (list, tuple)) for text in slips))

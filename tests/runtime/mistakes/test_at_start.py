@@ -6,7 +6,7 @@ import logging
 
 import pytest
 
-from graphflow import Node
+from graphflow import Node, timer
 from graphflow.runtime.mistakes.at_start import warn_at_start
 
 
@@ -27,3 +27,26 @@ def test_slips_and_shared_lists(caplog: pytest.LogCaptureFixture, is_alone: bool
     slip, *shared = caplog.messages
     assert "did you mean on_start?" in slip
     assert ["`points = []` in the class is one list" in text for text in shared] == [True] * (not is_alone)
+
+
+class Odometer(Node):
+    """A node that loses an update."""
+
+    total = 0
+
+    @timer(1.0)
+    async def spend(self) -> None:
+        self.total -= 1
+
+    @timer(1.0)
+    async def double(self) -> None:
+        total = self.total
+        await self.clock.sleep(0.5)
+        self.total = 2 * total
+
+
+@pytest.mark.parametrize("is_regrouped", [True, False])
+def test_slips_that_groups_may_prevent(caplog: pytest.LogCaptureFixture, is_regrouped: bool) -> None:
+    """They are not told if a graph file changes the groups."""
+    warn_at_start(logging.getLogger("test"), object.__new__(Odometer), [], is_regrouped=is_regrouped)
+    assert ["meanwhile is lost" in text for text in caplog.messages] == [True] * (not is_regrouped)

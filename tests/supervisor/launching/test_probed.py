@@ -29,6 +29,13 @@ def test_slips_are_told_once() -> None:
     assert slips_in(found) == slips_in(interfaces(["graphflow.nodes.talker:Talker"])) == []
 
 
+def test_slips_that_a_graph_file_may_prevent() -> None:
+    """They are left out for classes whose groups it changes."""
+    data: Any = {"a:A": {"slips": ["x"], "slips_in_groups": ["y"]}}
+    assert slips_in(data) == ["x", "y"]
+    assert slips_in(data, ["a:A"]) == ["x"]
+
+
 def talker_params(told: dict[str, dict[str, list[dict[str, str]]]]) -> list[str]:
     """The names of its parameters in the JSON."""
     return [param["name"] for param in told["graphflow.nodes.talker:Talker"]["params"]]

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.bindings import bindings_of
 from graphflow.analysis.syntax import FunctionNode, walk
 from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import Group
 from graphflow.runtime.declarations.handlers import Handler
 
 _CONCURRENT = ("subscription", "service")
@@ -32,10 +34,23 @@ class _Write(NamedTuple):
     """The line of the `await`."""
 
 
-def lost_updates(cls: type, definition: ast.ClassDef, module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Find the lines of a class that lose an update; each comes with its correction."""
-    handlers = declared.handlers(cls)
-    methods = {m.name: m for m in definition.body if isinstance(m, FunctionNode) and m.name in handlers}
+def lost_updates(cls: type, owner: type, definition: ast.ClassDef, module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Find the lines of a class that lose an update; each comes with its correction.
+
+    Args:
+        cls: The class of the nodes.
+        owner: The class itself, or the parent of it that `definition` defines.
+    """
+    handlers = {
+        name: replace(handler, group=_group_of(cls, handler)) for name, handler in declared.handlers(cls).items()
+    }
+    methods = {
+        method.name: method
+        for method in definition.body
+        if isinstance(method, FunctionNode)
+        and method.name in handlers
+        and getattr(cls, method.name) is vars(owner).get(method.name)  # a subclass may override it
+    }
     for name, method in methods.items():
         if not isinstance(method, ast.AsyncFunctionDef) or _keeps_others_out(method):
             continue
@@ -51,6 +66,11 @@ def lost_updates(cls: type, definition: ast.ClassDef, module: ast.Module) -> Ite
             elif _overlaps_itself(handlers[name]):
                 way = f"read {shown} after the await, or give its group a limit of 1"
                 yield write.line, f"{why}, so that a change by another run of {name} meanwhile is lost; {way}"
+
+
+def _group_of(cls: type, handler: Handler) -> Group | None:
+    default: Group | None = getattr(cls, "default_group", None)
+    return None if handler.kind == "task" else handler.group or default
 
 
 def _group(handler: Handler) -> str:

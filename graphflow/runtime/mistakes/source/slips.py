@@ -53,29 +53,48 @@ def slips(cls: type) -> tuple[str, ...]:
         return ()
 
 
-def _slips(cls: type) -> Iterator[str]:
+@cache
+def slips_in_groups(cls: type) -> tuple[str, ...]:
+    """Return the same for slips that the groups of the class do not prevent; a graph file's groups may."""
+    try:
+        return tuple(
+            f"{Place(file, line)}: {text}"
+            for parent, definition, file in _sources(cls)
+            for line, text in lost_updates(cls, parent, definition, syntax_of(file).module)
+        )
+    except Exception as error:  # as above
+        logger.debug("the source of %s was not checked", cls.__name__, exc_info=error)
+        return ()
+
+
+def _sources(cls: type) -> Iterator[tuple[type, ast.ClassDef, str]]:
+    """Yield a class and its bases in user code, each with its source and file."""
     for parent in cls.__mro__:
         source = definition_of(parent) if is_users_module(parent.__module__) else None
         if source is not None:
-            definition, file = source
-            mentioned = words_in(syntax_of(file).module)
-            space = vars(sys.modules[parent.__module__])
-            yield from _idle_methods(parent, definition, file, mentioned, space)
-            yield from _stray_attributes(cls, definition, file, mentioned)
-            yield from _replaced(cls, definition, file, space)
-            yield from _changed_in_place(cls, definition, file)
-            for method in definition.body:
-                if isinstance(method, FunctionNode):
-                    handler = declared.handlers(parent).get(method.name)
-                    yield from wrong_fields(method, handler, file, space)
-            found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
-            found = (*found, *ineffective(definition), *overridden(parent, definition))
-            found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
-            module = syntax_of(file).module
-            found = (*found, *never_equal(cls, parent, definition, module), *lost_updates(parent, definition, module))
-            of_file = (*compared_nanoseconds(module), *mixed_angles(module))
-            found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
-            yield from (f"{Place(file, line)}: {text}" for line, text in found)
+            yield parent, *source
+
+
+def _slips(cls: type) -> Iterator[str]:
+    for parent, definition, file in _sources(cls):
+        mentioned = words_in(syntax_of(file).module)
+        space = vars(sys.modules[parent.__module__])
+        yield from _idle_methods(parent, definition, file, mentioned, space)
+        yield from _stray_attributes(cls, definition, file, mentioned)
+        yield from _replaced(cls, definition, file, space)
+        yield from _changed_in_place(cls, definition, file)
+        for method in definition.body:
+            if isinstance(method, FunctionNode):
+                handler = declared.handlers(parent).get(method.name)
+                yield from wrong_fields(method, handler, file, space)
+        found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
+        found = (*found, *ineffective(definition), *overridden(parent, definition))
+        found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
+        module = syntax_of(file).module
+        found = (*found, *never_equal(cls, parent, definition, module))
+        of_file = (*compared_nanoseconds(module), *mixed_angles(module))
+        found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
+        yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
 
 def _is_in(definition: ast.ClassDef, line: int) -> bool:

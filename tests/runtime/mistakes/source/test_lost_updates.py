@@ -51,7 +51,7 @@ def _told(folder: Path, code: str) -> list[str]:
     spec.loader.exec_module(space)
     module = ast.parse(code)
     (definition,) = (item for item in module.body if isinstance(item, ast.ClassDef))
-    return [text for _, text in lost_updates(space.Odometer, definition, module)]
+    return [text for _, text in lost_updates(space.Odometer, space.Odometer, definition, module)]
 
 
 def _code(*lines: str) -> str:
@@ -108,6 +108,7 @@ SPEND = "@timer(0.1)\n    async def spend(self):\n        self.total -= 1"
             "    self.total = total + 1",
         ),
         LOSES.replace("(0.1)", "(0.1, group=state)").replace('"amount")', '"amount", group=state)'),
+        LOSES.replace("state = Group(1)", "default_group = Group(1)"),
         LOSES.replace("self.total -= 1", "if self.add: return\n        self.total -= 1"),
         LOSES.replace("self.total -= 1", "if self.add:\n            self.total -= 1"),
         LOSES.replace("self.total -= 1", "self.total = 5"),
@@ -129,3 +130,20 @@ def test_runs_of_one_handler(tmp_path: Path, group: str, is_told: bool) -> None:
     assert [text.partition("so that ")[2].partition(";")[0] for text in told] == (
         ["a change by another run of heard meanwhile is lost"] * is_told
     )
+
+
+def test_a_subclass_that_overrides_one(tmp_path: Path) -> None:
+    """It has its parent's other handlers only."""
+    code = LOSES + "\n\nclass Odometer(Odometer):\n    async def spend(self):\n        pass\n"
+    name = f"lost_{next(_numbers)}"
+    (tmp_path / f"{name}.py").write_text(code)
+    spec = importlib.util.spec_from_file_location(name, tmp_path / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    sys.modules[name] = space = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(space)
+    module = ast.parse(code)
+    parent = next(item for item in module.body if isinstance(item, ast.ClassDef))
+    child, owner = space.Odometer, space.Odometer.__mro__[1]
+    assert list(lost_updates(child, owner, parent, module)) == []
+    assert len([*lost_updates(owner, owner, parent, module)]) == 1
