@@ -47,4 +47,14 @@ def _unused(module: ast.Module) -> Iterator[ast.Call]:
             case ast.FunctionDef(name="main", body=[*_, ast.Expr(value=ast.Call() as made)]):
                 yield made
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as made) if name not in read:
-                yield made
+                if not _goes_on(module, node.lineno):
+                    yield made
+
+
+def _goes_on(module: ast.Module, line: int) -> bool:
+    """Whether a program prints or asserts something after a line: it may only have tried whether a node can be made."""
+    return any(
+        isinstance(node, ast.Assert) or (isinstance(node, ast.Call) and last_name(node.func) == "print")
+        for node in ast.walk(module)
+        if isinstance(node, (ast.Assert, ast.Call)) and node.lineno > line
+    )

@@ -23,6 +23,7 @@ RUN = "talk.py:{}: {} makes a node and does not run it; write: graphflow.run(Tal
         ("node = Talk()\nprint(node.rate)\n", ""),
         ("Talk()\nprint('it can be made')\n", ""),
         ("print(Talk())\n", ""),
+        ("node = Talk()\nprint('it can be made')\n", ""),
         ("Other()\n", ""),
         ("assert Talk().add(1, 2) == 3\n", ""),
         ("class Test(TestCase):\n    def test_it(self):\n        node = Talk()\n", ""),

@@ -48,7 +48,10 @@ def _compared(module: ast.Module) -> Iterator[tuple[int, str]]:
         for left, order, right in zip(sides, node.ops, sides[1:], strict=False):
             for measured, limit in ((left, right), (right, left)) if isinstance(order, _ORDERS) else ():
                 number = _small(limit, bindings, parents, is_exact="abs(" not in ast.unparse(measured))
-                if number is not None and _kind(measured, bindings, parents) == "nanoseconds":
+                if number is None or _kind(measured, bindings, parents) != "nanoseconds":
+                    continue
+                # Two stamps may be the same but for a few nanoseconds.
+                if isinstance(number, float) or _kind(measured, bindings, parents, has_stamps=False) == "nanoseconds":
                     yield node.lineno, _text(measured, limit, number)
                     break
 
@@ -83,11 +86,14 @@ def _small(limit: ast.expr, bindings: Bindings, parents: Sequence[ast.AST], *, i
     return None
 
 
-def _kind(expression: ast.expr, bindings: Bindings, parents: Sequence[ast.AST], depth: int = 0) -> Kind:
+def _kind(
+    expression: ast.expr, bindings: Bindings, parents: Sequence[ast.AST], depth: int = 0, *, has_stamps: bool = True
+) -> Kind:
     """Return what an expression is, as far as it is seen to come from a clock.
 
     Args:
         depth: The number of names that have been followed.
+        has_stamps: Whether the stamps of messages count.
     """
     match expression:
         case ast.Call(func=function) if last_name(function) in _COUNTS:
@@ -95,21 +101,29 @@ def _kind(expression: ast.expr, bindings: Bindings, parents: Sequence[ast.AST], 
         case ast.Call(func=ast.Attribute(value=owner, attr="now")) if "clock" in ast.unparse(owner).lower():
             return "time"
         case ast.Call(func=ast.Attribute(value=owner, attr="from_msg")) if last_name(owner) in ("Time", "Duration"):
-            return "time" if last_name(owner) == "Time" else "duration"
+            return "" if not has_stamps else "time" if last_name(owner) == "Time" else "duration"
         case ast.Call(func=ast.Name(id=name), args=[first, *rest]) if name in _SAME and (
             name in ("min", "max") or not rest
         ):
-            return "nanoseconds" if _kind(first, bindings, parents, depth) == "nanoseconds" else ""
+            return (
+                "nanoseconds" if _kind(first, bindings, parents, depth, has_stamps=has_stamps) == "nanoseconds" else ""
+            )
         case ast.Attribute(value=value, attr="nanoseconds"):
-            return "nanoseconds" if _kind(value, bindings, parents, depth) else ""
+            return "nanoseconds" if _kind(value, bindings, parents, depth, has_stamps=has_stamps) else ""
         case ast.BinOp(left=left, op=ast.Sub(), right=right):
-            kinds = {_kind(left, bindings, parents, depth), _kind(right, bindings, parents, depth)}
+            kinds = {
+                _kind(left, bindings, parents, depth, has_stamps=has_stamps),
+                _kind(right, bindings, parents, depth, has_stamps=has_stamps),
+            }
             if "nanoseconds" in kinds:
                 return "nanoseconds"
             return "duration" if "time" in kinds else ""
         case ast.Name() | ast.Attribute() if depth < 4 and (isinstance(expression, ast.Name) or is_own(expression)):
             values = [v for v in bindings.of(expression, parents) if not _is_unset(v.expression)]
-            kinds = {_kind(value, bindings, around, depth + 1) if value is not None else "" for value, around in values}
+            kinds = {
+                _kind(value, bindings, around, depth + 1, has_stamps=has_stamps) if value is not None else ""
+                for value, around in values
+            }
             return next(iter(kinds)) if len(kinds) == 1 else ""
     return ""
 

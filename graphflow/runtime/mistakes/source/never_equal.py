@@ -102,7 +102,7 @@ def _unfit(shown: str, parameter: Parameter, found: _Comparison) -> str:
         if any(isinstance(constant, str) or constant is None for constant in constants):
             return ""
         return f"{shown} is a str, which never equals {listed}; compare it with a text, in quotes"
-    if parameter.choices and not set(constants) & set(parameter.choices):
+    if parameter.choices and not set(constants) & {"", *parameter.choices}:  # "" stands for none, and does no harm
         choices = " or ".join(map(repr, parameter.choices))
         near = nearest(str(constants[0]), parameter.choices) if len(constants) == 1 else None
         return f"{shown} is {choices}, and never {listed}" + (f"; did you mean {near!r}?" if near is not None else "")

@@ -81,6 +81,7 @@ def test_nanoseconds_and_seconds(line: str, told: str) -> None:
         "if age.seconds > 0.5: go()",
         "if abs(elapsed) <= 5: go()",
         "assert elapsed < 500",
+        "if (Time.from_msg(m.stamp) - Time.from_msg(n.stamp)).nanoseconds < 100: go()",
         "if time.monotonic() - self.seconds > 0.5: go()",
         "if start - self.pause > 0.5: go()",
         "if start.nanoseconds < 500: go()",

@@ -90,6 +90,7 @@ def test_comparisons_that_never_hold(line: str, told: str) -> None:
         "self.mode == 'slow'",
         "self.mode in ('fast', 'turbo')",
         "self.mode == other",
+        "self.mode == ''",
         "self.frame == 'odom'",
         "self.frame == None",
         "self.tags == ['a']",
