@@ -61,7 +61,7 @@ def lost_updates(cls: type, owner: type, definition: ast.ClassDef, module: ast.M
             why = f"{shown} is set from a value that was read before the await in line {write.awaited}"
             if (other := _other(name, write.attribute, methods, handlers)) is not None:
                 other_name, line = other
-                way = f"read {shown} after the await, or put both in one group: group={_group(handlers[name])}"
+                way = f"read {shown} after the await, or put both in one group: {_group(handlers[name])} on both"
                 yield write.line, f"{why}, so that a change by {other_name} (line {line}) meanwhile is lost; {way}"
             elif _overlaps_itself(handlers[name]):
                 way = f"read {shown} after the await, or give its group a limit of 1"
@@ -74,8 +74,12 @@ def _group_of(cls: type, handler: Handler) -> Group | None:
 
 
 def _group(handler: Handler) -> str:
-    is_exclusive = handler.group is not None and handler.group.limit == 1
-    return handler.group.name if is_exclusive and handler.group is not None else "state, with state = Group(1)"
+    group = handler.group
+    return (
+        f"group={group.name}"
+        if group is not None and group.limit == 1
+        else "state = Group(1) in the class, group=state"
+    )
 
 
 def _keeps_others_out(method: FunctionNode) -> bool:

@@ -35,7 +35,8 @@ class Odometer(Node):
 CALL = "await self.add.call(AddTwoInts.Request(a={}, b=m.data))"
 TOLD = (
     "self.total is set from a value that was read before the await in line {}, so that a change by spend (line 14) "
-    "meanwhile is lost; read self.total after the await, or put both in one group: group=state, with state = Group(1)"
+    "meanwhile is lost; read self.total after the await, or put both in one group: state = Group(1) in the class, "
+    "group=state on both"
 )
 _numbers = itertools.count()
 
