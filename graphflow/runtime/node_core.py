@@ -18,7 +18,7 @@ from graphflow.errors import ClosedError, DeclarationError, ParameterError, Plac
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
-from graphflow.interface import OnError
+from graphflow.interface import COMMON_SERVICES, OnError
 from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs import registry
 from graphflow.names import Resolver
@@ -65,11 +65,7 @@ class NodeCore:
     """
 
     def __init__(
-        self,
-        instance: Instance,
-        names: Resolver,
-        overrides: Mapping[str, tuple[object, str]],
-        concurrency: Regrouping,
+        self, instance: Instance, names: Resolver, overrides: Mapping[str, tuple[object, str]], concurrency: Regrouping
     ) -> None:
         cls = type(instance)
         self.instance = instance
@@ -163,9 +159,10 @@ class NodeCore:
 
     @property
     def unopened(self) -> list[Unopened]:
-        found = [Unopened(part.handler_title, _services(part)) for part in self._late or ()]
+        if self._late is None:
+            return []
         tasks = [Unopened(f"task {n}") for n, h in declared.handlers(type(self.instance)).items() if h.kind == "task"]
-        return [*found, *tasks] if self._late is not None else []
+        return [*(Unopened(part.handler_title, _services(part)) for part in self._late), *tasks]
 
     def serves(self, service: str) -> bool:
         return any(e.kind is Kind.SERVICE and e.name == service for e in self.endpoints)
@@ -177,8 +174,8 @@ class NodeCore:
 
     def statistics(self) -> dict[str, dict[str, object]]:
         """Return counters since the start, by the name of each handler, endpoint and group."""
-        found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
-        return found | {part.title: part.statistics() for part in self.parts if part.title}
+        groups = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
+        return groups | {part.title: part.statistics() for part in self.parts if part.title}
 
     # construction
 
@@ -194,13 +191,12 @@ class NodeCore:
                 self.serve(name, f"rcl_interfaces/srv/{type_name}", callback, PARAMETERS)
             self._parameter_events = self.add(ParameterEvents(self, self.parameters))
             if self.parameters.get("start_type_description_service"):
-                descriptions = TypeDescriptions(lambda: self.endpoints)
-                type_name = "type_description_interfaces/srv/GetTypeDescription"
-                self.serve("get_type_description", type_name, descriptions.get, SERVICES)
+                get = TypeDescriptions(lambda: self.endpoints).get
+                self.serve("get_type_description", COMMON_SERVICES["get_type_description"], get, SERVICES)
         if logger_service:
             levels = LoggerLevels(self.log)
-            self.serve("get_logger_levels", "rcl_interfaces/srv/GetLoggerLevels", levels.get, SERVICES)
-            self.serve("set_logger_levels", "rcl_interfaces/srv/SetLoggerLevels", levels.set, SERVICES)
+            for name, answer in (("get_logger_levels", levels.get), ("set_logger_levels", levels.set)):
+                self.serve(name, COMMON_SERVICES[name], answer, SERVICES)
         self._binding.bind()
 
     def serve(self, name: str, type_name: str, callback: Callable[[Any], object], qos: Qos) -> None:

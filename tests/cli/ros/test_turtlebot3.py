@@ -1,0 +1,30 @@
+"""The commands of courses that use a TurtleBot3."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cases import slow
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+
+@slow
+@pytest.mark.parametrize("name", ["turtlebot3_world", "turtlebot3_house", "empty_world"])
+def test_launching_a_world(machine: Machine, name: str) -> None:
+    """The robot of TURTLEBOT3_MODEL is there, with its topics."""
+    machine.env["TURTLEBOT3_MODEL"] = "waffle_pi"
+    up = machine.start("launch", "turtlebot3_gazebo", f"{name}.launch.py")
+    up.wait_for("is up: 1 node")
+    up.wait_for(": waffle")
+    topics = machine.look("topic", "list")
+    assert all(f"/{topic}\n" in topics for topic in ("scan", "odom", "cmd_vel", "imu", "joint_states", "tf", "clock"))
+    assert "frame_id: base_scan" in machine.look("topic", "echo", "/scan", "--once", "--no-arr")
+    assert up.end() == 0
+
+
+def test_teleoperation_without_a_terminal(machine: Machine) -> None:
+    """It says where to run it."""
+    told = machine.run("run", "turtlebot3_teleop", "teleop_keyboard", code=1)
+    assert "run teleop_keyboard in its own terminal" in told
