@@ -1,4 +1,7 @@
-"""Messages that are published once, before their first subscription opens."""
+"""Messages that are published once, before their first subscription opens.
+
+The publishers have names that no other test uses: a module that mentions one might publish with it.
+"""
 
 from __future__ import annotations
 
@@ -18,19 +21,19 @@ LATCHED = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
 class MapServer(Node):
     """Publishes the map once."""
 
-    chart = Publisher(String, "map", 1)
+    floor_chart = Publisher(String, "map", 1)
 
     async def on_start(self) -> None:
-        self.chart.publish(String(data="the map"))
+        self.floor_chart.publish(String(data="the map"))
 
 
 class Latched(Node):
     """Keeps it."""
 
-    keeping = Publisher(String, "map", LATCHED)
+    kept_chart = Publisher(String, "map", LATCHED)
 
     async def on_start(self) -> None:
-        self.keeping.publish(String(data="the map"))
+        self.kept_chart.publish(String(data="the map"))
 
 
 class Parts(Node):
@@ -65,34 +68,34 @@ class Stopping(Node):
 class Patient(Node):
     """Looks whether somebody hears it."""
 
-    slow = Publisher(String, "map", 1)
+    slow_chart = Publisher(String, "map", 1)
 
     async def on_start(self) -> None:
-        self.slow.publish(String(data="loading"))
-        self.log.debug("%d", self.slow.get_subscription_count())
+        self.slow_chart.publish(String(data="loading"))
+        self.log.debug("%d", self.slow_chart.get_subscription_count())
 
 
 class Each(Node):
     """Publishes in a loop."""
 
-    each = Publisher(String, "map", 1)
+    each_chart = Publisher(String, "map", 1)
 
     @task
     async def send(self) -> None:
         for word in ("a",):
-            self.each.publish(String(data=word))
+            self.each_chart.publish(String(data=word))
 
 
 class Two(Node):
     """Publishes now and then."""
 
-    two = Publisher(String, "map", 1)
+    two_charts = Publisher(String, "map", 1)
 
     @task
     async def send_both(self) -> None:
-        self.two.publish(String(data="loading"))
+        self.two_charts.publish(String(data="loading"))
         await self.clock.sleep(60.0)
-        self.two.publish(String(data="map"))
+        self.two_charts.publish(String(data="map"))
 
 
 class Planner(Node):
@@ -119,7 +122,7 @@ async def test_a_map_before_the_planner(graph: Graph, caplog: Caplog) -> None:
     """Is reported once, with the line that publishes it and the profile that keeps it."""
     await run(graph, MapServer(), Planner(), Planner("other"))
     assert told(caplog) == [
-        "/map: the only message was published before the subscription of /planner opened (test_unkept.py:24), and it "
+        "/map: the only message was published before the subscription of /planner opened (test_unkept.py:27), and it "
         "is not kept for it; give both Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)"
     ]
 
@@ -129,7 +132,7 @@ async def test_a_map_in_parts(graph: Graph, caplog: Caplog) -> None:
     await run(graph, Parts(), Planner())
     [text] = told(caplog)
     assert "all 2 messages were published before" in text
-    assert "(test_unkept.py:45, test_unkept.py:49), and they are not kept for it; give both Qos(depth=2, " in text
+    assert "(test_unkept.py:48, test_unkept.py:52), and they are not kept for it; give both Qos(depth=2, " in text
 
 
 @pytest.mark.parametrize("kind", [Latched, Stopping, Patient, Each, Two])
