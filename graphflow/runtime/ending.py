@@ -74,10 +74,7 @@ def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[
         if now - first > SAME_SIGNAL:
             say("ended without cleanup: it was asked twice")
             os._exit(1)
-        if not loop.is_closed():
-            loop.call_soon_threadsafe(stop.set)
-        if not limit.is_started:  # a second signal may arrive while the thread is starting
-            limit.start(number)
+        _begin_to_end(loop, stop, limit, number)
 
     # Not loop.add_signal_handler: its callbacks would wait for a handler that blocks the loop.
     former = {number: signal.signal(number, caught) for number in _stop_signals()}
@@ -98,6 +95,13 @@ def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[
             signal.signal(number, handler)
 
     return restore
+
+
+def _begin_to_end(loop: asyncio.AbstractEventLoop, stop: asyncio.Event, limit: StopLimit, number: int) -> None:
+    if not loop.is_closed():
+        loop.call_soon_threadsafe(stop.set)
+    if not limit.is_started:  # a second signal may arrive while the thread is starting
+        limit.start(number)
 
 
 def _warn_of_replaced(others: Mapping[signal.Signals, object]) -> None:

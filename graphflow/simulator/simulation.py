@@ -211,6 +211,7 @@ class Simulation:
 
     def __init__(self, world: World, models: Mapping[str, Robot], seed: int = 0) -> None:
         self._world, self._seed, self._spawned = world, seed, 0
+        self._former: tuple[mujoco.MjModel | None, mujoco.MjData | None] = None, None
         self.robots: dict[str, SimulatedRobot] = {}
         for placed in world.robots:
             self._add(placed, models[placed.model])
@@ -230,8 +231,7 @@ class Simulation:
 
     def _compile(self) -> None:
         """Make a model of the world and its robots; what moves goes on from where it is."""
-        before: mujoco.MjData | None = getattr(self, "_data", None)
-        former: mujoco.MjModel | None = getattr(self, "_model", None)
+        former, before = self._former
         text = model(self._world, [(robot.placed, robot.robot) for robot in self.robots.values()])
         try:
             self._model = mujoco.MjModel.from_xml_string(text)
@@ -246,6 +246,7 @@ class Simulation:
             self._data.time = before.time
             _copy_state(former, before, self._model, self._data)
         mujoco.mj_forward(self._model, self._data)
+        self._former = self._model, self._data
 
     def tick(self) -> None:
         """Let `TICK` seconds pass."""

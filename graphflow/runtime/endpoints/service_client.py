@@ -251,14 +251,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         future: Future[Answer] = self.host.context.loop.create_future()
 
         def answered(answer: Answer | None) -> None:
-            if future.done():
-                return
-            if answer is None:
-                future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
-            elif answer.is_error:
-                future.set_exception(error_of(answer.payload, self.name))
-            elif sequence_of(answer) == sequence:
-                future.set_result(answer)
+            if not future.done():
+                self._answer(future, sequence, answer)
 
         def expired() -> CallTimeout:
             return CallTimeout(f"{self.name} did not answer within {timeout:g} s")
@@ -288,6 +282,15 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         finally:
             self._pending.discard(future)
             deadlines.discard(future)
+
+    def _answer(self, future: Future[Answer], sequence: int, answer: Answer | None) -> None:
+        """End a call with its answer; None if the server has gone away."""
+        if answer is None:
+            future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
+        elif answer.is_error:
+            future.set_exception(error_of(answer.payload, self.name))
+        elif sequence_of(answer) == sequence:
+            future.set_result(answer)
 
     async def _explain(self, error: CallTimeout, call: str, timeout: float) -> None:
         """Add to the error where the server is, if it is graphflow's; not to errors of short calls, as of polls."""

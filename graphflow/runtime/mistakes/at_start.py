@@ -17,9 +17,10 @@ def warn_at_start(
         others: The full names and the instances of the other nodes of its process.
         is_regrouped: Whether a graph file changes its groups.
     """
-    found = slips(type(instance))  # type: ignore[arg-type]  # it can be hashed
+    cls: type = type(instance)
+    found = slips(cls)
     if not is_regrouped:
-        found = (*found, *slips_in_groups(type(instance)))  # type: ignore[arg-type]
+        found = (*found, *slips_in_groups(cls))
     for slip in found:
         log.warning("%s", slip)
     if others:

@@ -243,8 +243,9 @@ def interfaces(class_paths: list[str], *, with_slips: bool = False) -> Interface
                 from graphflow.runtime.mistakes.source.foreseen import check_init, foreseen  # nodes do not need it
 
                 check_init(cls)
-                found[path]["slips"] = [*slips(cls), *foreseen(cls)]  # type: ignore[arg-type] # it can be hashed
-                found[path]["slips_in_groups"] = [*slips_in_groups(cls)]  # type: ignore[arg-type]
+                kind: type = cls  # the type checker knows that one can be hashed, but not a Node's class
+                found[path]["slips"] = [*slips(kind), *foreseen(cls)]
+                found[path]["slips_in_groups"] = [*slips_in_groups(kind)]
         except GraphflowError as error:
             found[path] = {"problem": str(error)}
     return found

@@ -200,6 +200,15 @@ OF_VALUES = (
 """The table for ValueErrors, which rarely concern a node."""
 
 
+def _of_kind(error: BaseException, line: str) -> str:
+    """Return advice that the error's own class, or a message class in place of a message, calls for."""
+    if isinstance(error, NameError) and (way := owner_of(error)):
+        return way
+    if isinstance(error, TypeError) and (way := text_for_number(error, line)):
+        return way
+    return class_in_place(error)
+
+
 def remark_on(error: BaseException) -> str:
     """Return advice on the line that raised an error; "" if there is none."""
     if isinstance(error, TimeoutError) and not str(error):
@@ -213,11 +222,7 @@ def remark_on(error: BaseException) -> str:
     text = str(error)
     file, _, number = place_in(error).rpartition(":")
     line = linecache.getline(file, int(number)) if number else ""
-    if isinstance(error, NameError) and (way := owner_of(error)):
-        return way
-    if isinstance(error, TypeError) and (way := text_for_number(error, line)):
-        return way
-    if way := class_in_place(error):
+    if way := _of_kind(error, line):
         return way
     for row in OF_VALUES if isinstance(error, ValueError) else REMARKS:
         found = re.search(row.text, text)

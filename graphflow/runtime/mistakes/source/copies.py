@@ -32,7 +32,8 @@ def kept(node: object, name: str, old: object, new: object) -> str:
     Args:
         name: The parameter, which is now set from `old` to `new`.
     """
-    copy = _copy(type(node), name)  # type: ignore[arg-type]  # it can be hashed
+    cls: type = type(node)
+    copy = _copy(cls, name)
     if copy is None or new is None or old == new or vars(node).get(copy.attribute) != old:
         return ""
     return (

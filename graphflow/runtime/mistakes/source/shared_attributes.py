@@ -74,7 +74,8 @@ def _is_related(cls: type, other: type) -> bool:
 
 
 def _shared(instance: object, others: Iterable[tuple[str, object]]) -> Iterator[str]:
-    for shared in _changed(type(instance)):  # type: ignore[arg-type]  # it can be hashed
+    cls: type = type(instance)
+    for shared in _changed(cls):
         for name, other in others:
             if _is_its_own(instance, shared) and _is_its_own(other, shared):
                 kind = type(shared.value).__name__

@@ -20,6 +20,28 @@ def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space
         handler: What the class declares the method to be.
     """
     bound = _received(method, handler, space)
+    times = _meanings(method, bound, space)
+    # A name with several meanings, or bound by a loop, is treated as unknown.
+    made = {
+        name: type_
+        for name, types in bound.items()
+        if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
+    }
+    for node, parents in walk(method):
+        match node:
+            case ast.Attribute(ctx=ast.Load(), attr=field) if type_ := _type_of(node.value, made):
+                if not (_has(type_, field) or any(map(_expects, parents))):
+                    yield f"{Place(file, node.lineno)}: {no_field(type_, field)}"
+            case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
+                text = _misfit(made[name], field, value)
+                if text:
+                    yield f"{Place(file, node.lineno)}: {text}"
+
+
+def _meanings(
+    method: FunctionNode, bound: dict[str, set[type[Message] | None]], space: dict[str, object]
+) -> Counter[str]:
+    """Count the meanings of each name beside messages that are assigned to it, which are added to `bound`."""
     times: Counter[str] = Counter()
     for node in ast.walk(method):
         match node:
@@ -37,21 +59,7 @@ def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space
                 times.update(argument.arg for argument in ast.walk(node.args) if isinstance(argument, ast.arg))
             case ast.Call(func=ast.Name(id="isinstance" | "hasattr"), args=[ast.Name(id=name), *_]):
                 times[name] += 1  # its type is looked at
-    # A name with several meanings, or bound by a loop, is treated as unknown.
-    made = {
-        name: type_
-        for name, types in bound.items()
-        if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
-    }
-    for node, parents in walk(method):
-        match node:
-            case ast.Attribute(ctx=ast.Load(), attr=field) if type_ := _type_of(node.value, made):
-                if not (_has(type_, field) or any(map(_expects, parents))):
-                    yield f"{Place(file, node.lineno)}: {no_field(type_, field)}"
-            case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
-                text = _misfit(made[name], field, value)
-                if text:
-                    yield f"{Place(file, node.lineno)}: {text}"
+    return times
 
 
 def _type_made(value: ast.expr, space: dict[str, object]) -> type[Message] | None:
