@@ -31,6 +31,7 @@ VIEWS: Mapping[str, ViewForm] = {
     "params": ViewForm("node"),
     "groups": ViewForm("node"),
     "turtle": ViewForm("turtle"),
+    "map": ViewForm("topic"),
     "source": ViewForm("file:line", needs_it=True),
     "crash": ViewForm("node", needs_it=True),
     "top": ViewForm(),

@@ -123,6 +123,14 @@ class TransformBuffer(AttributeHints):
         made = TopicSubscription(self._owner, TFMessage, name, qos, callback, label, takes_info=True)
         self._subscriptions.append(self._owner.add(made))
 
+    def close(self) -> None:
+        """Stop listening, and withdraw the publishers; for a buffer that does not live as long as its node."""
+        parts: list[TopicSubscription[TFMessage] | TopicPublisher[TFMessage] | None]
+        parts = [*self._subscriptions, self._publisher, self._static_publisher]
+        for part in parts:
+            if part is not None:
+                part.close()
+
     def __repr__(self) -> str:
         return f"<transforms of {self._owner.full_name}, {len(self.frames)} frames>"
 
