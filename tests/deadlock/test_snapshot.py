@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import sys
 import threading
 from collections.abc import Awaitable, Callable
@@ -529,9 +528,14 @@ async def test_a_loop_that_polls(
         node.there = True
 
     def watch() -> None:
-        looks = type(node).look.__code__
-        while sys._current_frames()[loops_thread].f_code is not looks:  # elsewhere, it would do something else
-            os.sched_yield()
+        looks, before = type(node).look.__code__, None
+        while True:  # until it stands in `acquire`; on its way there, it would be seen doing something else
+            frame = sys._current_frames()[loops_thread]
+            now = frame.f_code, frame.f_lasti
+            if now == before and frame.f_code is looks:
+                break
+            before = now
+            threading.Event().wait(0.01)  # not time.sleep, which the test replaces
         try:
             found.append(scene.snapshot.take())
         finally:

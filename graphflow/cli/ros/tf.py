@@ -30,7 +30,7 @@ PATIENCE = 5.0
 
 @click.group(cls=GraphVerbs)
 def tf() -> None:
-    """Show the tree of frames and the transforms between them; publish static ones."""
+    """Show transforms between frames; publish static ones."""
 
 
 _time = click.option(
