@@ -9,7 +9,8 @@ Counted in the package, stubs and generated definitions left out; `native` is al
 - `any`: uses of `Any` in annotations, per thousand lines.
 - `broad excepts`: handlers of `Exception`, `BaseException` or everything; `unexplained` are those without a comment.
 - `probes`: calls of `getattr` with a constant name, and of `hasattr`.
-- `private`: accesses to an underscored attribute of anything but `self`, `cls` or a class of the same file.
+- `private`: accesses to an underscored attribute of anything but `self`, `cls`, `super()`, a class of the same file or
+  a name that is annotated with one or bound to its constructor; `DOCUMENTED` names do not count.
 - `complex`: functions of a cyclomatic complexity above 10; none may be above 15.
 - `ignores`: comments that turn off the type checker.
 - `lines`: lines of code, in thousands.
@@ -29,6 +30,8 @@ PROJECT = Path(__file__).parents[1]
 PACKAGE = PROJECT / "graphflow"
 BASELINE = Path(__file__).with_name("quality.json")
 BROAD = ("Exception", "BaseException")
+DOCUMENTED = {"_getframe", "_current_frames", "_exit", "_replace", "_asdict", "_make", "_fields"}
+"""Underscored names that the standard library documents for all to use, of `sys`, `os` and named tuples."""
 ON_TOP = 15
 """The highest cyclomatic complexity of a function."""
 
@@ -44,7 +47,7 @@ def counts_of(text: str) -> Counter[str]:
     found: Counter[str] = Counter()
     tree = ast.parse(text)
     lines = text.splitlines()
-    own = {node.name for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    own = _own_names(tree)
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and node.id == "Any":
             found["any"] += 1
@@ -55,10 +58,36 @@ def counts_of(text: str) -> Counter[str]:
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             found["probes"] += node.func.id == "hasattr" or (node.func.id == "getattr" and _is_text(node.args[1:2]))
         elif isinstance(node, ast.Attribute) and re.match(r"_[a-z]", node.attr):
-            found["private"] += not (isinstance(node.value, ast.Name) and node.value.id in ("self", "cls", *own))
+            found["private"] += node.attr not in DOCUMENTED and not _is_own(node.value, own)
     found["ignores"] = text.count("# type: ignore")
     found["lines"] = len(lines)
     return found
+
+
+def _own_names(tree: ast.Module) -> set[str]:
+    """The names by which a file refers to its own classes and their instances."""
+    classes = {node.name for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    found = {"self", "cls", *classes}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg) and node.annotation is not None and _is_of(node.annotation, classes):
+            found.add(node.arg)
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and _is_of(node.annotation, classes):
+            found.add(node.target.id)
+        elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and _is_of(node.value.func, classes):
+            found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+    return found
+
+
+def _is_of(annotation: ast.expr, classes: set[str]) -> bool:
+    """Whether an annotation is one of some classes, or that and `None`."""
+    names = {name.strip() for name in ast.unparse(annotation).strip("'").split("|")} - {"None"}
+    return bool(names) and names <= {"cls", *classes}
+
+
+def _is_own(value: ast.expr, own: set[str]) -> bool:
+    if isinstance(value, ast.Call):
+        return isinstance(value.func, ast.Name) and value.func.id == "super"
+    return isinstance(value, ast.Name) and value.id in own
 
 
 def _is_broad(handler: ast.ExceptHandler) -> bool:
