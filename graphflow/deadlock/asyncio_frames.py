@@ -74,6 +74,7 @@ ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)} - {"
 _TASK_GROUP_EXITS = tuple(
     getattr(asyncio.TaskGroup, name).__code__ for name in ("__aexit__", "_aexit") if hasattr(asyncio.TaskGroup, name)
 )
+# A coroutine that `asyncio.wait` awaits; as all underscored names of this file, it has no public counterpart.
 _WAIT = asyncio.tasks._wait.__code__  # type: ignore[attr-defined]
 _WAIT_FOR = asyncio.wait_for.__code__
 _CONDITION_WAIT = asyncio.Condition.wait.__code__

@@ -50,7 +50,7 @@ def evaluate(text: str, names: Mapping[str, Data]) -> Data:
     for kind in (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr):
         evaluator.nodes.pop(kind, None)
     # Only entries of mappings: by Python's attributes an expression would reach everything.
-    evaluator.nodes[ast.Attribute] = lambda node: _entry(evaluator._eval(node.value), node.attr)
+    evaluator.nodes[ast.Attribute] = lambda node: _entry(evaluator.eval(text, node.value), node.attr)
     try:
         ast.parse(text.strip(), mode="eval")  # simpleeval would accept a statement, too
         return _bounded(evaluator.eval(text.strip()))

@@ -87,6 +87,11 @@ class Part(AttributeHints, ABC):
         return ""
 
     @property
+    def calls(self) -> tuple[object, ...]:
+        """The callback, and the topic or the period of its calls; () without a callback."""
+        return ()
+
+    @property
     def endpoints(self) -> Sequence[Any]:
         """The part's endpoints."""
         return ()

@@ -111,7 +111,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     runner = pyfuncitem.funcargs["graphflow_runner"]
     assert isinstance(runner, asyncio.Runner)
     if inspect.iscoroutinefunction(pyfuncitem.obj):
-        runner.run(pyfuncitem.obj(**{name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}))
+        runner.run(pyfuncitem.obj(**{name: pyfuncitem.funcargs[name] for name in _fixtures(pyfuncitem).argnames}))
         return True
     generated = getattr(pyfuncitem.obj, "hypothesis", None)
     if generated is not None and inspect.iscoroutinefunction(test := generated.inner_test):
@@ -122,6 +122,11 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
 
         generated.inner_test = run
     return None
+
+
+def _fixtures(item: pytest.Function) -> Any:
+    """Return the arguments and fixtures of a test, for which pytest has no public name."""
+    return item._fixtureinfo
 
 
 def _limited(item: pytest.Function, test: Test) -> Test:
@@ -204,14 +209,15 @@ def _by_examples(item: pytest.Function, test: Test) -> Test:
     limited = _limited(item, test)
     if "graph" not in item.funcargs:
         return limited
-    fixtures = item._fixtureinfo.name2fixturedefs.items()
+    fixtures = _fixtures(item).name2fixturedefs.items()
     if users := [name for name, found in fixtures if found and "graph" in found[-1].argnames]:
         raise RuntimeError(
             f"each example has its own graph, which {users[0]!r} cannot use: start its nodes in the test"
         )
     from hypothesis import HealthCheck, settings
 
-    # Hypothesis refuses fixtures that are not reset for each example, and applying `settings` twice.
+    # Hypothesis refuses fixtures that are not reset for each example, and applying `settings` twice:
+    # hence the attribute in which it keeps them, which has no public name.
     decorated: Any = getattr(item.obj, "__func__", item.obj)
     given: Any = getattr(decorated, "_hypothesis_internal_use_settings", settings.default)
     allowed = [*given.suppress_health_check, HealthCheck.function_scoped_fixture]

@@ -298,7 +298,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         sent = ClientGoalHandle(self, goal)
         self._running.add(sent.goal_id)
         self._goals[sent.goal_id] = sent  # registered first: its status may arrive before the response
-        request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
+        request = self._send.request_class(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
         may_be_there = False
         try:
             if not self.server_is_ready():
@@ -335,7 +335,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         return answer.return_code == CancelCode.NONE and goal.goal_id in granted
 
     def _cancel_request(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
-        return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
+        return self._cancel.request_class(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
 
     async def leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         """Cancel a goal whose block exits, and briefly wait for its end, even if the caller is cancelled."""
@@ -392,7 +392,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
         """Return the response that reports a goal's end, however long it takes."""
-        request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+        request = self._get.request_class(goal_id={"uuid": list(goal.goal_id)})
         patience = RESULT_PATIENCE
         while True:
             try:
@@ -452,7 +452,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         await self.host.clock.sleep(LOST_GRACE)
         if not goal.done:
             with suppress(CallError, ClosedError):  # the following task keeps requesting
-                request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+                request = self._get.request_class(goal_id={"uuid": list(goal.goal_id)})
                 await self._take(goal, await self._get.call(request))
 
     def _in_background(self, work: Coroutine[object, object, None]) -> asyncio.Task[None]:

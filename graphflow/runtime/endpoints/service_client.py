@@ -99,7 +99,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self.runner: Runner | None = None
         """Runs the deliveries of responses that wait for a slot of the client's group."""
         service = registry.service_schema(type_.NAME)
-        self._request: type[Any] = registry.interface_class(service.request.name)
+        self.request_class: type[Any] = registry.interface_class(service.request.name)
+        """The class of the type's requests."""
         self._requests, self._responses = registry.codec(service.request.name), registry.codec(service.response.name)
         self._sequence = 0
         self._service_events = ServiceEvents(host, type_, name)
@@ -207,10 +208,12 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             DecodeError: The response is malformed.
             WrongThread: This is not the event loop's thread.
         """
-        if request.__class__ is not self._request:
-            wanted = self._request.__qualname__
+        if request.__class__ is not self.request_class:
+            wanted = self.request_class.__qualname__
             given = getattr(request, "SCHEMA", None)
-            fields = [f.name for f in self._request.SCHEMA.fields if given is not None and str(f.type) == given.name]
+            fields = [
+                f.name for f in self.request_class.SCHEMA.fields if given is not None and str(f.type) == given.name
+            ]
             way = f"{wanted.replace('_', '.')}({f'{fields[0]}=' if len(fields) == 1 else ''}...)"
             raise EncodeError(f"{self.name} takes {wanted}, not {request!r}; write {way}")
         self.host.context.refuse_other_threads(

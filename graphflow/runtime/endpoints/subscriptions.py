@@ -102,6 +102,10 @@ class TopicSubscription(Endpoint, Generic[M]):
     def handler_title(self) -> str:
         return title_of("subscription", self._label)
 
+    @property
+    def calls(self) -> tuple[object, ...]:
+        return self._callback, self.name
+
     def _hint(self, name: str) -> str:
         if name not in {field.name for field in self.type.SCHEMA.fields}:
             return ""

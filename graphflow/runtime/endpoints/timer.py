@@ -80,6 +80,10 @@ class Timer(Part):
         return self._overruns.complaints()
 
     @property
+    def calls(self) -> tuple[object, ...]:
+        return self._callback, self._period_ns
+
+    @property
     def period(self) -> float:
         """Seconds between runs. Setting it restarts the timer: the next run is one new period away.
 

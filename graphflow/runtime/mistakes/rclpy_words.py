@@ -396,6 +396,17 @@ class AttributeHints:
         return ""
 
 
+def hint_of(thing: AttributeHints, name: str) -> str:
+    """Return the hint of an object about an attribute that it lacks; "" if there is none."""
+    # The methods have an underscore because their class is a base of nodes, whose public names are the user's.
+    return thing._hint(name)
+
+
+def text_instead(thing: AttributeHints, name: str) -> str:
+    """Return the text of an object that replaces Python's about an attribute that it lacks; "" if there is none."""
+    return thing._instead_of(name)
+
+
 def page() -> str:
     """Return the table as Markdown."""
     rows = (f"| {word.ros} | {word.here} |" for word in EQUIVALENTS)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable
-from typing import Any
 
 from graphflow.analysis.user_code import users_frame
 from graphflow.errors import Place
@@ -76,12 +75,7 @@ def warn_duplicate(host: Host, parts: Iterable[Part], made: Part, callback: Call
     if callback is None or is_timer or getattr(callback, MARK, None) is not None:
         return
     for other in parts:
-        if type(other) is type(made) and _calls(other) == _calls(made):
+        if type(other) is type(made) and other.calls == made.calls:
             text = "%s calls %s (%s) twice for each message: keep one"
             host.log.warning(text, _name(made), name_of(callback), written_at(callback))
             return
-
-
-def _calls(part: Any) -> Hashable:
-    """Return the callback of a part and the condition of its calls."""
-    return part._callback, getattr(part, "name", None), getattr(part, "_period_ns", None)

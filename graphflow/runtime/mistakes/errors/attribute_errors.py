@@ -14,7 +14,7 @@ from graphflow.analysis.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
 from graphflow.runtime.callables import code_of
 from graphflow.runtime.mistakes.errors import constructor_errors
-from graphflow.runtime.mistakes.rclpy_words import AttributeHints, translation
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints, hint_of, text_instead, translation
 
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
@@ -49,9 +49,9 @@ def better_text(error: AttributeError) -> str:
         return no_field(type(thing), name)
     if not isinstance(thing, AttributeHints):
         return ""
-    if text := thing._instead_of(name):
+    if text := text_instead(thing, name):
         return text
-    hint = translation(name) or thing._hint(name) or _setter(thing, name)
+    hint = translation(name) or hint_of(thing, name) or _setter(thing, name)
     return f"{error}; {hint}" if hint else ""
 
 
