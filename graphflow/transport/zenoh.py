@@ -45,8 +45,6 @@ OWN = "@graphflow/"
 """Prefix of keys unknown to ROS 2."""
 ASKED_BOUND = 10_000
 """Most tokens of a reply: other processes may announce any number."""
-COPIED_BELOW = 64 << 10
-"""Size in bytes below which a message is copied out of the buffer it shares with others; Zenoh's are as large."""
 WATCHED_AT_ONCE = 64
 """Tokens processed per iteration of the event loop."""
 logger = logging.getLogger("graphflow.transport")
@@ -262,7 +260,11 @@ class ZenohSession:
     ) -> _Declared:
         origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
-            put = _copying(inbox) if isinstance(inbox, DeepInbox) else inbox.put
+            put: Callable[[zenoh.Sample], None] = inbox.put
+            if isinstance(inbox, DeepInbox):
+                from graphflow.transport.copied_samples import copying  # most queues are short
+
+                put = copying(inbox)
             # Replies arrive directly, and would overtake samples that wait for the subscription's own thread.
             handler = at_once(put) if in_order else put
             return _Declared(self, self.raw.declare_subscriber(key, handler, allowed_origin=origin))
@@ -432,44 +434,6 @@ class ZenohSession:
         self.bell.close()
         if self._proof >= 0:
             os.close(self._proof)
-
-
-class _Bytes(bytes):
-    """An attachment copied out of Zenoh's memory."""
-
-    def to_bytes(self) -> bytes:
-        return self
-
-
-class _Copied:
-    """A sample copied out of Zenoh's memory."""
-
-    __slots__ = ("_data", "attachment")
-
-    def __init__(self, data: bytes, beside: Any) -> None:
-        self._data = data
-        self.attachment = None if beside is None else _Bytes(beside.to_bytes())
-
-    @property
-    def payload(self) -> _Copied:
-        return self
-
-    def __len__(self) -> int:
-        return len(self._data)
-
-    def to_bytes(self) -> bytes:
-        return self._data
-
-
-def _copying(inbox: Inbox) -> Callable[[zenoh.Sample], None]:
-    """Return a callback that queues copies: a small sample would keep the whole buffer alive that it arrived in."""
-
-    def put(sample: zenoh.Sample) -> None:
-        payload = sample.payload
-        is_small = len(payload) < COPIED_BELOW
-        inbox.put(_Copied(payload.to_bytes(), sample.attachment) if is_small else sample)
-
-    return put
 
 
 def _nothing() -> None:
