@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from graphflow.runtime.context import Context
     from graphflow.supervisor.processes.starter import Starter
     from graphflow.supervisor.rundir import GraphRun, RunDirectory
-    from graphflow.supervisor.supervisor import Supervisor
 
 GONE = "its terminal went away"
 
@@ -373,7 +372,9 @@ class _Launch:
             asyncio.create_task(mirror(supervisor, context)),
         ]
         if self._is_watching:
-            background.append(asyncio.create_task(_watch(supervisor, plan, interfaces)))
+            from graphflow.supervisor.processes.watching import watch
+
+            background.append(asyncio.create_task(watch(supervisor, plan, interfaces)))
         try:
             code = await supervisor.run()
             await control.wait_followed()
@@ -399,20 +400,6 @@ class _Launch:
         for source, fd in ((null, 1), (out, 2)) if self._note < 0 else ((null, 0), (null, 1), (out, 2)):
             os.dup2(source, fd)
         logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
-
-
-async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
-    """Restart nodes when their source changes, once the graph is up."""
-    from graphflow.interface import Interface
-    from graphflow.supervisor.processes.watching import Watch
-
-    nodes: dict[Path, list[str]] = {}
-    for node in plan.nodes:
-        interface = interfaces.get(node.class_path)
-        if isinstance(interface, Interface):
-            nodes.setdefault(Path(interface.place.file).resolve(), []).append(node.name)
-    await supervisor.up.wait()
-    await Watch(Path(plan.root), nodes, partial(supervisor.restart, by="--watch"), supervisor.note).run()
 
 
 def _run_file(plan: Plan, run_id: str, logs: Path, domain: int, guardian: int) -> GraphRun:

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from graphflow.errors import SupervisorError
+from graphflow.interface import Interface
 from graphflow.reading import found_bytes
+
+if TYPE_CHECKING:
+    from graphflow.graph.checks.check import Interfaces
+    from graphflow.graph.plan import Plan
+    from graphflow.supervisor.supervisor import Supervisor
 
 CHECK_EVERY = 0.5
 """Seconds between two checks of the files."""
@@ -79,3 +87,14 @@ class Watch:
         while True:
             await asyncio.sleep(CHECK_EVERY)
             self.check()
+
+
+async def watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
+    """Restart nodes of a graph when their source changes, once the graph is up."""
+    nodes: dict[Path, list[str]] = {}
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if isinstance(interface, Interface):
+            nodes.setdefault(Path(interface.place.file).resolve(), []).append(node.name)
+    await supervisor.up.wait()
+    await Watch(Path(plan.root), nodes, partial(supervisor.restart, by="--watch"), supervisor.note).run()
