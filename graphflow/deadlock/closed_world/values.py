@@ -17,8 +17,9 @@ from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from types import MappingProxyType, ModuleType, NoneType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from graphflow.analysis.attribute_uses import Use, is_own
 from graphflow.analysis.local_messages import messages
 from graphflow.analysis.syntax import FunctionNode
 from graphflow.deadlock.asyncio_frames import FUTURE, AnyFuture
@@ -180,3 +181,34 @@ def holds_plain(container: object) -> bool:
     if not isinstance(container, CONTAINERS):
         return False
     return all(is_plain(part) for part in list(container.values() if isinstance(container, dict) else container))
+
+
+def has_second_name(use: Use, value: object) -> bool:
+    """Whether a mutable part of an array or message is passed on, through which it can be changed."""
+    if use.kind == "called" and isinstance(value, arrays()):
+        return use.name not in LOOKING | VIEWLESS
+    if use.part is None:
+        return False
+    part: Any = value
+    path: list[ast.expr] = []
+    node: ast.expr = use.part
+    while isinstance(node, (ast.Attribute, ast.Subscript)) and node is not use.syntax:
+        path.append(node)
+        node = node.value
+    for step in reversed(path):
+        if isinstance(step, ast.Attribute):
+            part = getattr(part, step.attr, None)
+        elif not isinstance(step, ast.Subscript) or isinstance(step.slice, (ast.Slice, ast.Tuple)) or not len(part):
+            return True
+        else:
+            part = part[0]  # the parts are of one type, so any will do
+    numpy = sys.modules.get("numpy")
+    return not isinstance(part, (*PLAIN, tuple, *((numpy.generic, numpy.dtype) if numpy else ())))
+
+
+def sets_fields(function: FunctionNode) -> bool:
+    """Whether a function sets a field of something other than the node."""
+    return any(
+        isinstance(n, (ast.Attribute, ast.Subscript)) and isinstance(n.ctx, (ast.Store, ast.Del)) and not is_own(n)
+        for n in ast.walk(function)
+    )

@@ -13,17 +13,16 @@ from __future__ import annotations
 
 import ast
 import asyncio
-import sys
 import threading
 from collections import deque
 from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import Use, is_own
 from graphflow.analysis.class_source import LAMBDA, Unknown, source_of
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new, messages
-from graphflow.analysis.syntax import FunctionNode, is_nested, walk
+from graphflow.analysis.syntax import is_nested, walk
 from graphflow.analysis.user_code import Pause
 from graphflow.deadlock.asyncio_frames import (
     ENDINGS,
@@ -37,7 +36,16 @@ from graphflow.deadlock.asyncio_frames import (
 from graphflow.deadlock.closed_world.conditions import LoopConditions, makes_task
 from graphflow.deadlock.closed_world.loops import Loop, Spot, is_library, may_poll, only_pauses, pause_of
 from graphflow.deadlock.closed_world.module_names import changes
-from graphflow.deadlock.closed_world.values import CONTAINERS, LOOKING, PLAIN, QUESTIONS, TOOLS, VIEWLESS, arrays
+from graphflow.deadlock.closed_world.values import (
+    CONTAINERS,
+    LOOKING,
+    PLAIN,
+    QUESTIONS,
+    TOOLS,
+    arrays,
+    has_second_name,
+    sets_fields,
+)
 from graphflow.deadlock.protocols import Subject
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
@@ -338,7 +346,7 @@ class Question:
         for use in self._source.uses(name):
             if known and (use.kind in ("given", "invoked") or not is_new(use.value, CONTAINER_MAKERS)):
                 raise Unknown
-            if isinstance(value, (*arrays(), *messages())) and _has_second_name(use, value):
+            if isinstance(value, (*arrays(), *messages())) and has_second_name(use, value):
                 raise Unknown
             if not self._changes_nothing(use, value):
                 if use.is_nested:
@@ -374,7 +382,7 @@ class Question:
             return isinstance(value, PLAIN) or use.name in LOOKING
         if use.kind == "given" and isinstance(value, messages()):  # fields may be set through the new name
             functions = self._source.methods.get(use.method, [])
-            return not any(_sets_fields(function) for function in functions)
+            return not any(sets_fields(function) for function in functions)
         return use.kind != "changed"
 
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
@@ -418,34 +426,3 @@ def _places(made: ast.expr | None) -> int:
         case ast.Call(args=[], keywords=[]):
             return 1
     raise Unknown
-
-
-def _has_second_name(use: Use, value: object) -> bool:
-    """Whether a mutable part of an array or message is passed on, through which it can be changed."""
-    if use.kind == "called" and isinstance(value, arrays()):
-        return use.name not in LOOKING | VIEWLESS
-    if use.part is None:
-        return False
-    part: Any = value
-    path: list[ast.expr] = []
-    node: ast.expr = use.part
-    while isinstance(node, (ast.Attribute, ast.Subscript)) and node is not use.syntax:
-        path.append(node)
-        node = node.value
-    for step in reversed(path):
-        if isinstance(step, ast.Attribute):
-            part = getattr(part, step.attr, None)
-        elif not isinstance(step, ast.Subscript) or isinstance(step.slice, (ast.Slice, ast.Tuple)) or not len(part):
-            return True
-        else:
-            part = part[0]  # the parts are of one type, so any will do
-    numpy = sys.modules.get("numpy")
-    return not isinstance(part, (*PLAIN, tuple, *((numpy.generic, numpy.dtype) if numpy else ())))
-
-
-def _sets_fields(function: FunctionNode) -> bool:
-    """Whether a function sets a field of something other than the node."""
-    return any(
-        isinstance(n, (ast.Attribute, ast.Subscript)) and isinstance(n.ctx, (ast.Store, ast.Del)) and not is_own(n)
-        for n in ast.walk(function)
-    )
