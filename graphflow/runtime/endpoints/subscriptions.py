@@ -15,14 +15,13 @@ from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
-from graphflow.qos import DEFAULT, INFINITE_NS, Durability, Liveliness, Qos
+from graphflow.qos import INFINITE_NS, Durability, Liveliness, Qos
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.events import OnEvent, SilenceTimer
 from graphflow.runtime.endpoints.intra_process import Handed
-from graphflow.runtime.endpoints.publishers import alive_key
 from graphflow.runtime.endpoints.shared_memory import RingReading
-from graphflow.runtime.endpoints.sources import Source
-from graphflow.runtime.mistakes.echoes import Echo
+from graphflow.runtime.endpoints.sources import Leases, Source, end_lease
+from graphflow.runtime.mistakes.echoes import Echo, echo_of
 from graphflow.runtime.mistakes.expiry import Expiry
 from graphflow.runtime.mistakes.losses import MANY_LOSSES, Losses
 from graphflow.runtime.mistakes.shared_reading import SharedReading
@@ -89,6 +88,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._taken = 0
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, Source] = {}
+        self._leases = Leases(host, self._sources, self.matched, self._liveliness_changed)
         self._gaps = self._jumps = 0
         """Messages that are missing, and those that came right after them."""
         self._losses = Losses(host, name, self._label, qos.depth)
@@ -214,7 +214,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         if not alive:
             source = self._sources.pop(other.gid, None)
             was_alive = source is None or source.lease is None or source.lease.is_running
-            self._end(source)
+            end_lease(source)
             if self._rings is not None:
                 self._rings.forget_ended()
         else:
@@ -222,13 +222,14 @@ class TopicSubscription(Endpoint, Generic[M]):
             source = self._sources.setdefault(other.gid, Source(INFINITE_NS))
             source.expects(min(other.qos.lifespan_ns, self.qos.lifespan_ns))
             if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.lease_ns != INFINITE_NS:
-                self._watch_lease(other, source)
+                assert self._inbox is not None
+                self._leases.watch(other, source, self._inbox)
         if self._deadline is not None:
             self._deadline.start() if self.matched else self._deadline.stop()
         if alive:
             self.host.context.unlatched.matched(self, other, self.host.log)
         if alive or was_alive:
-            self._liveliness_changed(1 if alive else -1, other.node_name)
+            self._leases.changed(1 if alive else -1, other.node_name)
         self._follow_echo()
 
     def _follow_echo(self) -> None:
@@ -236,55 +237,12 @@ class TopicSubscription(Endpoint, Generic[M]):
         own = self._announced()
         is_alone = bool(self.matched) and all((e.zid, e.nid) == (own.zid, own.nid) for e in self.matched.values())
         if self._echo is None and is_alone and not self._ignore_local:
-            self._echo = Echo(self.host.context.clock, lambda: self.received, self._warn_of_echo)
+            self._echo = echo_of(self.host, self.name, lambda: self.received)
         if self._echo is not None:
             self._echo.follow(is_alone=is_alone)
 
-    def _warn_of_echo(self, rate: int) -> None:
-        self.host.log.warning(
-            "this node hears what it publishes itself on %s, %d messages a second: if the handler publishes there, "
-            "that never ends; publish to another topic, or remap one of the two",
-            self.name,
-            rate,
-        )
-
-    def _watch_lease(self, other: Entity, source: Source) -> None:
-        def silent() -> None:
-            assert source.lease is not None
-            if any(_gid_of(arrival, read) == other.gid for arrival in waiting.items):
-                source.lease.touch()  # it has published: the handler is late, not the publisher
-                return
-            source.lease.stop()
-            self._liveliness_changed(-1, other.node_name)
-
-        assert self._inbox is not None
-        session, waiting = self.host.context.session, self._inbox
-        read = session.read
-        lease = SilenceTimer(self.host.clock, other.qos.lease_ns, silent)
-        source.expects(source.lifespan_ns, lease)
-        lease.start()
-        inbox = Inbox(session.bell, 1, lambda: self._revive(other.gid))
-        source.alive = session.open_receiver(alive_key(other), DEFAULT, inbox)
-
-    def _revive(self, gid: bytes) -> None:
-        """Note a liveliness assertion of a publisher."""
-        source = self._sources.get(gid)
-        if source is None or source.lease is None:
-            return
-        source.lease.touch()
-        if not source.lease.is_running:
-            source.lease.start()
-            self._liveliness_changed(1, next((e.node_name for e in self.matched.values() if e.gid == gid), ""))
-
-    def _liveliness_changed(self, change: int, node: str) -> None:
-        silent = sum(1 for s in self._sources.values() if s.lease is not None and not s.lease.is_running)
-        self._tell("liveliness_changed", change=change, current=len(self.matched) - silent, detail=node)
-
-    @staticmethod
-    def _end(source: Source | None) -> None:
-        if source is not None and source.lease is not None and source.alive is not None:
-            source.lease.stop()
-            source.alive.close()
+    def _liveliness_changed(self, change: int, current: int, node: str) -> None:
+        self._tell("liveliness_changed", change=change, current=current, detail=node)
 
     # messages
 
@@ -322,7 +280,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._count_missing(missing)
         source.sequence = sequence
         if source.lease is not None:
-            self._revive(gid)
+            self._leases.revive(gid)
         if source.lifespan_ns == INFINITE_NS:
             return True
         return self.host.context.clock.time_ns() - source_ns <= source.lifespan_ns
@@ -476,18 +434,10 @@ class TopicSubscription(Endpoint, Generic[M]):
         if self._reading is not None:
             self._reading.stop()
         for source in self._sources.values():
-            self._end(source)
+            end_lease(source)
         self._sources.clear()
         super().close()
         self._arrived()
-
-
-def _gid_of(arrival: Any, read: Callable[[Any], tuple[bytes, bytes | None]]) -> bytes:
-    """Return an arrival's sender GID; b"" if unknown."""
-    if isinstance(arrival, Handed):
-        return arrival.fields[2]
-    beside = read(arrival)[1]
-    return beside[-16:] if beside is not None else b""
 
 
 def unreadable(arrival: Any) -> tuple[bytes, bytes | None]:

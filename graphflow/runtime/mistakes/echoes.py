@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from graphflow.executor.clock import Alarm, Clock
+from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS
 
 LOOP = 2000
@@ -55,3 +56,17 @@ class Echo:
         else:
             self._was_fast = rate >= LOOP
             self._arm()
+
+
+def echo_of(host: Host, topic: str, received: Callable[[], int]) -> Echo:
+    """Return the check of a node's subscription, with its warning."""
+
+    def warn(rate: int) -> None:
+        host.log.warning(
+            "this node hears what it publishes itself on %s, %d messages a second: if the handler publishes there, "
+            "that never ends; publish to another topic, or remap one of the two",
+            topic,
+            rate,
+        )
+
+    return Echo(host.context.clock, received, warn)
