@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 from graphflow.analysis.deadlock_check import Finding, Grade
 from graphflow.analysis.rclpy_flags import Polled, changers, polled, written_from_outside
-from graphflow.analysis.syntax import FunctionNode, is_nested, last_name, walk
+from graphflow.analysis.rclpy_futures import SPINS, dotted, futures_of, polled_futures
+from graphflow.analysis.syntax import FunctionNode, last_name, walk
 from graphflow.errors import Place
 from graphflow.reading import found_text
 
@@ -36,9 +37,6 @@ _OF_ONE_THREAD = {"SingleThreadedExecutor", "EventsExecutor", "ThreadPoolExecuto
 """Executors of rclpy with one thread, and classes of that ending that are not rclpy's."""
 _KINDS = {"create_timer": "timer", "create_subscription": "subscription", "create_service": "service"}
 _BRANCHES = (ast.If, ast.For, ast.While, ast.Try, ast.IfExp, ast.Match, ast.ExceptHandler)
-_SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
-_LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "print")
-"""Functions that read a future, and do not end it."""
 _LATER = "use call_async(request) and add_done_callback(...)"
 _OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
 _POOL = "spin with MultiThreadedExecutor()"
@@ -208,7 +206,7 @@ class _Class:
         if function is None or method in seen:
             return
         seen.add(method)
-        scope = _Scope(function, _futures(function, self.clients), _made_by(function, "create_rate") | self.rates)
+        scope = _Scope(function, futures_of(function, self.clients), _made_by(function, "create_rate") | self.rates)
         for node, parents in walk(function, into_functions=False):
             is_sure = is_certain and not any(isinstance(p, _BRANCHES) for p in parents)
             match node:
@@ -219,12 +217,12 @@ class _Class:
                     yield from self._attribute_waits(node, name, verb, scope, is_sure, parents[-1])
                 case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="sleep")) if name in scope.rates:
                     yield _Wait(f"{name}.sleep", node.lineno, "", True, False, is_sure)
-                case ast.Call(func=spin) if ast.unparse(spin) in _SPINS:
-                    clients = (scope.futures[_dotted(a)] for a in node.args if _dotted(a) in scope.futures)
+                case ast.Call(func=spin) if ast.unparse(spin) in SPINS:
+                    clients = (scope.futures[dotted(a)] for a in node.args if dotted(a) in scope.futures)
                     yield _Wait(ast.unparse(spin), node.lineno, next(clients, ""), True, True, is_sure)
                 case ast.While():
                     yield from self._loop_waits(node, scope, is_sure)
-                case ast.Await(value=awaited) if (future := _dotted(awaited)) in scope.futures:
+                case ast.Await(value=awaited) if (future := dotted(awaited)) in scope.futures:
                     yield _Wait(f"await {future}", node.lineno, scope.futures[future], False, False, is_sure)
 
     def _attribute_waits(
@@ -243,15 +241,15 @@ class _Class:
 
     def _loop_waits(self, loop: ast.While, scope: _Scope, is_sure: bool) -> Iterator[_Wait]:
         """Yield the wait of a loop that polls a future or attributes."""
-        spins = any(_calls(inner) in _SPINS for inner in ast.walk(loop))
-        for owner in _polled_futures(loop.test):
-            if (future := _dotted(owner)) in scope.futures:
+        spins = any(_calls(inner) in SPINS for inner in ast.walk(loop))
+        for owner in polled_futures(loop.test):
+            if (future := dotted(owner)) in scope.futures:
                 what = f"`while not {future}.done()`"
                 yield _Wait(what, loop.lineno, scope.futures[future], True, spins, is_sure)
                 return
         poll = None if isinstance(scope.function, ast.AsyncFunctionDef) else polled(loop, self.methods)
         is_of_rate = any(
-            isinstance(n, ast.Attribute) and n.attr == "sleep" and _dotted(n.value) in scope.rates
+            isinstance(n, ast.Attribute) and n.attr == "sleep" and dotted(n.value) in scope.rates
             for n in ast.walk(loop)
         )
         if poll is not None and not (self.is_single and is_of_rate):  # the wait for the rate is a finding of its own
@@ -343,12 +341,12 @@ def _read_assignments(found: _Class, definition: ast.ClassDef) -> None:
     """Add the groups and clients that a class assigns; groups first, since clients refer to them."""
     assigned = [n for n in ast.walk(definition) if isinstance(n, ast.Assign) and len(n.targets) == 1]
     for node in assigned:
-        group = _new_group(node.value, _dotted(node.targets[0]))
+        group = _new_group(node.value, dotted(node.targets[0]))
         if group is not None:
-            found.groups[_dotted(node.targets[0])] = group
+            found.groups[dotted(node.targets[0])] = group
     for node in assigned:
         if isinstance(node.value, ast.Call) and last_name(node.value.func) in ("create_client", "ActionClient"):
-            client = _dotted(node.targets[0]).removeprefix("self.")
+            client = dotted(node.targets[0]).removeprefix("self.")
             found.clients[client] = _group_of(node.value, found.groups)
             found.called[client] = _name_of(node.value)
 
@@ -357,7 +355,7 @@ def _read_callback(found: _Class, call: ast.Call) -> None:
     """Add the callback that a call registers, and the server that it creates."""
     maker = last_name(call.func)
     callback = _argument(call, _CALLBACK_AT[maker], "callback", "execute_callback")
-    method = _dotted(callback).removeprefix("self.") if callback is not None else ""
+    method = dotted(callback).removeprefix("self.") if callback is not None else ""
     if method in found.methods:
         # rclpy runs the bodies of goals outside the group of their action server.
         group = None if maker == "ActionServer" else _group_of(call, found.groups)
@@ -378,7 +376,7 @@ def _group_of(call: ast.Call, groups: dict[str, _Group]) -> _Group | None:
     group = _argument(call, _GROUP_AT.get(last_name(call.func), 99), "callback_group")
     if group is None or (isinstance(group, ast.Constant) and group.value is None):
         return _DEFAULT
-    return groups.get(_dotted(group)) or _new_group(group, f"line {call.lineno}")
+    return groups.get(dotted(group)) or _new_group(group, f"line {call.lineno}")
 
 
 def _new_group(value: ast.expr, name: str) -> _Group | None:
@@ -396,61 +394,15 @@ def _argument(call: ast.Call, at: int, *names: str) -> ast.expr | None:
     return named if named is not None else call.args[at] if at < len(call.args) else None
 
 
-def _futures(function: ast.AST, clients: dict[str, _Group | None]) -> dict[str, str]:
-    """Return the names of futures that a function gets from clients, each with the client."""
-    found = {}
-    for node in ast.walk(function):
-        match node:
-            case ast.Assign(
-                targets=[target],
-                value=ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)),
-            ) if name in clients and verb in ("call_async", "send_goal_async"):
-                if not _is_known_elsewhere(_dotted(target), function):
-                    found[_dotted(target)] = name
-    return found
-
-
-def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
-    """Whether a function passes a future to other code, which may end it, or ends it itself."""
-    for node, parents in walk(function):
-        is_use = isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Load)
-        if not (is_use and parents and isinstance(node, ast.expr) and _dotted(node) == future):
-            continue
-        if is_nested(parents):  # an inner function runs at any time
-            return True
-        match parents[-1]:
-            case ast.Attribute(attr=attr) if attr not in ("cancel", "set_result", "set_exception"):
-                continue
-            case ast.Await() | ast.Expr():
-                continue
-            case ast.Call(func=called) if ast.unparse(called) in _SPINS or last_name(called) in _LOOKS:
-                continue
-        return True
-    return False
-
-
 def _made_by(tree: ast.AST, maker: str) -> set[str]:
     """Return the names of objects that a function creates, attributes with their `self.`."""
     found = set()
     for node in ast.walk(tree):
         match node:
             case ast.Assign(targets=[target], value=ast.Call(func=function)) if last_name(function) == maker:
-                found.add(_dotted(target))
+                found.add(dotted(target))
     return found
-
-
-def _polled_futures(test: ast.expr) -> Iterator[ast.expr]:
-    """Yield the owners in a condition with `not owner.done()`."""
-    for node in ast.walk(test):
-        match node:
-            case ast.UnaryOp(op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=owner, attr="done"))):
-                yield owner
 
 
 def _calls(node: ast.AST) -> str:
     return ast.unparse(node.func) if isinstance(node, ast.Call) else ""
-
-
-def _dotted(expression: ast.expr) -> str:
-    """Return a name, or an attribute of one, as the code writes it; empty for anything else."""
-    return ast.unparse(expression) if isinstance(expression, (ast.Name, ast.Attribute)) else ""

@@ -1,0 +1,59 @@
+"""Futures of rclpy's clients in a method: the names that it has for them, and the loops that ask for their end."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Container, Iterator
+
+from graphflow.analysis.syntax import is_nested, last_name, walk
+
+SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
+"""Functions that spin a node until a future is done, or for a while."""
+_LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "print")
+"""Functions that read a future, and do not end it."""
+
+
+def futures_of(function: ast.AST, clients: Container[str]) -> dict[str, str]:
+    """Return the names of futures that a function gets from clients, each with the client."""
+    found = {}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(
+                targets=[target],
+                value=ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)),
+            ) if name in clients and verb in ("call_async", "send_goal_async"):
+                if not _is_known_elsewhere(dotted(target), function):
+                    found[dotted(target)] = name
+    return found
+
+
+def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
+    """Whether a function passes a future to other code, which may end it, or ends it itself."""
+    for node, parents in walk(function):
+        is_use = isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Load)
+        if not (is_use and parents and isinstance(node, ast.expr) and dotted(node) == future):
+            continue
+        if is_nested(parents):  # an inner function runs at any time
+            return True
+        match parents[-1]:
+            case ast.Attribute(attr=attr) if attr not in ("cancel", "set_result", "set_exception"):
+                continue
+            case ast.Await() | ast.Expr():
+                continue
+            case ast.Call(func=called) if ast.unparse(called) in SPINS or last_name(called) in _LOOKS:
+                continue
+        return True
+    return False
+
+
+def polled_futures(test: ast.expr) -> Iterator[ast.expr]:
+    """Yield the owners in a condition with `not owner.done()`."""
+    for node in ast.walk(test):
+        match node:
+            case ast.UnaryOp(op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=owner, attr="done"))):
+                yield owner
+
+
+def dotted(expression: ast.expr) -> str:
+    """Return a name, or an attribute of one, as the code writes it; empty for anything else."""
+    return ast.unparse(expression) if isinstance(expression, (ast.Name, ast.Attribute)) else ""
