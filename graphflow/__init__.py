@@ -55,7 +55,8 @@ if TYPE_CHECKING:
         Qos,
         Reliability,
     )
-    from graphflow.runtime.actions.client import ClientGoalHandle, GoalClient
+    from graphflow.runtime.actions.client import GoalClient
+    from graphflow.runtime.actions.goal_handles import ClientGoalHandle
     from graphflow.runtime.actions.server import ActionServer
     from graphflow.runtime.context import Context
     from graphflow.runtime.declarations.declare import (
@@ -141,10 +142,8 @@ _HOMES = {
         "Qos",
         "Reliability",
     ),
-    "graphflow.runtime.actions.client": (
-        "ClientGoalHandle",
-        "GoalClient",
-    ),
+    "graphflow.runtime.actions.client": ("GoalClient",),
+    "graphflow.runtime.actions.goal_handles": ("ClientGoalHandle",),
     "graphflow.runtime.actions.server": ("ActionServer",),
     "graphflow.runtime.context": ("Context",),
     "graphflow.runtime.declarations.declare": (

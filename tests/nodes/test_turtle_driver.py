@@ -12,7 +12,7 @@ import pytest
 from graphflow import GoalRejected, GoalStatus
 from graphflow.msgs.turtle_interfaces.action import GoToGoal
 from graphflow.msgs.turtlesim.msg import Pose
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.testing import Graph
 from nodes.turtle_driver import TurtleDriver
 from nodes.turtlesim import TurtleSim

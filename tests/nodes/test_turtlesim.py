@@ -16,7 +16,7 @@ from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.msgs.turtlesim.action import RotateAbsolute
 from graphflow.msgs.turtlesim.msg import Color, Pose
 from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.testing import Graph
 from nodes.turtle_world import SIZE
 from nodes.turtlesim import TurtleSim

@@ -25,7 +25,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.registry import interface_class
 from graphflow.qos import ACTION_STATUS
 from graphflow.runtime.actions import client, server
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.actions.server import RESULT_KEPT
 from tests.machines.rcl_goals import NEXT
 

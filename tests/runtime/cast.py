@@ -35,7 +35,7 @@ from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.qos import Durability, Qos
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.endpoints.service_client import ServiceClient
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph

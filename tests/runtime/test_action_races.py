@@ -16,7 +16,7 @@ from graphflow import GoalLost, GoalRejected, Node, Publisher, Subscription, act
 from graphflow.msgs.action_msgs.srv import CancelGoal
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import Int32
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import World, simulate

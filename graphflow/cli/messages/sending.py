@@ -17,7 +17,7 @@ from graphflow.introspect import server_logs
 from graphflow.introspect.messages.echo import block, plain
 from graphflow.machines.cache import ACTION_SEND_GOAL
 from graphflow.msgs.base import Message
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.node import Node
 from graphflow.wire.liveliness import Kind
 

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import os
-from asyncio import CancelledError, Future
-from collections import deque
-from collections.abc import AsyncIterator, Coroutine
+from asyncio import CancelledError
+from collections.abc import Coroutine
 from contextlib import suppress
 from typing import Any, Generic, TypeAlias
 
@@ -25,12 +23,12 @@ from graphflow.errors import (
     ServerLost,
     ServiceUnavailable,
 )
-from graphflow.executor.ledger import PendingGoal
 from graphflow.interface import CALL_TIMEOUT
 from graphflow.machines.goal import CancelCode, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.actions.sending import Sending
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.serialized import RawSubscription
@@ -38,7 +36,7 @@ from graphflow.runtime.endpoints.service_client import DISCOVERY_GRACE, ServiceC
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.mistakes.network.other_domains import alone_here
 from graphflow.runtime.mistakes.network.unserved import Unserved, nobody_acts
-from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
+from graphflow.runtime.mistakes.rclpy_words import MadeByNodes
 from graphflow.runtime.part import Host, Part
 from graphflow.times import to_ns
 from graphflow.wire.attachment import MessageInfo
@@ -55,120 +53,6 @@ LOST_GRACE = 1.0
 """Seconds for a lost server to reappear, and for feedback to arrive after the result."""
 RESULT_PATIENCE, RESULT_LONGEST = 10.0, 600.0
 """Seconds until a result is requested again: the first time, and at most."""
-FEEDBACK_KEPT = 100
-"""Feedback messages buffered for a slow reader; the oldest are dropped."""
-
-
-class ClientGoalHandle(AttributeHints, PendingGoal, Generic[Goal, Result, Feedback]):
-    """A goal, as its client sees it."""
-
-    def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
-        self.request = request
-        self.goal_id = os.urandom(16)
-        self.status = GoalStatus.UNKNOWN
-        """The last known status of the goal; `LOST` when the server has gone."""
-        self.latest: Feedback | None = None
-        """The latest feedback; None until one arrives."""
-        self.is_requested_again = False
-        self.dropped = 0
-        """Feedback messages dropped because a reader was too slow."""
-        loop = client.host.context.loop
-        self.ended: Future[Result] = loop.create_future()
-        self._client = client
-        self._readers: list[tuple[deque[Feedback], list[Future[None]]]] = []
-        """For each iteration of the feedback: its unread messages, and the future it waits for."""
-        self._unread: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
-        """Feedback that arrived before any iteration."""
-        self.action = client.name
-        self.began_ns = client.host.context.clock.monotonic_ns()
-
-    def __repr__(self) -> str:
-        return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
-
-    def _hint(self, name: str) -> str:
-        action: Any = self._client.type
-        if name in action.Result.__struct_fields__:
-            return f"that is the goal; its result has it: (await goal.result()).{name}"
-        is_feedback = name in action.Feedback.__struct_fields__
-        return "that is the goal; read its feedback with async for feedback in goal.feedback():" if is_feedback else ""
-
-    @property
-    def done(self) -> bool:
-        """Whether the goal has ended."""
-        return self.status.is_terminal
-
-    async def feedback(self) -> AsyncIterator[Feedback]:
-        """Iterate over the feedback until the goal ends; the first iteration starts with the feedback so far."""
-        ledger, loop = self._client.host.context.ledger, self._client.host.context.loop
-        queue: deque[Feedback] = deque(self._unread, FEEDBACK_KEPT)
-        self._unread.clear()
-        reader: tuple[deque[Feedback], list[Future[None]]] = (queue, [])
-        self._readers.append(reader)
-        try:
-            while True:
-                while queue:
-                    yield queue.popleft()
-                if self.done:
-                    return
-                reader[1][:] = [news := loop.create_future()]
-                with ledger.goal(news, self):
-                    await news
-        finally:
-            self._readers.remove(reader)
-
-    async def result(self, *, timeout: float | None = None) -> Result:
-        """Wait for the goal to succeed; returns its result.
-
-        Args:
-            timeout: Seconds; None for no limit.
-
-        Raises:
-            GoalAborted, GoalCanceled: The goal did not succeed; the error's `result` is the server's final result.
-            GoalLost: The server has gone.
-            DeadlockError: The server waits for the caller, and the graph's deadlock policy is `break`.
-            TimeoutError: The goal has not ended in time; it keeps running.
-        """
-        if timeout is not None:
-            async with self._client.host.clock.timeout(timeout):
-                return await self.result()
-        # Shielded: a caller that is cancelled must not cancel `ended`, for which others may wait.
-        with self._client.host.context.ledger.goal(ended := asyncio.shield(self.ended), self):
-            return await ended
-
-    async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
-        """Request cancellation; returns whether the server accepts. The goal ends later, and may still succeed.
-
-        Raises:
-            CallError: The server did not answer.
-        """
-        return await self._client.cancel(self, timeout=timeout)
-
-    def receive(self, feedback: Feedback) -> None:
-        """Receive feedback. Called by the client."""
-        self.latest = feedback
-        for queue in [queue for queue, _ in self._readers] or [self._unread]:
-            self.dropped += len(queue) == FEEDBACK_KEPT
-            queue.append(feedback)
-        self._wake()
-
-    def end(self, status: GoalStatus, result: Any, error: GoalError | None) -> None:
-        """Record the end of the goal. Called by the client."""
-        if self.done:
-            return
-        self.status = status
-        if not self.ended.done():
-            if error is None:
-                self.ended.set_result(result)
-            else:
-                self.ended.set_exception(error)
-                self.ended.exception()  # a caller that never awaits the result must not get a warning about its error
-        self._wake()
-
-    def _wake(self) -> None:
-        for _, waiting in self._readers:
-            for news in waiting:
-                if not news.done():
-                    news.set_result(None)
 
 
 class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):

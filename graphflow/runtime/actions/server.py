@@ -12,7 +12,7 @@ Source: rcl_action, for the wire.
 from __future__ import annotations
 
 import asyncio
-from asyncio import CancelledError, Future
+from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -24,17 +24,18 @@ from graphflow.errors import Abort, EncodeError
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
-from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
+from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRules, GoalStatus, Phase
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle, Service, made_as
 from graphflow.qos import ACTION_STATUS, Qos
+from graphflow.runtime.actions.goal_handles import ServedGoal
 from graphflow.runtime.actions.goal_service import Answer, GoalService
 from graphflow.runtime.callables import name_of as callable_name
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
-from graphflow.runtime.mistakes.rclpy_words import AttributeHints, MadeByNodes
+from graphflow.runtime.mistakes.rclpy_words import MadeByNodes
 from graphflow.runtime.mistakes.wrong_returns import wrong_return
 from graphflow.runtime.part import Host, Part
 from graphflow.times import NANOSECONDS, to_ns
@@ -53,58 +54,6 @@ _RETURNED_ALL_THE_SAME = (
     "set goal.partial and let CancelledError propagate%s"
 )
 _WHY = {GoalEvent.NEWER: "a newer goal has come"}
-
-
-class ServedGoal(AttributeHints, ServerGoalHandle[Goal, Result, Feedback]):
-    """A goal, as its server and handler see it."""
-
-    def __init__(
-        self, server: ActionServer[Goal, Result, Feedback], goal_id: bytes, request: Goal, record: GoalRecord
-    ) -> None:
-        self.request = request
-        self.partial: Result = server.result_class()
-        self.record = record
-        self.result: Result | None = None
-        """The result of the ended goal."""
-        self.reason = ""
-        """The reason why the goal was aborted; "" for none."""
-        self.waiters: list[Future[None]] = []
-        """Futures of get_result requests that wait for the goal's end."""
-        self.decided = asyncio.Event()
-        """Set when the goal has been accepted or rejected."""
-        self._server, self._id = server, goal_id
-
-    def __repr__(self) -> str:
-        return f"<goal {self._id.hex()[:8]} of {self._server.name}: {self.status.name}>"
-
-    def _hint(self, name: str) -> str:
-        return (
-            f"the client's request has it: goal.request.{name}" if name in type(self.request).__struct_fields__ else ""
-        )
-
-    @property
-    def goal_id(self) -> bytes:
-        return self._id
-
-    @property
-    def status(self) -> GoalStatus:
-        return self.record.status
-
-    @property
-    def is_preempted(self) -> bool:
-        return self.record.is_preempted
-
-    @property
-    def is_cancel_requested(self) -> bool:
-        return self.is_preempted or self.record.phase is Phase.CANCELING or self.is_over
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the goal has ended."""
-        return self.record.phase.is_over
-
-    def feedback(self, feedback: Feedback) -> None:
-        self._server.send_feedback(self._id, feedback)
 
 
 class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -23,11 +22,10 @@ from graphflow import (
 from graphflow.errors import EncodeError, GoalRejected
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.runtime.actions import client
-from graphflow.runtime.actions.client import ClientGoalHandle
+from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.actions.goal_reasons import Reasons
 from graphflow.runtime.actions.server import ActionServer
 from graphflow.runtime.endpoints.serialized import UNKNOWN
-from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.wire.goal_status import GoalStates
@@ -258,47 +256,6 @@ async def test_ros_2_knows_no_reasons(
     caught, said = await aborted(graph, Abort("the way is blocked"), caplog)
 
     assert (str(caught), said) == ("/fibonacci aborted the goal", [])
-
-
-async def test_feedback_that_nobody_reads_is_bounded(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The newest wait for the first reader, the others are counted; `latest` is always the last."""
-    monkeypatch.setattr(client, "FEEDBACK_KEPT", 2)
-    _, asker = await pair(graph)
-    goal = await asker.order(6)
-    await graph.clock.advance(4.0)
-
-    assert [len(feedback.sequence) async for feedback in goal.feedback()] == [5, 6]
-    assert goal.dropped == 2
-    assert goal.latest is not None
-    assert len(goal.latest.sequence) == 6
-
-
-async def test_a_result_may_be_awaited_for_a_while(graph: Graph) -> None:
-    """The goal goes on when the time is up."""
-    _, asker = await pair(graph)
-    goal = await asker.order(4)
-    waiting = asyncio.create_task(goal.result(timeout=1.5))
-    await graph.clock.advance(1.5)
-    with pytest.raises(TimeoutError):
-        await waiting
-    assert not goal.done
-    await graph.clock.advance(0.5)
-
-    assert list((await goal.result(timeout=1.0)).sequence) == [0, 1, 1, 2]
-
-
-async def test_a_field_of_its_result_or_feedback(graph: Graph) -> None:
-    """The hint names the goal's result and feedback."""
-    _, asker = await pair(graph)
-    goal: Any = await asker.order(4)
-    with pytest.raises(AttributeError) as caught:
-        _ = goal.sequence
-    explain(caught.value)
-    assert str(caught.value).endswith("; that is the goal; its result has it: (await goal.result()).sequence")
-    fields = [type("Of", (), {"__struct_fields__": names}) for names in (("distance",), ("elapsed",))]
-    goal._client = SimpleNamespace(type=SimpleNamespace(Result=fields[0], Feedback=fields[1]))
-    assert goal._hint("elapsed").endswith("async for feedback in goal.feedback():")
-    assert goal._hint("other") == ""
 
 
 async def test_a_closed_client_loses_its_goals(graph: Graph) -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import threading
 from typing import Any
 
 import pytest
 
-from graphflow import Abort, GoalAborted, GoalCanceled, GoalRejected, GoalStatus, Group, Node, action
+from graphflow import Abort, GoalAborted, GoalRejected, GoalStatus, Group, Node, action
 from graphflow.interface import GoalPolicy
 from graphflow.machines.goal import GoalEvent
 from graphflow.msgs.action_msgs.msg import GoalStatusArray
@@ -316,26 +315,6 @@ async def test_a_client_that_dies(graph: Graph, on_client_loss: str, status: int
 
     assert handle.goal_id == goal.goal_id
     assert handle.status == status
-
-
-async def test_a_blocking_body_in_a_thread_polls_for_its_cancellation(graph: Graph) -> None:
-    """A thread cannot be interrupted; it looks, and its goal is canceled when it raises CancelledError."""
-    begun = asyncio.Event()
-
-    class Blocking(Node):
-        @action(Fibonacci, "fibonacci", thread=True)
-        def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
-            self.context.loop.call_soon_threadsafe(begun.set)
-            while not goal.is_cancel_requested:
-                threading.Event().wait(0.001)
-            raise asyncio.CancelledError
-
-    _, asker = await pair(graph, Blocking())
-    goal = await asker.order(1)
-    await begun.wait()
-    assert await goal.cancel()
-    with pytest.raises(GoalCanceled):
-        await goal.result()
 
 
 class Crowd(Node):
