@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
-from pathlib import PurePath
+from collections.abc import Iterator
 from typing import ClassVar, NamedTuple
 
-from rich.style import Style
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
 
 from graphflow.introspect import concurrency
 from graphflow.introspect.graph_view import View as Graph
-from graphflow.machines.waits.explain import group_of, headline, title, wanted
+from graphflow.machines.waits.explain import group_of, headline
 from graphflow.machines.waits.group_fixes import Fix, Thread, fixes
-from graphflow.machines.waits.remedies import remedies
 from graphflow.machines.waits.rings import Deadlock
 from graphflow.machines.waits.wait_graph import FREE, ActivityView, GroupView, WaitGraph
 from graphflow.tui.commands.actions import Action
@@ -24,8 +21,8 @@ from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.feeds.log_feed import Record, plain_text
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.views.deadlock_rows import Row, RowLines, deadlock_rows, place_of, short
 from graphflow.tui.widgets.dialogs import Item, Pick
-from graphflow.tui.widgets.line_view import LineView
 
 REPLY_TIMEOUT = 2.0
 """Seconds that a node has to change its groups."""
@@ -33,22 +30,6 @@ INEFFECTIVE_AFTER, RESTARTED_WITHIN = 2.5, 12.0
 """Seconds after which a change counts as ineffective; longer if it restarts the node."""
 SLOTS = 12
 """Maximum slots of a group drawn individually."""
-
-
-class Row(NamedTuple):
-    """A line, and the source location that it refers to."""
-
-    text: Text
-    place: str = ""
-    record: Record | None = None
-    """The log record of the line, if only /rosout knows its source location."""
-
-
-class RowLines(LineView[Row]):
-    """Lines that may refer to source locations."""
-
-    def draw(self, row: Row) -> Iterable[tuple[str, Style]]:
-        return self.draw_text(row.text)
 
 
 Ring = frozenset[tuple[str, str]]
@@ -176,68 +157,8 @@ class Groups(View):
     # rows
 
     def _deadlock_rows(self) -> Iterator[Row]:
-        colours, graph = self.colours, self._graph
         for deadlock, found in zip(self._deadlocks, self._fixes, strict=True):
-            for i, line in enumerate(headline(deadlock, graph).split("\n")):
-                yield Row(Text(f" ✖ {line}" if i == 0 else f"   {line.strip()}", style=colours.bad))
-            yield from self._ring(deadlock)
-            for name in deadlock.victims[:10]:
-                yield Row(Text(f"     behind them: {title(graph.activities[name])}", style=colours.dim))
-            yield from self._fix_rows(deadlock, found)
-            yield Row(Text(""))
-
-    def _fix_rows(self, deadlock: Deadlock, found: list[Fix]) -> Iterator[Row]:
-        """Return the remedies of a deadlock: those that a key applies, otherwise those in the code."""
-        colours, graph = self.colours, self._graph
-        for i, fix in enumerate(found):
-            caution = f"   ({fix.caution})" if fix.caution else ""
-            text = (
-                (("   f  ", colours.accent), (fix.title, colours.strong))
-                if i == 0
-                else (("   F  ", colours.accent), fix.title)
-            )
-            yield Row(Text.assemble(*text, (caution, colours.dim)))
-            if i == 0:
-                regrouping = fix.made_in(graph.regrouping(fix.node))
-                lines = regrouping.lines(fix.node, "")
-                yield Row(Text(f"      $ {fix.command}", style=colours.dim))
-                yield Row(Text(f"      {regrouping.where} {lines[0]}", style=colours.dim))
-                yield from (Row(Text(f"        {line}", style=colours.dim)) for line in lines[1:])
-        if found:
-            yield Row(
-                Text.assemble(
-                    ("   r  ", colours.accent),
-                    ("the whole report, with what ends it in the code", colours.dim),
-                )
-            )
-            return
-        yield Row(Text("   no key ends it at run time; the code must change:", style=colours.warn))
-        for remedy in remedies(deadlock, graph) or ["see the report: r"]:
-            for line in remedy.split("\n"):
-                yield Row(Text(f"   {plain_text(line)}", style=colours.text))
-
-    def _ring(self, deadlock: Deadlock) -> Iterator[Row]:
-        """Draw the ring: each member waits for the one below, the last for the first."""
-        colours, graph, last = self.colours, self._graph, len(deadlock.ring) - 1
-        for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
-            activity = graph.activities[name]
-            place = _place(activity)
-            bar = ("   ┌▶ ", colours.bad) if i == 0 else ("   │  ", colours.bad)
-            yield Row(Text.assemble(bar, (title(activity), colours.node(activity.node))), place)
-            group_name = group_of(activity, graph)
-            holds = f"holds group '{group_name}', " if group_name else ""
-            where = f"   {_short(place)} in {activity.function}" if place else ""
-            since = f"for {activity.age:.1f} s"
-            text = f"{holds}waits {since} for {wanted(edge, graph)}"
-            yield Row(
-                Text.assemble(("   │    ", colours.bad), (text, colours.text), (where, colours.accent)),
-                place,
-            )
-            queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
-            if queue is not None and group is not None and group.name:
-                needs = f"which {queue.label} of {queue.node} gives: it needs group '{group.name}'"
-                yield Row(Text.assemble(("   │    ", colours.bad), (needs, colours.dim)))
-            yield Row(Text("   └── back to the first" if i == last else "   │  ▼", style=colours.bad))
+            yield from deadlock_rows(deadlock, found, self._graph, self.colours)
 
     def _outcome_rows(self) -> Iterator[Row]:
         """Return the effect of the last change, above the remaining deadlocks, which look like those before it."""
@@ -325,7 +246,7 @@ class Groups(View):
     def _activity_row(self, activity: ActivityView, note: str = "") -> Row:
         colours = self.colours
         is_dead = any(activity.id in (*d.ring, *d.victims) for d in self._deadlocks)
-        place = _place(activity)
+        place = place_of(activity)
         text = Text.assemble((f"     {activity.label}", colours.bad if is_dead else colours.text))
         text.append(note, style=colours.dim)
         waits = concurrency.describe(activity.wait, self._graph)
@@ -337,7 +258,7 @@ class Groups(View):
         else:
             text.append(" running", style=colours.good)
         if place:
-            text.append(f"   {_short(place)}", style=colours.accent)
+            text.append(f"   {short(place)}", style=colours.accent)
         return Row(text, place)
 
     # actions
@@ -446,10 +367,6 @@ class Groups(View):
         self.console.copy(best or self.console.last_shell)
 
 
-def _place(activity: ActivityView) -> str:
-    return f"{activity.place.file}:{activity.place.line}" if activity.place.file else ""
-
-
 def _key(deadlock: Deadlock) -> Ring:
     """Return the identity of a deadlock across reports: the waiting nodes and handlers."""
     return frozenset((name, edge.queue) for name, edge in zip(deadlock.ring, deadlock.edges, strict=True))
@@ -457,11 +374,6 @@ def _key(deadlock: Deadlock) -> Ring:
 
 def _first_line(text: str) -> str:
     return text.partition("\n")[0]
-
-
-def _short(place: str) -> str:
-    file, _, line = place.rpartition(":")
-    return f"{PurePath(file).name}:{line}"
 
 
 def _slots(taken: int, limit: int | None) -> str:
