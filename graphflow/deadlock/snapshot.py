@@ -30,9 +30,9 @@ from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.startup_waits import start_of, unopened
 from graphflow.deadlock.vertices import Item, Vertices, arrived_calls, call_of
 from graphflow.deadlock.wait_paths import Subtask, WaitPath, gathered, limit_of, subtasks
+from graphflow.deadlock.wait_times import WaitTimes
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.executor.activity import Activity
-from graphflow.executor.clock import WallClock
 from graphflow.executor.runner import Run, Runner
 from graphflow.machines.waits.wait_graph import (
     FREE,
@@ -47,10 +47,8 @@ from graphflow.machines.waits.wait_graph import (
     SetBy,
     Slot,
     WaitGraph,
-    calls_of,
     goal_id,
     joined,
-    parts_of,
 )
 from graphflow.wire.liveliness import Kind
 
@@ -69,8 +67,8 @@ class Snapshot:
         """Number of tasks that were numbered."""
         self._numbers: WeakKeyDictionary[TaskLike, int] = WeakKeyDictionary()
         self._lock = threading.RLock()
-        self._since: dict[tuple[str, Condition], int] = {}
-        """By activity and wait: time at which it was first seen, in nanoseconds."""
+        self.times = WaitTimes(process)
+        """Ages and deadlines of waits."""
 
     def take(self) -> WaitGraph:
         """Take a snapshot, on any thread."""
@@ -99,14 +97,6 @@ class Snapshot:
         if task not in self._numbers:
             self._count += 1
         return self._numbers.setdefault(task, self._count)
-
-    def age(self, activity: str, wait: Condition, now_ns: int) -> float:
-        """Return the seconds since a wait was first seen."""
-        return (now_ns - self._since.setdefault((activity, wait), now_ns)) / 1e9
-
-    def forget(self, keep: set[tuple[str, Condition]]) -> None:
-        """Forget the ages of all waits but these."""
-        self._since = {key: when for key, when in self._since.items() if key in keep}
 
 
 class _Builder:
@@ -164,7 +154,7 @@ class _Builder:
             self._add_inner(min(unseen))
         blocker = self._blocker()
         blocked = {} if blocker is None else {self._zid: blocker}
-        self._memory.forget(self._seen)
+        self._memory.times.forget(self._seen)
         regroupings = {node.full_name: node.groups.regrouping for node in self._nodes}
         return WaitGraph(self._activities, self._vertices.groups, self._queues, blocked, regroupings)
 
@@ -211,7 +201,7 @@ class _Builder:
         self._pause, self._limit_ns = None, below and below.limit_ns
         wait = self._condition(task, WaitPath(node, task, is_bounded=below is not None and below.is_bounded))
         self._seen.add((id_, wait))
-        age, left = self._times(id_, wait, task)
+        age, left = self._memory.times.of(id_, wait, task, self._now_ns, self._limit_ns)
         found = where(self._frames_of(task), node.instance, self._pause)
         self._activities[id_] = ActivityView(
             id_,
@@ -229,34 +219,6 @@ class _Builder:
             found.is_async,
             found.called,
         )
-
-    def _times(self, id_: str, wait: Condition, task: TaskLike) -> tuple[float, float | None]:
-        """Return the seconds that an activity has waited, and those until its deadline, or None for no deadline."""
-        began, deadline = self._bounds(wait)
-        if wait is not FREE and self._limit_ns is not None:
-            deadline = min(self._limit_ns, deadline or self._limit_ns)
-        if began is None:
-            age = 0.0 if wait is FREE else self._memory.age(id_, wait, self._now_ns)
-            if isinstance(wait, SetBy) and isinstance(task, Activity) and self._is_steady(task):
-                age = max(age, self._process.loop.time() - task.suspended_at)
-        else:
-            age = (self._now_ns - began) / 1e9
-        return age, None if deadline is None else (deadline - self._now_ns) / 1e9
-
-    def _is_steady(self, activity: Activity) -> bool:
-        """Whether an activity has had the same wait since it was suspended, and by the loop's clock."""
-        return isinstance(self._process.clock, WallClock) and not aio.stands_for_others(waiter_of(activity))
-
-    def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
-        """Return the time at which the first of the awaited calls began, and that of their first deadline."""
-        wanted = {call.id for call in calls_of(wait)}
-        services = {part.service for part in parts_of(wait) if isinstance(part, Opening)}
-        found = [c for c in list(self._ledger.calls.values()) if c.id in wanted]
-        deadlines = [c.deadline_ns for c in found if c.deadline_ns is not None]
-        began = [c.began_ns for c in found]
-        began += [o.began_ns for o in list(self._ledger.openings.values()) if o.service in services]
-        began += [g.began_ns for g in list(self._ledger.goals.values()) if goal_id(g.goal_id) in wanted]
-        return min(began, default=None), min(deadlines, default=None)
 
     # conditions
 

@@ -365,16 +365,6 @@ async def test_times(
     assert (view.age, view.left) == (age, left)
 
 
-async def test_the_age_of_a_wait_that_nobody_wrote_down(graphflow_runner: asyncio.Runner) -> None:
-    """It counts from when it was first seen, begins anew for another wait, and is forgotten when it is not seen."""
-    snapshot = Scene().snapshot
-
-    assert [snapshot.age("a", ADD, now) for now in (SECOND, 3 * SECOND)] == [0.0, 2.0]
-    assert snapshot.age("a", TURN, 3 * SECOND) == snapshot.age("b", ADD, 3 * SECOND) == 0.0
-    snapshot.forget({("b", ADD)})
-    assert (snapshot.age("b", ADD, 4 * SECOND), snapshot.age("a", ADD, 4 * SECOND)) == (1.0, 0.0)
-
-
 async def test_an_ended_run_is_not_told(graphflow_runner: asyncio.Runner) -> None:
     """Nor is one that has not begun."""
     scene = Scene()
