@@ -19,7 +19,7 @@ from pydantic import BaseModel
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph.checks.validation import M, Problems, colon_fault, example, unknown_key, validated
 from graphflow.graph.expansion.arguments import Arguments, arguments_after_name
-from graphflow.graph.expansion.inherit import BY_ENTRY, after_groups, with_groups
+from graphflow.graph.expansion.inherit import BY_ENTRY, after_groups, from_template, with_groups
 from graphflow.graph.expansion.loops import values_of
 from graphflow.graph.expansion.ros_pairs import as_class
 from graphflow.graph.expansion.values import Scope, Values
@@ -29,8 +29,6 @@ from graphflow.graph.model import (
     ForBlock,
     GroupBlock,
     IncludeBlock,
-    NodeSpec,
-    keys_of,
 )
 from graphflow.launchfiles.conversion import FROM_LAUNCH
 from graphflow.launchfiles.reading import read
@@ -421,25 +419,7 @@ class Expansion:
         if wanted is None:
             return item
         name = self._values.substituted(wanted, scope).plain()
-        base = scope.templates.get(name) if isinstance(name, str) else None
-        if isinstance(name, (list, dict)) or name is None:
-            way = f"; write template: {name[0]}" if isinstance(name, list) and len(name) == 1 else ""
-            shown_value = "nothing" if name is None else repr(name)
-            self._problems.add(wanted.place, f"template: expected the name of one template, got {shown_value}{way}")
-            return None
-        if base is None:
-            near = did_you_mean(str(name), scope.templates) or "; the file has none under templates:"
-            self._problems.add(wanted.place, f"there is no template {name!r}{near}")
-            return None
-        if not isinstance(base.value, dict):
-            self._problems.add(base.place, f"templates.{name}: expected a mapping, as for a node, got {base.plain()!r}")
-            return None
-        for key, entry in base.entries.items():
-            if key == "template":
-                self._problems.add(entry.at, "a template cannot use a template; write here what it has")
-            elif key not in keys_of(NodeSpec):
-                self._problems.add(entry.at, unknown_key(key, keys_of(NodeSpec)))
-        return merged(base, item, BY_ENTRY)
+        return from_template(item, wanted.place, name, scope.templates, self._problems)
 
     def _checked(self, model: type[M], block: Item, whole: Item | None = None) -> M | None:
         """Validate a block; None, with problems added, if its keys or types are wrong."""

@@ -1,11 +1,15 @@
-"""Inheritance of nodes from the groups around them."""
+"""Inheritance of nodes from their templates and from the groups around them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from graphflow.graph.model import FROM_GROUPS
-from graphflow.markup.tree import Item, first_of
+from graphflow.errors import Place
+from graphflow.graph.checks.validation import Problems, unknown_key
+from graphflow.graph.model import FROM_GROUPS, NodeSpec, keys_of
+from graphflow.markup.source import Data
+from graphflow.markup.tree import Item, first_of, merged
+from graphflow.names import did_you_mean
 
 BY_ENTRY = ("params", "remap", "env")
 """Keys that templates, groups and overrides change entry by entry; they replace any other as a whole."""
@@ -51,3 +55,32 @@ def with_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
         else:
             entries[f"{key}{FROM_GROUPS}"] = Item(of_groups, item.place)
     return item.with_value(entries)
+
+
+def from_template(
+    item: Item, place: Place, name: Data, templates: Mapping[str, Item], problems: Problems
+) -> Item | None:
+    """Merge a node with its template; None, with a problem added, if there is no such template.
+
+    Args:
+        place, name: Those of the value under `template:`.
+    """
+    base = templates.get(name) if isinstance(name, str) else None
+    if isinstance(name, (list, dict)) or name is None:
+        way = f"; write template: {name[0]}" if isinstance(name, list) and len(name) == 1 else ""
+        shown_value = "nothing" if name is None else repr(name)
+        problems.add(place, f"template: expected the name of one template, got {shown_value}{way}")
+        return None
+    if base is None:
+        near = did_you_mean(str(name), templates) or "; the file has none under templates:"
+        problems.add(place, f"there is no template {name!r}{near}")
+        return None
+    if not isinstance(base.value, dict):
+        problems.add(base.place, f"templates.{name}: expected a mapping, as for a node, got {base.plain()!r}")
+        return None
+    for key, entry in base.entries.items():
+        if key == "template":
+            problems.add(entry.at, "a template cannot use a template; write here what it has")
+        elif key not in keys_of(NodeSpec):
+            problems.add(entry.at, unknown_key(key, keys_of(NodeSpec)))
+    return merged(base, item, BY_ENTRY)
