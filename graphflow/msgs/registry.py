@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
@@ -23,7 +22,7 @@ from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import NUMERIC, PRIMITIVES, STRINGS, Action, Interface, Message, Service
 from graphflow.wire.typehash import referenced, type_hash
 
-KINDS = ("msg", "srv", "action")
+KINDS = idl.KINDS
 CALLED = {"msg": "a message", "srv": "a service", "action": "an action"}
 HAVING_SHOWN = 4
 """Number of types of the same name that an error lists."""
@@ -223,36 +222,16 @@ def _unknown(package: str, kind: str, name: str, known: list[str]) -> str:
 
 def no_kinds(package: str) -> str:
     """Describe what a package's folder lacks, definitions or the package's name; empty if nothing."""
-    if package in _packages:
-        file = next((f for kind in KINDS for f in sorted(_packages[package].glob(f"*/*.{kind}"))), None)
-        return f"; {file} must be {_packages[package] / file.suffix[1:] / file.name}" if file is not None else ""
-    found = [root / package for root in roots() if package.isidentifier() and (root / package).is_dir()]
-    if found:
-        return f"; {found[0]} has no folder msg, srv or action"
-    for root in roots():
-        for kind in KINDS:
-            for file in (*sorted((root / kind).glob(f"*.{kind}")), *sorted(root.glob(f"*.{kind}"))):
-                return f"; {file} lies in no package: move it to {root / package / kind / file.name}"
-    alike = (folder for root in roots() for folder in root.iterdir() if folder.name.replace("-", "_") == package)
-    return next((f"; rename {folder} to {package}" for folder in alike if folder.is_dir()), "")
+    from graphflow.msgs.misplaced import without_kinds  # only errors need it
+
+    return without_kinds(package, _packages.get(package), list(roots()))
 
 
 def misplaced(package: str, name: str) -> str:
-    """Describe the move or renaming of a file that seems to be meant but lies elsewhere; else empty.
+    """Describe the move or renaming of a file that seems to be meant but lies elsewhere; else empty."""
+    from graphflow.msgs.misplaced import meant
 
-    A file with a legal place and name is not to be renamed: then the requested name is wrong.
-    """
-    folders = [root / package for root in roots()] + ([_packages[package]] if package in _packages else [])
-    for folder in folders:
-        for file in sorted(file for kind in KINDS for file in folder.rglob(f"*.{kind}")):
-            kind = file.suffix[1:]
-            if file.stem.replace("_", "").lower() == name.replace("_", "").lower():
-                if file.parent == folder / kind and file.stem != name and idl.is_type_name(file.stem):
-                    return f"; did you mean {file.stem!r}?"
-                right = folder / kind / f"{name if idl.is_type_name(name) else camel(name)}.{kind}"
-                if file != right:
-                    return f"; {file} must be {right}{'' if idl.is_type_name(file.stem) else IN_CAMEL}"
-    return ""
+    return meant(name, [root / package for root in roots()] + ([_packages[package]] if package in _packages else []))
 
 
 def why_different(name: str) -> str:
@@ -264,15 +243,6 @@ def why_different(name: str) -> str:
     if file.is_relative_to(BUNDLED):
         return ""
     return f"; if {file} was changed after the node had started, start the node again"
-
-
-def camel(name: str) -> str:
-    """Convert a name with underscores or small letters to that of an interface: `SetGoal` for `set_goal`."""
-    return "".join(part[:1].upper() + part[1:] for part in re.split("[_-]", name))
-
-
-IN_CAMEL = ": names of interfaces are in camel case"
-"""The reason to rename the file of an interface."""
 
 
 def definition_file(name: str) -> Path:

@@ -27,6 +27,8 @@ from graphflow.wire.schema import (
     string_length,
 )
 
+KINDS = ("msg", "srv", "action")
+"""Endings of the files, and the folders in which they lie."""
 _TYPE = re.compile(r"(?P<base>[A-Za-z0-9_/]+)(?:<=(?P<bound>\d{1,18}))?(?:\[(?P<array><=\d{1,18}|\d{0,18})\])?\Z")
 _FIELD_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*\Z")
 _CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z")

@@ -97,14 +97,15 @@ def _interface_faults(package: str, names: Iterable[str]) -> Iterator[str]:
     """Report types with invalid names, and types whose definition or fields are invalid."""
     from graphflow.errors import InterfaceError, UnknownInterface
     from graphflow.msgs import registry
+    from graphflow.msgs.misplaced import IN_CAMEL, camel
     from graphflow.wire.idl import is_type_name
 
     for name in names:
         base, full = name.rpartition("/")[2], f"{package}/{name}"
         if not is_type_name(base):
             file = registry.definition_file(full)
-            right = file.with_name(f"{registry.camel(base)}{file.suffix}")
-            yield f"{file} must be {right}{registry.IN_CAMEL}"
+            right = file.with_name(f"{camel(base)}{file.suffix}")
+            yield f"{file} must be {right}{IN_CAMEL}"
             continue
         try:
             registry.hash_of(full)  # parses the definition and those of all nested types
