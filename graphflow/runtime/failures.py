@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import logging
+from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable
 from pathlib import PurePath
@@ -73,8 +75,13 @@ class Failures:
         self._silence: dict[tuple[str, str, str], tuple[int, int]] = {}
         """For each (handler, error type, line): the end of its silence in nanoseconds, and the records suppressed."""
 
-    def failed(self, label: str, error: BaseException, on_error: OnError) -> None:
-        """Handle an error that a handler raised."""
+    def failed(self, label: str, error: BaseException, on_error: OnError | None) -> None:
+        """Handle an error that a handler raised; with None for the policy, it is only reported."""
+        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # of a coroutine, or of a thread
+            return
+        if on_error is None or not self._host.is_running:  # the run outlived the stop
+            self._host.report_error(label, error)
+            return
         now = self._host.context.clock.monotonic_ns()
         self._log(label, error, now)
         if on_error == "end":

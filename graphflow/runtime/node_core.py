@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import concurrent.futures
-import inspect
-from asyncio import CancelledError
 from collections import deque
-from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AsyncExitStack
 from functools import cache
 from typing import Any, TypeVar, TypeVarTuple
@@ -43,6 +40,7 @@ from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_options import unused_remaps
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
+from graphflow.runtime.node_work import end_work, limited, placed
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
 from graphflow.runtime.parameters.services import ParameterEvents, ParameterServices
 from graphflow.runtime.part import Part
@@ -51,9 +49,6 @@ from graphflow.wire.liveliness import Entity, Kind
 
 P = TypeVar("P", bound=Part)
 Ts = TypeVarTuple("Ts")
-
-STOP_LIMIT = 2.0
-"""Seconds that cancelled handlers and tasks have for cleanup."""
 
 
 class NodeCore:
@@ -229,29 +224,8 @@ class NodeCore:
     def place(
         self, callback: Callable[..., object] | None, otherwise: str, group: Group | HandlerGroup | None, thread: bool
     ) -> tuple[str, Any, HandlerGroup | None]:
-        """Return a handler's label, the function to call, and the group whose slots its runs take.
-
-        Args:
-            callback: None for a subscription that is iterated.
-            otherwise: The label of a handler without a name, such as a lambda.
-        """
-        name = name_of(callback, otherwise)
-        label = otherwise if name == "<lambda>" else name
-        if callback is None:
-            return label, None, None
-        place = self.groups.place(label, group)
-        threaded = thread or (place.is_threaded and not inspect.iscoroutinefunction(callback))
-        return label, self._in_thread(callback) if threaded else callback, place.group
-
-    def _in_thread(self, fn: Callable[..., object]) -> Callable[..., Coroutine[object, object, object]]:
-        if inspect.iscoroutinefunction(fn):
-            raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
-
-        async def run(*args: object) -> object:
-            # A thread cannot be cancelled: the run, and with it the slot, lasts until the thread has ended.
-            return await self.context.in_thread(fn, *args, stays=True)
-
-        return run
+        """Return a handler's label, the function to call, and its group, as `node_work.placed` does."""
+        return placed(self, self.groups, callback, otherwise, group, thread)
 
     def runner(self, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> Runner:
         made = Runner(self.context.ledger, spec, items, group)
@@ -373,7 +347,7 @@ class NodeCore:
         if context is None:
             return
         try:
-            await self.end(self.begin_to_stop(), self.tasks)
+            await end_work(self.log, self.begin_to_stop(), self.tasks)
             await self._finish()
         finally:
             self.log.log_suppressed()
@@ -394,35 +368,10 @@ class NodeCore:
         """Keep the parts from starting more work; returns the runners to cancel."""
         return [*(part.begin_to_stop() for part in self.parts), *self._binding.runners()]
 
-    async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[object]]) -> None:
-        """Cancel runs and tasks, and give them `STOP_LIMIT` seconds to clean up."""
-        cancelled = [runner for runner in runners if runner is not None]
-        ending: dict[asyncio.Future[Any], str] = {runner.cancel(): runner.name for runner in cancelled}
-        for task in {*tasks} - {asyncio.current_task()}:
-            task.cancel()
-            ending[task] = task.get_name()
-        if ending:
-            _, stuck = await asyncio.wait(ending, timeout=STOP_LIMIT)
-            if stuck:
-                from graphflow.runtime.mistakes.unended import unended  # most programs never need it
-
-                names = unended(stuck, ending, cancelled)
-                self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
-
     async def _finish(self) -> None:
         if self.has_started:
-            await self.limited("on_shutdown", self.instance.on_shutdown)
-        await self.limited("exiting context managers", self.entered.aclose)
-
-    async def limited(self, what: str, work: Callable[[], Coroutine[object, object, object]]) -> None:
-        """Run one step of stopping; its failure or timeout does not prevent the next ones."""
-        try:
-            async with asyncio.timeout(STOP_LIMIT):
-                await work()
-        except TimeoutError:
-            self.log.warning("%s took more than %.0f s and was cancelled", what, STOP_LIMIT)
-        except Exception as error:  # of a hook or context manager: the next steps run all the same
-            self.report_error(what, error)
+            await limited(self, "on_shutdown", self.instance.on_shutdown)
+        await limited(self, "exiting context managers", self.entered.aclose)
 
     def spawn(self, fn: Callable[[*Ts], Coroutine[object, object, object]], *args: *Ts) -> asyncio.Task[object]:
         """Run `fn(*args)` in the background until the node stops. An error in it ends the node."""
@@ -441,12 +390,7 @@ class NodeCore:
             self._fail(error)
 
     def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
-        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # of a coroutine, or of a thread
-            return
-        if on_error is None or not self.is_running:  # the run outlived the stop
-            self.report_error(label, error)
-        else:
-            self._failures.failed(label, error, on_error)
+        self._failures.failed(label, error, on_error)
 
     def report_error(self, label: str, error: BaseException) -> None:
         report(self.log, label, error)

@@ -30,7 +30,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.runtime import node_core
+from graphflow.runtime import node_work
 from graphflow.runtime.context import Context
 from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.node_core import core_of
@@ -217,23 +217,6 @@ async def test_what_was_entered_is_left_in_reverse(graph: Graph, caplog: pytest.
     await graph.stop(holder)
     assert story == ["plain", "later", "goodbye", "later left", "plain left"]
     assert "on_shutdown: RuntimeError: cannot say more" in caplog.text
-
-
-async def test_a_goodbye_has_a_limit(
-    graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It is cancelled and logged after a limit; the node stops all the same."""
-    monkeypatch.setattr(node_core, "STOP_LIMIT", 0.01)
-
-    class Slow(Node):
-        async def on_shutdown(self) -> None:
-            await asyncio.sleep(60.0)
-
-    slow = Slow()
-    await graph.start(slow)
-    await core_of(slow).stop()
-    assert "on_shutdown took more than 0 s and was cancelled" in caplog.text
-    assert not slow.is_running
 
 
 async def test_a_node_that_prepares_can_be_stopped(graph: Graph) -> None:
@@ -579,7 +562,7 @@ async def test_what_does_not_end_is_named(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     """A cleanup that takes too long does not block the stop, and the log names its task."""
-    monkeypatch.setattr(node_core, "STOP_LIMIT", 0.001)
+    monkeypatch.setattr(node_work, "STOP_LIMIT", 0.001)
     node = Tidy()
     await graph.start(node)
     if what == "subscription":

@@ -25,6 +25,7 @@ from graphflow.qos import SERVICES, Qos
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.node_core import NodeCore
+from graphflow.runtime.node_work import end_work, limited
 from graphflow.runtime.part import Part
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ class ManagedCore(NodeCore):
         """Release the resources of the top level. Raises the errors of their release."""
         level = self._levels[-1]
         try:
-            await self.end([part.begin_to_stop() for part in level.parts], level.tasks)
+            await end_work(self.log, [part.begin_to_stop() for part in level.parts], level.tasks)
             await self.entered.aclose()
         finally:
             for part in reversed(level.parts):
@@ -137,7 +138,7 @@ class ManagedCore(NodeCore):
             return
         self._rests = True
         runners = [self._hold(part) for part in self.parts if not isinstance(part, TopicPublisher)]
-        await self.end(runners, self._levels[-1].tasks if self._levels else ())
+        await end_work(self.log, runners, self._levels[-1].tasks if self._levels else ())
 
     async def _work(self) -> None:
         self._rests = False
@@ -269,10 +270,10 @@ class ManagedCore(NodeCore):
             if self.state is not LifecycleState.FINALIZED:
                 last = asked(self.state, "shutdown")
                 assert last is not None
-                await self.limited("on_shutdown", partial(self._make, last))
+                await limited(self, "on_shutdown", partial(self._make, last))
             while self._levels:
-                await self.limited("exiting context managers", self._leave_level)
-        await self.limited("exiting context managers", self.entered.aclose)
+                await limited(self, "exiting context managers", self._leave_level)
+        await limited(self, "exiting context managers", self.entered.aclose)
 
     # services
 
