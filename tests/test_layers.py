@@ -159,8 +159,15 @@ def test_every_package_has_a_layer() -> None:
     assert there - {"__init__", "__main__"} <= set(PACKAGES)
 
 
-LONGEST_FILE = 500
+LONGEST_FILE = 450
 """Lines of a file of the package, at most."""
+LONGER = {
+    "runtime/node.py": "one class: all that users call on a node",
+    "rclpy/site/rclpy/node.py": "one class, rclpy's",
+    "rclpy/site/rclpy/action/server.py": "two classes of rclpy that name each other",
+    "rclpy/site/rclpy/impl/deadlock/waiting.py": "one traversal of what a thread waits for",
+}
+"""Files of up to 500 lines, and why they are not divided."""
 
 
 def import_graph(files: Mapping[str, str]) -> dict[str, set[str]]:
@@ -248,7 +255,9 @@ def test_a_planted_circle_is_found(files: dict[str, str], circle: list[str]) -> 
 def test_no_file_is_too_long() -> None:
     """One idea a file; one that needs more lines has two."""
     lengths = {p.relative_to(PACKAGE).as_posix(): len(p.read_text("utf-8").splitlines()) for p in PACKAGE.rglob("*.py")}
-    assert not {file: n for file, n in lengths.items() if n > LONGEST_FILE}
+    long = {file: n for file, n in lengths.items() if n > LONGEST_FILE}
+    assert {*long} == {*LONGER}
+    assert max(long.values()) <= 500
 
 
 def test_every_module_has_a_test_of_its_name() -> None:
