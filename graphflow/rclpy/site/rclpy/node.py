@@ -162,8 +162,8 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def _default_callback_group(self, group: CallbackGroup) -> None:
         self._graphflow.group = group
 
-    _clock = Known(lambda node: node._graphflow.clock)
-    _logger = Known(lambda node: node._graphflow.logger)
+    _clock = Known(lambda inner: inner.clock)
+    _logger = Known(lambda inner: inner.logger)
 
     @property
     def handle(self) -> Handle:

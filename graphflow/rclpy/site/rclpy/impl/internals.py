@@ -15,6 +15,7 @@ from rclpy.clock import ROSClock
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.mistakes.arguments import NotConstructed
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.parameters import NodeParameters
 from rclpy.logging import get_logger
 from rclpy.publisher import Publisher
@@ -56,14 +57,18 @@ class Internals:
 
 
 class Known:
-    """An internal attribute of rclpy's nodes that programs read; a subclass may define its own of that name."""
+    """An internal attribute of rclpy's nodes that programs read; a subclass may define its own of that name.
 
-    def __init__(self, get: Callable[..., object]) -> None:
+    Args:
+        get: Returns its value from the node's internals.
+    """
+
+    def __init__(self, get: Callable[[Internals], object]) -> None:
         self._get = get
 
     # Without `__set__`: so an attribute of an instance has precedence, unlike over a property.
     def __get__(self, node: Node, owner: type) -> Any:
-        return self if node is None else self._get(node)
+        return self if node is None else self._get(internals_of(node))
 
 
 def none() -> None:

@@ -34,7 +34,7 @@ class ParameterMethods:
     """The node's methods for its parameters; a base class of `Node`."""
 
     PARAM_REL_TOL = RELATIVE_TOLERANCE
-    _parameters = Known(lambda node: node._graphflow.parameters.with_prefix(""))
+    _parameters = Known(lambda inner: inner.parameters.with_prefix(""))
     _graphflow: Internals
 
     @property

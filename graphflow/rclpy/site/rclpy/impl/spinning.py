@@ -6,19 +6,18 @@ import threading
 import time
 import weakref
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from graphflow.rclpy.wake import SharedWake
 from rclpy.exceptions import InvalidHandle
+from rclpy.impl.nodes import internals_of
 from rclpy.task import Task
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
     from rclpy.node import Node
-    from rclpy.timer import Timer
-    from rclpy.waitable import Waitable
 
 POLL = 0.001
 """Seconds between two steps of a coroutine that yields without naming a future."""
@@ -56,19 +55,6 @@ class Entity(Protocol):
 
     def take_work(self) -> Callable[[], object] | None:
         """Take one piece of work: a function or coroutine function."""
-
-
-class SpunNode(Protocol):
-    """A node, as an executor sees it."""
-
-    executor: Any
-    _graphflow: Any
-
-    @property
-    def timers(self) -> Iterator[Timer]: ...
-
-    @property
-    def waitables(self) -> Iterator[Waitable]: ...
 
 
 class Spins(Protocol):
@@ -272,7 +258,7 @@ class Spinning:
         for node in chosen:
             self._round.extend((timer, node) for timer in list(node.timers) if timer.has_work())
         for node in chosen:
-            bell = node._graphflow.bell
+            bell = internals_of(node).bell
             bell.attend()
             ready = bell.ready
             for waitable in list(node.waitables):

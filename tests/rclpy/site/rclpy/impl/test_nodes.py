@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import rclpy
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.node import Node
 from rclpy.utilities import get_default_context
@@ -22,3 +23,10 @@ def test_the_internals_of_a_node(node: Node) -> None:
     """They have its entities."""
     timer = node.create_timer(10.0, lambda: None)
     assert timer in internals_of(node).timers
+
+
+def test_the_internals_of_an_executor(node: Node) -> None:
+    """They have its nodes."""
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    assert list(internals_of(executor).nodes) == [node]
