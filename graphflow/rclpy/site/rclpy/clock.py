@@ -96,13 +96,13 @@ class JumpHandle:
             raise ValueError("post_callback must be callable if given")
         self._clock: Clock | None = clock
         self.threshold, self.pre_callback, self.post_callback = threshold, pre_callback, post_callback
-        clock._jumps.append(self)
+        clock.jump_handles.append(self)
 
     def unregister(self) -> None:
         """Stop being notified. Idempotent."""
         clock, self._clock = self._clock, None
         if clock is not None:
-            clock._jumps.remove(self)
+            clock.jump_handles.remove(self)
 
     def __enter__(self) -> Self:
         return self
@@ -121,7 +121,7 @@ class Clock:
     """A clock of some type; for ROS_TIME, a `ROSClock` is created. Raises TypeError unless given a `ClockType`."""
 
     _clock_type: ClockType
-    _jumps: list[JumpHandle]
+    jump_handles: list[JumpHandle]
     _watching: WeakSet[Any]
     _override_ns: int
     _is_overridden: bool
@@ -135,7 +135,7 @@ class Clock:
         kind: Any = ROSClock if clock_type is ClockType.ROS_TIME and not issubclass(cls, ROSClock) else cls
         self: Self = object.__new__(kind)
         self._clock_type = clock_type
-        self._jumps = []
+        self.jump_handles = []
         self._watching = WeakSet()
         self._override_ns = 0
         self._is_overridden = False
@@ -254,11 +254,15 @@ class ROSClock(Clock):
         """Whether the clock shows the time set by `set_ros_time_override`."""
         return self._is_overridden
 
-    def _set_ros_time_is_active(self, enabled: bool) -> None:
+    def activate_override(self, enabled: bool) -> None:
+        """Begin or end to show the time set by `set_ros_time_override`. graphflow's own."""
         if enabled is self._is_overridden:
             return
         change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
         self._jump(change, 0, lambda: setattr(self, "_is_overridden", enabled))
+
+    def _set_ros_time_is_active(self, enabled: bool) -> None:  # rclpy's name, which tests of programs use
+        self.activate_override(enabled)
 
     def set_ros_time_override(self, time: Time) -> None:
         """Set the time that the clock shows while its override is active."""
@@ -272,7 +276,7 @@ class ROSClock(Clock):
         with self._moving:
             # As in rcl, a new override of an inactive clock is no jump: the clock does not show it.
             is_told = self._is_overridden or change is not ClockChange.ROS_TIME_NO_CHANGE
-            covered = [j for j in list(self._jumps) if is_told and j.threshold.covers(change, delta_ns)]
+            covered = [j for j in list(self.jump_handles) if is_told and j.threshold.covers(change, delta_ns)]
             for jump in covered:
                 if jump.pre_callback is not None:
                     jump.pre_callback()

@@ -79,7 +79,7 @@ class Time:
             raise ValueError("Subtraction leads to negative time.") from None
 
     def _refuse_other_clock(self, other: Time, text: str = "Can't compare times with different clock types") -> None:
-        if self._clock_type != other._clock_type:
+        if self._clock_type != other.clock_type:
             raise TypeError(text)
 
     # Equality raises for another clock type, too, as in rclpy: False would hide the mistake.

@@ -64,7 +64,7 @@ class TimeSource:
             return
         self._is_active = enabled
         for clock in self._clocks:
-            clock._set_ros_time_is_active(enabled)
+            clock.activate_override(enabled)
         self._hear()
 
     def _hear(self) -> None:
@@ -110,7 +110,7 @@ class TimeSource:
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
         # Before the clock is activated: it would show an older time for a moment otherwise.
         clock.set_ros_time_override(self._last)
-        clock._set_ros_time_is_active(self._is_active)
+        clock.activate_override(self._is_active)
         self._clocks.append(clock)
 
     def clock_callback(self, msg: rosgraph_msgs.msg.Clock) -> None:
