@@ -9,7 +9,7 @@ from pathlib import Path
 from graphflow.runtime.logs.logger import ROOT
 from rclpy._rclpy_pybind11 import RCUtilsError
 from rclpy.impl.logging_severity import LoggingSeverity
-from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.impl.rcutils_logger import RcutilsLogger, python_logger
 
 __all__ = [
     "LoggingSeverity",
@@ -68,7 +68,7 @@ def get_logger_effective_level(name: str) -> LoggingSeverity:
 
 def get_logger_level(name: str) -> LoggingSeverity:
     """Return a logger's own level."""
-    return LoggingSeverity(RcutilsLogger(name)._logger.level)
+    return LoggingSeverity(python_logger(name).level)
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:

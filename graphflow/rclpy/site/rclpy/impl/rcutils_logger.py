@@ -111,6 +111,11 @@ def _options(given: dict[str, object]) -> dict[str, object]:
     return found
 
 
+def python_logger(name: str) -> python_logging.Logger:
+    """Return the logger of Python's that a logger's name stands for; the root for an empty one."""
+    return node_logger(f"/{name.replace('.', '/')}") if name else python_logging.getLogger(ROOT)
+
+
 class RcutilsLogger:
     """A logger. Loggers whose names continue its own after a dot are its children and inherit its level."""
 
@@ -123,7 +128,7 @@ class RcutilsLogger:
 
     @property
     def _logger(self) -> python_logging.Logger:
-        return node_logger(f"/{self.name.replace('.', '/')}") if self.name else python_logging.getLogger(ROOT)
+        return python_logger(self.name)
 
     def get_child(self, name: str) -> RcutilsLogger:
         """Return the logger `name` below this one. Raises ValueError for an empty name."""
@@ -178,7 +183,7 @@ class RcutilsLogger:
             return False
         if not Console.installed().is_wanted:
             setup_console()
-        logger = self._logger if name == self.name else RcutilsLogger(name)._logger
+        logger = self._logger if name == self.name else python_logger(name)
         code = frame.f_code
         # Not `logger.log`: it would look for the caller again, and find this file.
         record = logger.makeRecord(
