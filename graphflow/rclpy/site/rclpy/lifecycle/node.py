@@ -228,7 +228,7 @@ class LifecycleNodeMixin(ManagedEntity):
         node = cast("Node", self)
         made: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
         self._managed_entities[made] = None
-        made._graphflow_node = weakref.ref(node)
+        made.attach(weakref.ref(node), self._state_machine)
         return made
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
@@ -15,6 +15,12 @@ if TYPE_CHECKING:
     from rclpy.lifecycle.node import LifecycleState
 
 
+class HasState(Protocol):
+    """The holder of a node's state."""
+
+    state: State
+
+
 class LifecyclePublisher(SimpleManagedEntity, Publisher):
     """A publisher that sends only while its node is active."""
 
@@ -24,7 +30,12 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
 
         # Weakly, since the node keeps its publishers.
         self._graphflow_node: Callable[[], Any] = _none
+        self._graphflow_machine: HasState | None = None
         self._graphflow_has_warned = False
+
+    def attach(self, node: Callable[[], Any], machine: HasState) -> None:
+        """Set the publisher's node, by a weak reference, and the holder of its state. graphflow's own."""
+        self._graphflow_node, self._graphflow_machine = node, machine
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Send from now on, and warn again after the next deactivation."""
@@ -33,11 +44,11 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
 
     def _graphflow_warn(self, msg: Any) -> None:
         """Warn, with rclcpp's text, that a message is not sent; once per deactivation."""
-        node = self._graphflow_node()
-        if node is None or self._graphflow_has_warned:
+        node, machine = self._graphflow_node(), self._graphflow_machine
+        if node is None or machine is None or self._graphflow_has_warned:
             return
         self._graphflow_has_warned = True
-        name, state = node.get_fully_qualified_name(), node._state_machine.state
+        name, state = node.get_fully_qualified_name(), machine.state
         steps = {State.UNCONFIGURED: ("configure", "activate"), State.INACTIVE: ("activate",)}.get(state, ())
         way = " && ".join(f"graphflow lifecycle set {name} {step}" for step in steps)
         node.get_logger().warning(
