@@ -35,7 +35,7 @@ class Buffer(BufferCore, BufferInterface):
         self._graphflow_changed = threading.Condition()
         self._graphflow_waiting: dict[Future, Callable[[], tuple[bool, str]]] = {}
         self._graphflow_node = node
-        self._graphflow_unfilled = Unfilled()
+        self._graphflow = Unfilled()
         if node is not None:
             self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_serve_frames)
 
@@ -44,12 +44,12 @@ class Buffer(BufferCore, BufferInterface):
         return response
 
     def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
-        self._graphflow_unfilled.is_filled = True
+        self._graphflow.is_filled = True
         super().set_transform(transform, authority)
         self._graphflow_wake()
 
     def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
-        self._graphflow_unfilled.is_filled = True
+        self._graphflow.is_filled = True
         super().set_transform_static(transform, authority)
         self._graphflow_wake()
 
@@ -79,8 +79,8 @@ class Buffer(BufferCore, BufferInterface):
         try:
             return self.lookup_transform_core(target_frame, source_frame, time)
         except LookupException as error:
-            if self._graphflow_unfilled.remark:
-                error.__notes__ = [f"note: {self._graphflow_unfilled.remark}"]
+            if self._graphflow.remark:
+                error.__notes__ = [f"note: {self._graphflow.remark}"]
             raise
 
     def lookup_transform_full(
@@ -134,7 +134,7 @@ class Buffer(BufferCore, BufferInterface):
                     break
                 self._graphflow_changed.wait(min(left, 0.1))  # the end of a context wakes nobody
         if not answer[0]:
-            self._graphflow_unfilled.lookup_failed(self)
+            self._graphflow.lookup_failed(self)
         return answer
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: object) -> Future[bool]:

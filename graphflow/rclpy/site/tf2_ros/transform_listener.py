@@ -10,6 +10,7 @@ from tf2_py import BufferCore
 
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
+from rclpy.impl.nodes import internals_of
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_ros.buffer import Buffer
 
@@ -45,7 +46,7 @@ class TransformListener:
     ) -> None:
         self.buffer, self.node = buffer, node
         if isinstance(buffer, Buffer):
-            buffer._graphflow_unfilled.is_filled = True
+            internals_of(buffer).is_filled = True
         self.group = ReentrantCallbackGroup()
         if static_qos is None:
             kept = DurabilityPolicy.TRANSIENT_LOCAL

@@ -20,7 +20,7 @@ class HasInternals(Protocol[T_co]):
 
 
 def internals_of(owner: HasInternals[T]) -> T:
-    """Return the internals of a node, executor, action client or action server."""
+    """Return the internals of a node, executor, action client or server, or transform buffer."""
     return owner._graphflow
 
 

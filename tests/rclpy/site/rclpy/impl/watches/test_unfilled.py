@@ -56,5 +56,5 @@ def test_buffers_that_are_filled(node: Node, caplog: pytest.LogCaptureFixture, m
     monkeypatch.setattr(unfilled, "_names_a_filler", lambda _: True)
     assert not own.can()
     monkeypatch.undo()
-    assert own.tf._graphflow_unfilled.remark == ""
+    assert own.tf._graphflow.remark == ""
     assert told(caplog) == []
