@@ -38,11 +38,11 @@ class _Callbacks:
     def __init__(self) -> None:
         self.parameter_callbacks: dict[tuple[str, str], list[ParameterCallbackHandle]] = {}
         self.event_callbacks: list[ParameterEventCallbackHandle] = []
-        self._lock = threading.RLock()
+        self.lock = threading.RLock()
 
     def event_callback(self, event: ParameterEvent) -> None:
         """Call the callbacks that an event concerns, newest first."""
-        with self._lock:
+        with self.lock:
             for (parameter_name, node_name), handles in list(self.parameter_callbacks.items()):
                 parameter = ParameterEventHandler.get_parameter_from_event(event, parameter_name, node_name)
                 if parameter is not None:
@@ -100,14 +100,14 @@ class ParameterEventHandler:
         """Call `callback(message)` when a parameter of a node is set."""
         full = self._resolve_path(node_name)
         handle = ParameterCallbackHandle(parameter_name, full, callback)
-        with self._callbacks._lock:
+        with self._callbacks.lock:
             self._callbacks.parameter_callbacks.setdefault((parameter_name, full), []).insert(0, handle)
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
         """Remove such a callback. Raises RuntimeError if it was not added."""
         key = (handle.parameter_name, handle.node_name)
-        with self._callbacks._lock:
+        with self._callbacks.lock:
             handles = self._callbacks.parameter_callbacks.get(key, [])
             if handle not in handles:
                 raise RuntimeError("Callback doesn't exist")
@@ -118,13 +118,13 @@ class ParameterEventHandler:
     def add_parameter_event_callback(self, callback: Callable[[ParameterEvent], None]) -> ParameterEventCallbackHandle:
         """Call `callback(event)` for every change."""
         handle = ParameterEventCallbackHandle(callback)
-        with self._callbacks._lock:
+        with self._callbacks.lock:
             self._callbacks.event_callbacks.insert(0, handle)
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
         """Remove such a callback. Raises RuntimeError if it was not added."""
-        with self._callbacks._lock:
+        with self._callbacks.lock:
             if handle not in self._callbacks.event_callbacks:
                 raise RuntimeError("Callback doesn't exist")
             self._callbacks.event_callbacks.remove(handle)

@@ -401,7 +401,7 @@ def to_graphflow(profile: QoSProfile) -> Qos:
         return INFINITE_NS if duration.nanoseconds in (0, _BEST_AVAILABLE_NS) else duration.nanoseconds
 
     def chosen(kind: type[Any], value: IntEnum, otherwise: object) -> Any:
-        return kind(value) if value in kind._value2member_map_ else otherwise
+        return next((member for member in kind if member.value == value), otherwise)
 
     return Qos(
         profile.depth,

@@ -174,17 +174,17 @@ class _AtOnce:
     """A callback that is not a user's and runs without an executor."""
 
     def __init__(self, callback: Callable[[], Any]) -> None:
-        self._callback = callback
+        self.callback = callback
 
     def __call__(self, future: object) -> None:
-        self._callback()
+        self.callback()
 
     # So that a loop of spins registers the wake-up of its executor only once.
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _AtOnce) and self._callback == other._callback
+        return isinstance(other, _AtOnce) and self.callback == other.callback
 
     def __hash__(self) -> int:
-        return hash(self._callback)
+        return hash(self.callback)
 
 
 def _none() -> None:

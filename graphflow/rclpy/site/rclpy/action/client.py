@@ -49,7 +49,7 @@ class ClientGoalHandle:
         self._status = int(Status.UNKNOWN)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ClientGoalHandle) and self._goal_id == other._goal_id
+        return isinstance(other, ClientGoalHandle) and self._goal_id == other.goal_id
 
     def __hash__(self) -> int:
         return hash(bytes(self._goal_id.uuid))
