@@ -67,7 +67,7 @@ class Client(ServiceEnd):
         """
         future = self.call_async(request)
         wake = Wake()
-        future._when_done(wake.set)
+        future.when_done(wake.set)
         self._life.on_end(wake)
         try:
             wake.wait_until(
@@ -98,7 +98,7 @@ class Client(ServiceEnd):
             self._pending[sequence] = future
         self._endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
         # Not in `_settle`: a program may also cancel the future, or set its result.
-        future._when_done(partial(self._pending.pop, sequence, None))
+        future.when_done(partial(self._pending.pop, sequence, None))
         return future
 
     def get_pending_request(self, sequence_number: int) -> Future:
@@ -145,7 +145,7 @@ class Client(ServiceEnd):
             future = self._pending.get(answered.sequence)
         if future is None:
             return
-        future._is_set_here()
+        future.run_callbacks_here()
         if answered.error is None:
             response = classes.decode(self.srv_type.Response, answered.payload)
             self._endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)

@@ -186,7 +186,7 @@ class Executor(AbstractContextManager["Executor"]):
         """Wake the executor when a future, also one of asyncio's, is done; registered once per future."""
         # Called once per turn of a loop: `add_done_callback` would collect a callback each time.
         if isinstance(future, Future):
-            future._when_done(self.wake)
+            future.when_done(self.wake)
         elif future not in self._graphflow_watched:
             self._graphflow_watched.add(future)
             future.add_done_callback(lambda _: self.wake())
@@ -336,6 +336,7 @@ class MultiThreadedExecutor(Executor):
             )
         # `_executor` and its `_max_workers` are rclpy's names, which programs read.
         self._executor = pool = _Pool(num_threads, self._graphflow.wake.set)
+        self._graphflow.threads = num_threads
         self._graphflow_failures = failures = deque[BaseException]()
         # Work is taken only for a free thread, so that arrivals wait in the subscription's queue, and its depth counts.
         self._graphflow.has_room = lambda: pool.has_room
@@ -373,6 +374,14 @@ class MultiThreadedExecutor(Executor):
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | TimeoutObject | None = None) -> None:
         self._graphflow_wake_when_done(future)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
+
+
+SPINS = (
+    SingleThreadedExecutor._graphflow_do_one.__code__,
+    MultiThreadedExecutor._graphflow_do_one.__code__,
+    Executor.spin_until_future_complete.__code__,
+)
+"""The codes of frames that spin an executor, for the deadlock detector."""
 
 
 def __getattr__(name: str) -> Any:

@@ -51,7 +51,8 @@ class Future(Generic[T]):
         self._is_done = self._is_cancelled = self._was_raised = False
         self._callbacks: list[Callable[..., object]] = []
         self._lock = threading.RLock()
-        self._runs: Callable[[], Runs | None] = _none
+        self.runner: Callable[[], Runs | None] = _none
+        """The executor that runs the done callbacks. graphflow's own."""
         self._set_executor(executor)
 
     def __del__(self) -> None:
@@ -60,14 +61,14 @@ class Future(Generic[T]):
         if error is not None and not self._was_raised:
             warnings.warn(f"The following exception was never retrieved: {error}", stacklevel=1)
 
-    def _is_set_here(self) -> None:
-        """Run the done callbacks as tasks of the executor whose work completes the future."""
+    def run_callbacks_here(self) -> None:
+        """Run the done callbacks as tasks of the executor whose work completes the future. graphflow's own."""
         task = _stepping.task
         if task is not None:
-            self._set_executor(task._runs())
+            self._set_executor(task.runner())
 
     def _set_executor(self, executor: Runs | None) -> None:
-        self._runs = _none if executor is None else weakref.ref(executor)
+        self.runner = _none if executor is None else weakref.ref(executor)
 
     def __await__(self) -> Generator[object, None, T]:
         # Outside an executor's task, asyncio is awaiting: it accepts only futures of its own loop.
@@ -86,11 +87,11 @@ class Future(Generic[T]):
             if not twin.done():
                 twin.set_result(None)
 
-        self._when_done(lambda: loop.call_soon_threadsafe(settle))
+        self.when_done(lambda: loop.call_soon_threadsafe(settle))
         return twin
 
-    def _when_done(self, callback: Callable[[], Any]) -> None:
-        """Register an immediate callback, run in whichever thread completes or cancels the future."""
+    def when_done(self, callback: Callable[[], Any]) -> None:
+        """Register an immediate callback, run by the thread that completes or cancels the future. graphflow's own."""
         wanted = _AtOnce(callback)
         with self._lock:
             if not (self._is_done or self._is_cancelled):
@@ -98,6 +99,10 @@ class Future(Generic[T]):
                     self._callbacks.append(wanted)
                 return
         callback()
+
+    def done_callbacks(self) -> list[Callable[..., object]]:
+        """Return the registered callbacks. graphflow's own."""
+        return list(self._callbacks)
 
     def cancel(self) -> None:
         """Cancel the future; a result set later is ignored. No effect when it is done."""
@@ -144,7 +149,7 @@ class Future(Generic[T]):
         with self._lock:
             # Taken under the lock, called outside of it: a callback may wait for another thread that uses the future.
             callbacks, self._callbacks = self._callbacks, []
-        executor = self._runs()
+        executor = self.runner()
         for callback in callbacks:
             # Not by the executor: it may be what waits for this future.
             if isinstance(callback, _AtOnce):
@@ -163,7 +168,7 @@ class Future(Generic[T]):
             if not (self._is_done or self._is_cancelled):
                 self._callbacks.append(callback)
                 return
-            executor = self._runs()
+            executor = self.runner()
         if executor is not None:
             executor.create_task(callback, self)
         else:
@@ -216,7 +221,7 @@ class Task(Future[T]):
         else:
             self._handler = handler
         self._step_lock = threading.Lock()
-        self._awaits: Future | None = None
+        self.awaits: Future | None = None
         """The future that the coroutine awaits, if known."""
 
     def __call__(self) -> None:
@@ -250,9 +255,9 @@ class Task(Future[T]):
                     self._end(result, None)
                     return
                 self._coroutine = result
-            self._awaits = None
+            self.awaits = None
             awaited = self._coroutine.send(None)
-            self._awaits = awaited if isinstance(awaited, Future) else None
+            self.awaits = awaited if isinstance(awaited, Future) else None
         except StopIteration as stop:
             self._end(stop.value, None)
         except (KeyboardInterrupt, SystemExit) as leaving:

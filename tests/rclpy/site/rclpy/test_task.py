@@ -84,7 +84,7 @@ def test_a_task_runs_a_function_or_steps_a_coroutine() -> None:
     plain, stepped = Task[int](max, (1, 2)), Task[int](work, (1,), {"b": 2})
     plain()
     stepped()
-    assert (plain.result(), stepped.done(), stepped._awaits) == (2, False, future)
+    assert (plain.result(), stepped.done(), stepped.awaits) == (2, False, future)
     future.set_result(10)
     stepped()
     stepped()

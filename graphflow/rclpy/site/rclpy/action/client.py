@@ -213,7 +213,7 @@ class ActionClient(Waitable):
         if found is None or found[0].cancelled():
             return
         future, made = found
-        future._is_set_here()
+        future.run_callbacks_here()
         if answered.error is None:
             future.set_result(made(answered.payload))
         elif not isinstance(answered.error, ServerLost):  # ROS 2 leaves such a future pending
@@ -267,7 +267,7 @@ class ActionClient(Waitable):
         """Block until a future is done or the context is shut down."""
         life, wake = self._node.context.life, Wake()
         assert life is not None  # a node has joined it
-        future._when_done(wake.set)
+        future.when_done(wake.set)
         life.on_end(wake)
         try:
             wake.wait()

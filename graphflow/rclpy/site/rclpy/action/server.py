@@ -398,7 +398,7 @@ class ActionServer(Waitable):
                 self._graphflow_results.answer(asked, classes.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
         goal._graphflow_result_requests.append(asked)
-        goal._result._when_done(partial(self._graphflow_answer_result, asked, goal._result))  # no reference to the goal
+        goal._result.when_done(partial(self._graphflow_answer_result, asked, goal._result))  # no reference to the goal
 
     def _graphflow_answer_result(self, asked: Asked, result: Future) -> None:
         if self._graphflow_is_open:

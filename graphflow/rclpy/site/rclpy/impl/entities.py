@@ -130,7 +130,7 @@ def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
     elif isinstance(entity, ActionClient):
         futures = [future for future, _ in list(entity._graphflow_waiting.values())]
     for future in futures:
-        for callback in list(future._callbacks):
+        for callback in future.done_callbacks():
             if getattr(callback, "__self__", None) is node:
                 yield name_of(callback)
             elif any(_content(cell) is node for cell in getattr(callback, "__closure__", None) or ()):
@@ -157,7 +157,7 @@ def result_requests(entity: Entity) -> Iterator[tuple[str, str]]:
 
 def goal_of(run: Run) -> ServerGoalHandle | None:
     """Return the goal whose body a run executes."""
-    return next((a for a in run._args if isinstance(a, ServerGoalHandle)), None)
+    return next((a for a in run.args if isinstance(a, ServerGoalHandle)), None)
 
 
 def served(run: Run) -> str:
@@ -172,4 +172,4 @@ def served(run: Run) -> str:
 
 def frames_of(run: Run) -> list[Frame]:
     """Return the frames of a suspended run, outermost first."""
-    return [frame for frame in map(suspended, awaited(run._coroutine)) if frame is not None]
+    return [frame for frame in map(suspended, awaited(run.coroutine)) if frame is not None]

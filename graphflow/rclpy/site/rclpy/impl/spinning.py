@@ -90,6 +90,16 @@ class Run(Task):
         self.work: object = None
         """The work taken from the entity."""
 
+    @property
+    def args(self) -> tuple[Any, ...]:
+        """The arguments of the function; empty once it has ended."""
+        return self._args
+
+    @property
+    def coroutine(self) -> Any:
+        """The coroutine that it steps; None for a plain function, and once it has ended."""
+        return self._coroutine
+
     def _step(self) -> None:
         self.thread = threading.get_ident()
         try:
@@ -117,6 +127,10 @@ class Run(Task):
             group.ending_execution(self.entity)
 
 
+STEP = Run._step.__code__
+"""The code of a frame that runs a step."""
+
+
 class Spinning:
     """The scheduling behind an executor, hidden from subclasses."""
 
@@ -137,6 +151,8 @@ class Spinning:
         self.turns = 0
         """The number of requests for work."""
         self._looking = threading.Lock()
+        self.threads = 1
+        """The number of threads that run callbacks."""
         self.has_room: Callable[[], bool] = lambda: True
         self.has_failed: Callable[[], bool] = lambda: False
 
@@ -171,11 +187,11 @@ class Spinning:
             self.running.pop(run, None)
             run.release()
             self.wake.set()
-        elif run._awaits is None:
+        elif run.awaits is None:
             self._polled.append(run)
             self.wake.set()
         else:
-            run._awaits._when_done(lambda: self.start(run))
+            run.awaits.when_done(lambda: self.start(run))
 
     # what is next
 

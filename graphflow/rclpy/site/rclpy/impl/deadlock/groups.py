@@ -47,5 +47,5 @@ def threads_of(executor: Spins) -> int | None:
     if isinstance(executor, single) and type(executor).spin_once is single.spin_once:
         return 1
     if isinstance(executor, multi) and type(executor).spin_once is multi.spin_once:
-        return executor._executor._max_workers
+        return executor.spinning.threads
     return None

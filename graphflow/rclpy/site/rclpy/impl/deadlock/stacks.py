@@ -10,16 +10,10 @@ from types import FrameType
 
 from graphflow.analysis.frames import Frame, stack_from
 from graphflow.analysis.user_code import is_ours, is_users
-from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from rclpy.impl.spinning import Run, Spinning
+from rclpy.executors import SPINS, Executor
+from rclpy.impl.spinning import STEP, Run, Spinning
 
-_STEP = Run._step.__code__
 _NEXT = Spinning.next.__code__
-_SPINS = (
-    SingleThreadedExecutor._graphflow_do_one.__code__,
-    MultiThreadedExecutor._graphflow_do_one.__code__,
-    Executor.spin_until_future_complete.__code__,
-)
 _OURS = ("graphflow-", "executor-")
 """Prefixes of the names of threads that run no user code, or only an executor's."""
 
@@ -86,9 +80,9 @@ def stacks() -> Iterator[Stack]:
 def _read(thread: threading.Thread, innermost: FrameType) -> Stack:
     levels, spins, is_given = [Level(None)], list[Executor](), False
     for frame in stack_from(innermost):
-        if frame.f_code is _STEP:
+        if frame.f_code is STEP:
             levels.append(Level(frame.f_locals["self"]))
-        elif frame.f_code in _SPINS:
+        elif frame.f_code in SPINS:
             spins.append(frame.f_locals["self"])
         elif frame.f_code.co_name == "spin" and is_ours(frame.f_code.co_filename):
             is_given = True
@@ -121,7 +115,7 @@ def is_in_run(frame: FrameType) -> bool:
     """Whether a frame's code was called by a callback, not by the thread itself."""
     above: FrameType | None = frame
     while above is not None:
-        if above.f_code is _STEP:
+        if above.f_code is STEP:
             return True
         above = above.f_back
     return False

@@ -343,7 +343,7 @@ class _Reading:
         level = Level(run, frames_of(run))
         self._pause = None
         group = self._callback_group(run.group, run.node) if run.group is not None else ()
-        future = run._awaits
+        future = run.awaits
         if future is None or future.done() or future.cancelled():
             executor = self._executor(run.executor, self._node_of(run))
             wait: Condition = Slot(executor[0], self._waiting.number_of(run))
@@ -365,7 +365,7 @@ class _Reading:
     def _role(self, run: Run) -> Role:
         goal = goal_of(run)
         if goal is not None:
-            return Role("action", name_of(run._args[0]) or "execute")
+            return Role("action", name_of(run.args[0]) or "execute")
         known = None if run.entity is None else self._roles.get(run.entity)
         if known is None:
             return Role("task", name_of(run.called) or "task")

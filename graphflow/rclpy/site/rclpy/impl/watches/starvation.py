@@ -270,7 +270,7 @@ def label_of(run: Run) -> str:
     """Return the label of a run in deadlock reports: `timer tick`."""
     if run.entity is not None:
         return role_of(run.entity).label
-    return f"action {name_of(run._args[0]) or 'execute'}" if goal_of(run) is not None else f"task {name_of(run.called)}"
+    return f"action {name_of(run.args[0]) or 'execute'}" if goal_of(run) is not None else f"task {name_of(run.called)}"
 
 
 def node_of(run: Run) -> Node | None:
