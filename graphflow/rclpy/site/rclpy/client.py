@@ -29,7 +29,7 @@ class Client(ServiceEnd):
     """A service client. Create it with `Node.create_client`."""
 
     turn = 3
-    _endpoint: ThreadedClient
+    endpoint: ThreadedClient
 
     def __init__(
         self,
@@ -46,11 +46,12 @@ class Client(ServiceEnd):
     ) -> None:
         self.context, self.srv_type, self.srv_name, self.qos_profile = context, srv_type, srv_name, qos_profile
         self.callback_group = callback_group
-        self._endpoint, self._life, self._handle = client_impl, life, handle
-        self._pending: dict[int, Future] = {}
+        self.endpoint, self._life, self._handle = client_impl, life, handle
+        self.pending: dict[int, Future] = {}
+        """The futures of calls that have no answer yet, by number. graphflow's own."""
         self._lock = threading.Lock()
-        self._changed = changed
-        """The wake-ups of threads that wait for a server."""
+        self.server_wakes = changed
+        """The wake-ups of threads that wait for a server. graphflow's own."""
 
     def call(self, request: object, timeout_sec: float | None = None) -> Any:
         """Send a request and block until the response; another thread must be spinning.
@@ -94,35 +95,35 @@ class Client(ServiceEnd):
         with self._handle, self._lock:
             future: Future = Future()
             payload = classes.encode(request)
-            sequence = self._endpoint.send(payload)
-            self._pending[sequence] = future
-        self._endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
+            sequence = self.endpoint.send(payload)
+            self.pending[sequence] = future
+        self.endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
         # Not in `_settle`: a program may also cancel the future, or set its result.
-        future.when_done(partial(self._pending.pop, sequence, None))
+        future.when_done(partial(self.pending.pop, sequence, None))
         return future
 
     def get_pending_request(self, sequence_number: int) -> Future:
         """Return the future of a pending call by its number. Raises KeyError if it is not pending."""
-        return self._pending[sequence_number]
+        return self.pending[sequence_number]
 
     def remove_pending_request(self, future: Future) -> None:
         """Stop waiting for a response."""
         with self._lock:
-            for sequence, waiting in list(self._pending.items()):
+            for sequence, waiting in list(self.pending.items()):
                 if waiting is future:
-                    del self._pending[sequence]
+                    del self.pending[sequence]
 
     def service_is_ready(self) -> bool:
         """Whether a server is available. Raises RCLError if the context was shut down."""
         with self._handle:
             if not self._life.is_ok:
                 raise RCLError("failed to check service availability: rcl node's context is invalid")
-            return self._endpoint.has_server
+            return self.endpoint.has_server
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Block until a server is available, at most `timeout_sec` seconds; return whether one is. Errors as above."""
         wake = Wake()
-        self._changed[wake] = None
+        self.server_wakes[wake] = None
         # Registered before the first look, so that a server that comes between look and wait wakes the thread.
         self._life.on_end(wake)
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
@@ -130,25 +131,25 @@ class Client(ServiceEnd):
             wake.wait_until(lambda: not self._life.is_ok or self.service_is_ready(), limit)
         finally:
             self._life.forget(wake)
-            self._changed.pop(wake, None)
+            self.server_wakes.pop(wake, None)
         return self.service_is_ready()
 
     def has_work(self) -> bool:
-        return bool(self._endpoint.inbox.items)
+        return bool(self.endpoint.inbox.items)
 
     def take_work(self) -> Callable[[], object] | None:
-        answered = self._endpoint.take()
+        answered = self.endpoint.take()
         return None if answered is None else partial(self._settle, answered)
 
     def _settle(self, answered: Answered) -> None:
         with self._lock:
-            future = self._pending.get(answered.sequence)
+            future = self.pending.get(answered.sequence)
         if future is None:
             return
         future.run_callbacks_here()
         if answered.error is None:
             response = classes.decode(self.srv_type.Response, answered.payload)
-            self._endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)
+            self.endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)
             future.set_result(response)
         elif not isinstance(answered.error, ServerLost):  # ROS 2 leaves such a future pending
             future.set_exception(answered.error)

@@ -64,14 +64,14 @@ class AsyncParameterClient:
         assert life is not None  # a node has joined it
         life.on_end(wake)
         for client in self._clients:
-            client._changed[wake] = None
+            client.server_wakes[wake] = None
         try:
             limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
             wake.wait_until(lambda: not life.is_ok or self.services_are_ready(), limit)
         finally:
             life.forget(wake)
             for client in self._clients:
-                client._changed.pop(wake, None)
+                client.server_wakes.pop(wake, None)
         return self.services_are_ready()
 
     @staticmethod

@@ -37,7 +37,7 @@ class Publisher(Created):
         handle: Handle,
         event_handlers: list[EventHandler],
     ) -> None:
-        self._endpoint, self._life, self._handle = publisher_impl, life, handle
+        self.endpoint, self._life, self._handle = publisher_impl, life, handle
         self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
         self.event_handlers = event_handlers
 
@@ -60,18 +60,18 @@ class Publisher(Created):
             # After the check of the type, whose error comes first in rclpy, too.
             if not self._life.is_ok:
                 raise RCLError("Failed to publish: publisher's context is invalid")
-            self._endpoint.put(payload)
+            self.endpoint.put(payload)
 
     def get_subscription_count(self) -> int:
         """Return the number of matched subscriptions."""
         with self._handle:
-            return len(self._endpoint.matched)
+            return len(self.endpoint.matched)
 
     @property
     def topic_name(self) -> str:
         """The full name of the topic."""
         with self._handle:
-            return self._endpoint.name
+            return self.endpoint.name
 
     @property
     def handle(self) -> Handle:
@@ -86,7 +86,7 @@ class Publisher(Created):
     def assert_liveliness(self) -> None:
         """Assert liveliness, for MANUAL_BY_TOPIC."""
         with self._handle:
-            self._life.on_loop(self._endpoint.assert_liveliness)
+            self._life.on_loop(self.endpoint.assert_liveliness)
 
     def wait_for_all_acked(self, timeout: Duration = _FOREVER) -> bool:
         """Return True: the wire has no acknowledgements to wait for."""

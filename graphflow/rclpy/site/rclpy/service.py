@@ -40,7 +40,7 @@ class Service(ServiceEnd):
     """A service server. Create it with `Node.create_service`."""
 
     turn = 4
-    _endpoint: ThreadedService
+    endpoint: ThreadedService
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class Service(ServiceEnd):
     ) -> None:
         self.srv_type, self.srv_name, self.callback = srv_type, srv_name, callback
         self.callback_group, self.qos_profile = callback_group, qos_profile
-        self._endpoint, self._life, self._handle = service_impl, life, handle
+        self.endpoint, self._life, self._handle = service_impl, life, handle
         # As rclpy's handle has it: code without an executor takes requests by it.
         handle.__dict__["service_take_request"] = self._take_request
 
@@ -66,14 +66,14 @@ class Service(ServiceEnd):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
         with self._handle:
             payload = classes.encode(response)
-            self._endpoint.answer(header.asked, payload)
-            self._endpoint.tell(ServiceEvent.RESPONSE_SENT, header.asked, payload)
+            self.endpoint.answer(header.asked, payload)
+            self.endpoint.tell(ServiceEvent.RESPONSE_SENT, header.asked, payload)
 
     def has_work(self) -> bool:
-        return bool(self._endpoint.inbox.items)
+        return bool(self.endpoint.inbox.items)
 
     def take_work(self) -> Callable[[], object] | None:
-        asked = self._endpoint.take()
+        asked = self.endpoint.take()
         if asked is None:
             return None
         return partial(self._do_async if inspect.iscoroutinefunction(self.callback) else self._do, asked)
@@ -81,10 +81,10 @@ class Service(ServiceEnd):
     def _request(self, asked: Asked) -> Any:
         try:
             request = classes.decode(self.srv_type.Request, asked.payload)
-            self._endpoint.tell(ServiceEvent.REQUEST_RECEIVED, asked, asked.payload)
+            self.endpoint.tell(ServiceEvent.REQUEST_RECEIVED, asked, asked.payload)
             return request
         except DecodeError as error:
-            self._endpoint.host.log.warning("%s: a malformed request is not answered: %s", self._endpoint.name, error)
+            self.endpoint.host.log.warning("%s: a malformed request is not answered: %s", self.endpoint.name, error)
             return None
 
     def _do(self, asked: Asked) -> None:
@@ -103,7 +103,7 @@ class Service(ServiceEnd):
         self.send_response(response, RequestHeader(asked))
 
     def _take_request(self, request_type: object) -> tuple[object, RequestHeader | None]:
-        asked = self._endpoint.take()
+        asked = self.endpoint.take()
         return (None, None) if asked is None else (classes.decode(request_type, asked.payload), RequestHeader(asked))
 
 

@@ -56,7 +56,7 @@ class Subscription(Created):
         handle: Handle,
         event_handlers: list[EventHandler],
     ) -> None:
-        self._endpoint, self._handle = subscription_impl, handle
+        self.endpoint, self._handle = subscription_impl, handle
         self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
         self.callback_group, self.raw, self.event_handlers = callback_group, raw, event_handlers
         self._callback: Callable[..., Any] = callback
@@ -68,7 +68,7 @@ class Subscription(Created):
     def get_publisher_count(self) -> int:
         """Return the number of matched publishers."""
         with self._handle:
-            return len(self._endpoint.matched)
+            return len(self.endpoint.matched)
 
     @property
     def handle(self) -> Handle:
@@ -78,7 +78,7 @@ class Subscription(Created):
     def topic_name(self) -> str:
         """The full name of the topic."""
         with self._handle:
-            return self._endpoint.name
+            return self.endpoint.name
 
     @property
     def callback(self) -> Callable[..., Any]:
@@ -92,10 +92,10 @@ class Subscription(Created):
         self._run = self._do_async if inspect.iscoroutinefunction(value) else self._do
 
     def has_work(self) -> bool:
-        return self._endpoint.waiting > 0
+        return self.endpoint.waiting > 0
 
     def take_work(self) -> Callable[[], object] | None:
-        taken = self._endpoint.take()
+        taken = self.endpoint.take()
         return None if taken is None else partial(self._run, taken)
 
     def _arguments(self, taken: Taken) -> tuple[object, ...]:
@@ -106,7 +106,7 @@ class Subscription(Created):
             try:
                 message = classes.decode(self.msg_type, taken.payload)
             except DecodeError as error:
-                self._endpoint.count_malformed(error)
+                self.endpoint.count_malformed(error)
                 return ()
         if self._callback_type is self.CallbackType.MessageOnly:
             return (message,)
@@ -123,7 +123,7 @@ class Subscription(Created):
             await self._callback(*arguments)
 
     def _take_message(self, msg_type: Any, raw: bool) -> tuple[object, MessageInfo] | None:
-        taken = self._endpoint.take()
+        taken = self.endpoint.take()
         if taken is None:
             return None
         return (taken.payload if raw else classes.decode(msg_type, taken.payload)), info_of(taken)

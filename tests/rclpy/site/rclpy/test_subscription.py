@@ -50,8 +50,8 @@ def test_what_is_no_message_of_the_type_is_counted(node: Node, spin: Spinner) ->
     """And nobody is called."""
     heard: list[Any] = []
     subscription = node.create_subscription(String, "t", heard.append, 10)
-    subscription._do(subscription._endpoint.take() or _broken())
-    assert (heard, subscription._endpoint.malformed) == ([], 1)
+    subscription._do(subscription.endpoint.take() or _broken())
+    assert (heard, subscription.endpoint.malformed) == ([], 1)
 
 
 def _broken() -> Any:

@@ -48,7 +48,7 @@ _KINDS = {Timer: "timer", Subscription: "subscription", Service: "service", Guar
 def role_of(entity: Entity) -> Role:
     """Return the role of an entity."""
     if isinstance(entity, Client):
-        return Role("reply", entity._endpoint.name)
+        return Role("reply", entity.endpoint.name)
     if isinstance(entity, ActionClient):
         return Role("reply", entity._graphflow_goals.name.partition("/_action/")[0])
     if isinstance(entity, ActionServer):
@@ -61,7 +61,7 @@ def role_of(entity: Entity) -> Role:
     is_inner = code is not None and is_ours(code.co_filename)
     is_inner |= kind == "waitable" and type(entity).__module__.startswith("rclpy.")
     if is_inner and isinstance(entity, (Service, Subscription)):
-        return Role(kind, entity._endpoint.name.rpartition("/")[2], is_inner=True)  # for example change_state, or tf
+        return Role(kind, entity.endpoint.name.rpartition("/")[2], is_inner=True)  # for example change_state, or tf
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 
@@ -88,7 +88,7 @@ def entities_of(node: Node) -> Iterator[Entity]:
 def arrived(entity: Entity) -> tuple[tuple[str, ...], int]:
     """Return the calls that have arrived for an entity, or whose answers have, and the number of all arrivals."""
     if isinstance(entity, Service):
-        return _requests(entity._endpoint)
+        return _requests(entity.endpoint)
     if isinstance(entity, ActionServer):
         parts = [
             _requests(endpoint)
@@ -96,15 +96,14 @@ def arrived(entity: Entity) -> tuple[tuple[str, ...], int]:
         ]
         return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
     if isinstance(entity, Client):
-        return _answers(entity._endpoint)
+        return _answers(entity.endpoint)
     if isinstance(entity, ActionClient):
         parts = [
             _answers(endpoint)
             for endpoint in (entity._graphflow_goals, entity._graphflow_cancels, entity._graphflow_results)
         ]
         return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
-    waiting = getattr(getattr(entity, "_endpoint", None), "waiting", 0)
-    return (), waiting if isinstance(waiting, int) else 0
+    return (), entity.endpoint.waiting if isinstance(entity, Subscription) else 0
 
 
 def _requests(endpoint: ThreadedService) -> tuple[tuple[str, ...], int]:
@@ -126,7 +125,7 @@ def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
     """Return the node's methods that run after an answer for which a client waits."""
     futures: list[Future] = []
     if isinstance(entity, Client):
-        futures = list(entity._pending.values())
+        futures = list(entity.pending.values())
     elif isinstance(entity, ActionClient):
         futures = [future for future, _ in list(entity._graphflow_waiting.values())]
     for future in futures:

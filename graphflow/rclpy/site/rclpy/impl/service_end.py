@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class ServiceEnd(Created):
     """A client or server of a service."""
 
-    _endpoint: Any
+    endpoint: Any
     _life: ContextState
     _handle: Handle
 
@@ -28,7 +28,7 @@ class ServiceEnd(Created):
     ) -> None:
         """Publish the service's calls on `<service>/_service_event`: nothing, metadata, or contents too."""
         level, qos = introspection_state.name.lower(), to_graphflow(service_event_qos_profile)
-        self._life.on_loop(partial(self._endpoint.configure_introspection, level, qos))
+        self._life.on_loop(partial(self.endpoint.configure_introspection, level, qos))
 
     @property
     def handle(self) -> Handle:
@@ -38,7 +38,7 @@ class ServiceEnd(Created):
     def service_name(self) -> str:
         """The full name of the service."""
         with self._handle:
-            name: str = self._endpoint.name
+            name: str = self.endpoint.name
             return name
 
     def destroy(self) -> None:

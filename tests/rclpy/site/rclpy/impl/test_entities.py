@@ -56,5 +56,5 @@ def test_a_call_that_is_lost_has_no_answer(node: Node) -> None:
     client, actions = node.create_client(Trigger, "ask"), ActionClient(node, Fibonacci, "count")
     client.call_async(Trigger.Request())
     actions.send_goal_async(Fibonacci.Goal())
-    until(lambda: client._endpoint.inbox.items and actions._graphflow_goals.inbox.items)
+    until(lambda: client.endpoint.inbox.items and actions._graphflow_goals.inbox.items)
     assert arrived(client) == arrived(actions) == ((), 0)

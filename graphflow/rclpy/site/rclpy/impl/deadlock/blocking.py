@@ -82,7 +82,7 @@ def blocked(level: Level) -> Blocked:
 
 
 def _service_of(client: Client | ActionClient) -> str:
-    endpoint = client._endpoint if isinstance(client, Client) else client._graphflow_goals
+    endpoint = client.endpoint if isinstance(client, Client) else client._graphflow_goals
     return str(endpoint.name)
 
 

@@ -405,10 +405,10 @@ class _Reading:
             return Join(self._id(future)) if future in self._runs else FREE
         for entity in self._owners:
             if isinstance(entity, Client):
-                sequence = next((n for n, f in list(entity._pending.items()) if f is future), None)
+                sequence = next((n for n, f in list(entity.pending.items()) if f is future), None)
                 if sequence is not None:
                     self._client_node = self._owners[entity]
-                    return self._of_call(entity._endpoint, sequence, future, level)
+                    return self._of_call(entity.endpoint, sequence, future, level)
             elif isinstance(entity, ActionClient):
                 found = next((key for key, (f, _) in list(entity._graphflow_waiting.items()) if f is future), None)
                 if found is not None:

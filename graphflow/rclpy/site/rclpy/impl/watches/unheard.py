@@ -32,7 +32,7 @@ def _tell(node: Node) -> None:
     if is_failing or time.monotonic() - internals_of(node).begun > BRIEF:
         return
     for publisher in internals_of(node).publishers:
-        endpoint = publisher._endpoint
+        endpoint = publisher.endpoint
         if publisher.made_at is not None and 0 < endpoint.published == endpoint.unheard:
             many = "message that was published" if endpoint.published == 1 else "messages that were published"
             text = (

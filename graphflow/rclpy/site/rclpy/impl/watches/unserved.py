@@ -106,7 +106,7 @@ class Unserved:
 def nobody(client: Client | ActionClient, cache: GraphCache) -> str:
     """Describe the lack of a server for a client, and the alternatives."""
     if isinstance(client, Client):
-        return nobody_serves(cache, client._endpoint.name, client._endpoint.type_name)
+        return nobody_serves(cache, client.endpoint.name, client.endpoint.type_name)
     return nobody_acts(cache, role_of(client).handler, classes.type_name(client._action_type))
 
 
@@ -117,7 +117,7 @@ def _clients(node: Node) -> Iterator[Client | ActionClient]:
 
 def _endpoints(client: Client | ActionClient) -> list[ThreadedClient]:
     if isinstance(client, Client):
-        return [client._endpoint]
+        return [client.endpoint]
     return [client._graphflow_goals, client._graphflow_cancels, client._graphflow_results]
 
 
@@ -127,7 +127,7 @@ def _is_served(client: Client | ActionClient) -> bool:
 
 def _wakes(client: Client | ActionClient) -> list[Wake]:
     """Return the wakes of the threads that wait for a client's server."""
-    return list(client._changed if isinstance(client, Client) else client._graphflow_changed)
+    return list(client.server_wakes if isinstance(client, Client) else client._graphflow_changed)
 
 
 def _is_in(level: Level, wake: Wake) -> bool:
