@@ -15,19 +15,18 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.machines.goal import CancelCode
 from graphflow.machines.goal import GoalStatus as Status
-from graphflow.msgs import registry
-from graphflow.rclpy import node_bridge
 from graphflow.rclpy.context_state import LOOP
 from graphflow.rclpy.hints.tracebacks import shorten
 from graphflow.rclpy.messages import classes
-from graphflow.runtime.endpoints.threaded import Asked, ThreadedPublisher, ThreadedService
+from graphflow.runtime.endpoints.threaded import Asked
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending
+from rclpy.impl.action_internals import ActionServerInternals
 from rclpy.impl.mistakes.arguments import described, explained, must_return
 from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
-from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
+from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.time import Time
 from rclpy.type_support import check_for_type_support
@@ -78,9 +77,14 @@ class ServerGoalHandle:
         self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
         self._status = Status.ACCEPTED
         self._lock = threading.Lock()
-        self._result: Future = Future()
-        self._graphflow_result_requests: list[Asked] = []
-        """The requests that wait for the result."""
+        self.result_future: Future = Future()
+        self.result_requests: list[Asked] = []
+        """The requests that wait for the result. graphflow's own, as is the future."""
+
+    @property
+    def action_server(self) -> ActionServer:
+        """The goal's server. graphflow's own."""
+        return self._action_server
 
     @property
     def request(self) -> Any:
@@ -107,7 +111,8 @@ class ServerGoalHandle:
         """The status, a value of action_msgs/msg/GoalStatus."""
         return int(self._status)
 
-    def _update_state(self, event: GoalEvent) -> None:
+    def step(self, event: GoalEvent) -> None:
+        """Move to the status that follows an event, and publish it. Raises RCLError if none does. graphflow's own."""
         with self._lock:
             following = _STEPS.get((self._status, event))
             if following is None:
@@ -115,36 +120,39 @@ class ServerGoalHandle:
                     f"goal_handle attempted invalid transition from state {self._status.name} with event {event.name}"
                 )
             self._status = following
-        self._action_server._graphflow_publish_status()
+        internals_of(self.action_server).publish_status()
         if following.is_terminal:
-            self._action_server.notify_goal_done()
+            self.action_server.notify_goal_done()
+
+    _update_state = step
+    """rclpy's name."""
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], object] | None = None) -> None:
         """Start the execution, by `execute_callback` or else by the server's."""
         # Cancelled before it began: CANCELING cannot become EXECUTING; the callback ends such a goal.
         if not self.is_cancel_requested:
-            self._update_state(GoalEvent.EXECUTE)
-        self._action_server.notify_execute(self, execute_callback)
+            self.step(GoalEvent.EXECUTE)
+        self.action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: object) -> None:
         """Publish feedback to the client. Raises TypeError if it is not of the action's feedback type."""
-        self._action_server._graphflow_publish_feedback(self, feedback)
+        internals_of(self.action_server).publish_feedback(self.goal_id, feedback)
 
     def succeed(self) -> None:
         """Mark the goal as succeeded. Raises RCLError if it has ended already."""
-        self._update_state(GoalEvent.SUCCEED)
+        self.step(GoalEvent.SUCCEED)
 
     def abort(self) -> None:
         """Mark the goal as aborted. Raises RCLError if it has ended already."""
-        self._update_state(GoalEvent.ABORT)
+        self.step(GoalEvent.ABORT)
 
     def canceled(self) -> None:
         """Mark the goal as cancelled. Raises RCLError if no cancellation was requested, or it has ended already."""
-        self._update_state(GoalEvent.CANCELED)
+        self.step(GoalEvent.CANCELED)
 
     def destroy(self) -> None:
         """Forget the goal."""
-        self._action_server._graphflow_forget(self)
+        internals_of(self.action_server).forget(self)
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
@@ -203,35 +211,18 @@ class ActionServer(Waitable):
         check_for_type_support(action_type)
         self._node, self._action_type, self._action_name = node, action_type, action_name
         self._graphflow_result_timeout = result_timeout
-        self._lock = threading.RLock()
-        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        # No endpoint exists before `open`, and another thread may be spinning the node meanwhile.
+        self._graphflow = inner = ActionServerInternals(node, action_type, action_name)
+        self._lock, self._goal_handles = inner.lock, inner.handles
         self._logger = node.get_logger().get_child("action_server")
-        name = node.resolve_service_name(action_name)
-        carriers = action_type.Impl
-        mark = partial(internals_of(node).bell.mark, self)
-        self._graphflow_is_open = False  # another thread may be spinning the node
-
-        def service(carrier: type, part: str, qos: QoSProfile) -> ThreadedService:
-            type_ = registry.interface_class(classes.type_name(carrier))
-            return node_bridge.add(
-                internals_of(node).node,
-                lambda core: ThreadedService(
-                    core, type_, f"{name}/_action/{part}", to_graphflow(qos), internals_of(node).bell, mark
-                ),
-            )
-
-        def publisher(carrier: type, part: str, qos: QoSProfile) -> ThreadedPublisher:
-            return node_bridge.add(
-                internals_of(node).node,
-                lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos)),
-            )
-
-        self._graphflow_feedback = publisher(carriers.FeedbackMessage, "feedback", feedback_pub_qos_profile)
-        self._graphflow_status = publisher(carriers.GoalStatusMessage, "status", status_pub_qos_profile)
-        self._graphflow_cancels = service(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
-        self._graphflow_results = service(carriers.GetResultService, "get_result", result_service_qos_profile)
-        self._graphflow_goals = service(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
-        self._graphflow_is_open = True
+        inner.open(
+            self,
+            goal_qos=goal_service_qos_profile,
+            result_qos=result_service_qos_profile,
+            cancel_qos=cancel_service_qos_profile,
+            feedback_qos=feedback_pub_qos_profile,
+            status_qos=status_pub_qos_profile,
+        )
         node.add_waitable(self)
 
     @property
@@ -241,15 +232,14 @@ class ActionServer(Waitable):
     # the executor's interface
 
     def is_ready(self, wait_set: object) -> bool:
-        return self._graphflow_is_open and any(
-            s.inbox.items for s in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
-        )
+        return self._graphflow.has_work()
 
     def take_data(self) -> list[tuple[Callable[[Asked], Awaitable[None]], Asked]]:
+        inner = self._graphflow
         services = (
-            (self._graphflow_goals, self._graphflow_goal),
-            (self._graphflow_cancels, self._graphflow_cancel),
-            (self._graphflow_results, self._graphflow_result),
+            (inner.goals, self._graphflow_goal),
+            (inner.cancels, self._graphflow_cancel),
+            (inner.results, self._graphflow_result),
         )
         taken = [(do, service.take()) for service, do in services]
         return [(do, asked) for do, asked in taken if asked is not None]
@@ -282,7 +272,7 @@ class ActionServer(Waitable):
                 shorten(error)
                 traceback.print_exception(error)
                 with sending():
-                    self._graphflow_goals.answer(asked, classes.encode(carrier.Response(accepted=False)))
+                    self._graphflow.goals.answer(asked, classes.encode(carrier.Response(accepted=False)))
                 raise
             if not isinstance(answer, GoalResponse):
                 way = must_return(self._goal_callback, "GoalResponse.ACCEPT", answer)
@@ -297,9 +287,9 @@ class ActionServer(Waitable):
             with self._lock:
                 # Before the answer: the client may request the result or a cancellation as soon as it has that.
                 self._goal_handles[key] = handle
-            self._graphflow_publish_status()
+            self._graphflow.publish_status()
         with sending():
-            self._graphflow_goals.answer(asked, classes.encode(carrier.Response(accepted=accepted, stamp=stamp)))
+            self._graphflow.goals.answer(asked, classes.encode(carrier.Response(accepted=accepted, stamp=stamp)))
         if handle is not None:
             await await_or_execute(self._handle_accepted_callback, handle)
 
@@ -336,17 +326,12 @@ class ActionServer(Waitable):
         carrier = self._action_type.Impl.GetResultService
         # The status is read last: `succeed`, `abort`, `canceled` or the line above has set it.
         response = carrier.Response(status=goal_handle.status, result=result)
-        goal_handle._result.set_result(response)
+        goal_handle.result_future.set_result(response)
         if self._graphflow_result_timeout >= 0:
             LOOP.soon(self._graphflow_expire_later, goal_handle)
 
     def _graphflow_expire_later(self, goal_handle: ServerGoalHandle) -> None:
-        LOOP.start().call_later(self._graphflow_result_timeout, self._graphflow_forget, goal_handle)
-
-    def _graphflow_forget(self, goal_handle: ServerGoalHandle) -> None:
-        """Drop a goal and its result."""
-        with self._lock:
-            self._goal_handles.pop(bytes(goal_handle.goal_id.uuid), None)
+        LOOP.start().call_later(self._graphflow_result_timeout, self._graphflow.forget, goal_handle)
 
     async def _graphflow_cancel(self, asked: Asked) -> None:
         from action_msgs import msg
@@ -359,7 +344,7 @@ class ActionServer(Waitable):
             answer = await await_or_execute(self._cancel_callback, goal)
             if answer is CancelResponse.ACCEPT:
                 try:
-                    goal._update_state(GoalEvent.CANCEL_GOAL)
+                    goal.step(GoalEvent.CANCEL_GOAL)
                 except RCLError as error:  # it ended meanwhile
                     self._logger.debug(f"Failed to cancel goal in cancel callback: {error}")
                     continue
@@ -367,7 +352,7 @@ class ActionServer(Waitable):
         if wanted and not response.goals_canceling:
             response.return_code = int(CancelCode.REJECTED)
         with sending():
-            self._graphflow_cancels.answer(asked, classes.encode(response))
+            self._graphflow.cancels.answer(asked, classes.encode(response))
 
     def _graphflow_to_cancel(self, info: GoalInfo) -> tuple[CancelCode, list[ServerGoalHandle]]:
         """Return the goals that a request matches: one by id, those up to a time, or all. Source: CancelGoal.srv."""
@@ -395,45 +380,14 @@ class ActionServer(Waitable):
         if goal is None:
             self._logger.debug("Sending result response for unknown goal ID")
             with sending():
-                self._graphflow_results.answer(asked, classes.encode(carrier.Response(status=int(Status.UNKNOWN))))
+                self._graphflow.results.answer(asked, classes.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
-        goal._graphflow_result_requests.append(asked)
-        goal._result.when_done(partial(self._graphflow_answer_result, asked, goal._result))  # no reference to the goal
-
-    def _graphflow_answer_result(self, asked: Asked, result: Future) -> None:
-        if self._graphflow_is_open:
-            with sending():
-                self._graphflow_results.answer(asked, classes.encode(result.result()))
+        goal.result_requests.append(asked)
+        # No reference to the goal.
+        goal.result_future.when_done(partial(self._graphflow.answer_result, asked, goal.result_future))
 
     def notify_goal_done(self) -> None:
         """Start the time for which an ended goal's result is kept."""
-
-    # topics
-
-    def _graphflow_publish_status(self) -> None:
-        """Publish the statuses of all known goals."""
-        from action_msgs import msg
-
-        with self._lock:
-            goals = list(self._goal_handles.values())
-        rows = [
-            msg.GoalStatus(goal_info=msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
-            for goal in goals
-        ]
-        if self._graphflow_is_open:
-            message = self._action_type.Impl.GoalStatusMessage(status_list=rows)
-            with sending():
-                self._graphflow_status.put(classes.encode(message))
-
-    def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: object) -> None:
-        """Publish feedback on a goal. Raises TypeError if it is not of the action's feedback type."""
-        if not isinstance(feedback, self._action_type.Feedback):
-            way = f"write publish_feedback({self._action_type.__name__}.Feedback(...))"
-            raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}: {way}")
-        message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
-        if self._graphflow_is_open:
-            with sending():
-                self._graphflow_feedback.put(classes.encode(message))
 
     # callbacks
 
@@ -455,22 +409,16 @@ class ActionServer(Waitable):
 
     def destroy(self) -> None:
         """Withdraw the server. Running goals continue, but their results are lost."""
-        if not self._graphflow_is_open:
+        inner = self._graphflow
+        if not inner.is_open:
             return
-        self._graphflow_is_open = False
+        inner.is_open = False
         with self._lock:
             self._goal_handles.clear()
         if self in self._node.waitables:
             self._node.remove_waitable(self)
         if self._node.context.ok():
-            for endpoint in (
-                self._graphflow_goals,
-                self._graphflow_results,
-                self._graphflow_cancels,
-                self._graphflow_feedback,
-                self._graphflow_status,
-            ):
-                node_bridge.remove(endpoint)
+            inner.close()
 
 
 def __getattr__(name: str) -> Any:

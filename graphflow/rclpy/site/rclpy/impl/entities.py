@@ -24,6 +24,7 @@ from rclpy.subscription import Subscription
 from rclpy.timer import Rate, Timer
 
 if TYPE_CHECKING:
+    from graphflow.rclpy.wake import Wake
     from rclpy.node import Node
     from rclpy.task import Future
 
@@ -50,9 +51,9 @@ def role_of(entity: Entity) -> Role:
     if isinstance(entity, Client):
         return Role("reply", entity.endpoint.name)
     if isinstance(entity, ActionClient):
-        return Role("reply", entity._graphflow_goals.name.partition("/_action/")[0])
+        return Role("reply", action_of(entity))
     if isinstance(entity, ActionServer):
-        return Role("action", name_of(entity._execute_callback) or entity._action_name)
+        return Role("action", name_of(entity._execute_callback) or internals_of(entity).action_name)
     kind = next((word for cls, word in _KINDS.items() if isinstance(entity, cls)), "waitable")
     callback = getattr(entity, "callback", None)
     if isinstance(getattr(callback, "__self__", None), Rate):
@@ -90,20 +91,27 @@ def arrived(entity: Entity) -> tuple[tuple[str, ...], int]:
     if isinstance(entity, Service):
         return _requests(entity.endpoint)
     if isinstance(entity, ActionServer):
-        parts = [
-            _requests(endpoint)
-            for endpoint in (entity._graphflow_goals, entity._graphflow_cancels, entity._graphflow_results)
-        ]
+        parts = [_requests(service) for service in internals_of(entity).services]
         return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
-    if isinstance(entity, Client):
-        return _answers(entity.endpoint)
-    if isinstance(entity, ActionClient):
-        parts = [
-            _answers(endpoint)
-            for endpoint in (entity._graphflow_goals, entity._graphflow_cancels, entity._graphflow_results)
-        ]
+    if isinstance(entity, (Client, ActionClient)):
+        parts = [_answers(client) for client in clients_of(entity)]
         return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
     return (), entity.endpoint.waiting if isinstance(entity, Subscription) else 0
+
+
+def clients_of(entity: Client | ActionClient) -> tuple[ThreadedClient, ...]:
+    """Return the endpoints by which a client calls: its own, or those of an action's three services."""
+    return (entity.endpoint,) if isinstance(entity, Client) else internals_of(entity).clients
+
+
+def wakes_of(entity: Client | ActionClient) -> list[Wake]:
+    """Return the wake-ups of the threads that wait for a client's server."""
+    return list(entity.server_wakes if isinstance(entity, Client) else internals_of(entity).server_wakes)
+
+
+def action_of(entity: ActionClient | ActionServer) -> str:
+    """Return the full name of an action."""
+    return internals_of(entity).full_name
 
 
 def _requests(endpoint: ThreadedService) -> tuple[tuple[str, ...], int]:
@@ -127,7 +135,7 @@ def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
     if isinstance(entity, Client):
         futures = list(entity.pending.values())
     elif isinstance(entity, ActionClient):
-        futures = [future for future, _ in list(entity._graphflow_waiting.values())]
+        futures = [future for future, _ in list(internals_of(entity).waiting.values())]
     for future in futures:
         for callback in future.done_callbacks():
             if getattr(callback, "__self__", None) is node:
@@ -147,16 +155,19 @@ def _content(cell: CellType) -> object:
 def result_requests(entity: Entity) -> Iterator[tuple[str, str]]:
     """Return the calls that request results from an action server, each with its goal."""
     if isinstance(entity, ActionServer):
-        for goal in list(entity._goal_handles.values()):
-            if not goal._result.done():
-                yield from (
-                    (asked.call, goal_id(bytes(goal.goal_id.uuid))) for asked in list(goal._graphflow_result_requests)
-                )
+        for goal in list(internals_of(entity).handles.values()):
+            if not goal.result_future.done():
+                yield from ((asked.call, goal_id(bytes(goal.goal_id.uuid))) for asked in list(goal.result_requests))
 
 
 def goal_of(run: Run) -> ServerGoalHandle | None:
     """Return the goal whose body a run executes."""
     return next((a for a in run.args if isinstance(a, ServerGoalHandle)), None)
+
+
+def node_of_goal(goal: ServerGoalHandle) -> Node:
+    """Return the node whose action server has a goal."""
+    return internals_of(goal.action_server).node
 
 
 def served(run: Run) -> str:

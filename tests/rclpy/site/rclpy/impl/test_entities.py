@@ -11,6 +11,7 @@ from std_srvs.srv import Trigger
 from graphflow.analysis.class_source import ANSWERED
 from rclpy.action import ActionClient, ActionServer
 from rclpy.impl.entities import after_answers, arrived, role_of
+from rclpy.impl.nodes import internals_of
 from rclpy.node import Node
 from tests.until import until
 
@@ -56,5 +57,5 @@ def test_a_call_that_is_lost_has_no_answer(node: Node) -> None:
     client, actions = node.create_client(Trigger, "ask"), ActionClient(node, Fibonacci, "count")
     client.call_async(Trigger.Request())
     actions.send_goal_async(Fibonacci.Goal())
-    until(lambda: client.endpoint.inbox.items and actions._graphflow_goals.inbox.items)
+    until(lambda: client.endpoint.inbox.items and internals_of(actions).goals.inbox.items)
     assert arrived(client) == arrived(actions) == ((), 0)

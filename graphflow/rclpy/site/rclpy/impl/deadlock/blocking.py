@@ -16,16 +16,18 @@ from graphflow.analysis.user_code import is_users
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor
+from rclpy.impl.action_internals import ActionClientInternals
 from rclpy.impl.deadlock.buffers import BufferWait, buffer_wait
 from rclpy.impl.deadlock.later_servers import tries_forever
 from rclpy.impl.deadlock.locks import Entering, entered_at, function_of
 from rclpy.impl.deadlock.stacks import Level
+from rclpy.impl.entities import clients_of
 from rclpy.task import Future
 from rclpy.timer import Rate, Timer
 
 _FUTURES = (
     Client.call.__code__,
-    ActionClient._graphflow_block_on.__code__,
+    ActionClientInternals.block_on.__code__,
     Executor.spin_until_future_complete.__code__,
 )
 """Functions that block on a future in their variable `future`."""
@@ -82,8 +84,7 @@ def blocked(level: Level) -> Blocked:
 
 
 def _service_of(client: Client | ActionClient) -> str:
-    endpoint = client.endpoint if isinstance(client, Client) else client._graphflow_goals
-    return str(endpoint.name)
+    return clients_of(client)[0].name
 
 
 def is_private(level: Level) -> bool:

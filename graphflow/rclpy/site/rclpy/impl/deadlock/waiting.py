@@ -55,6 +55,7 @@ from rclpy.impl.deadlock.stacks import Level, Stack, stacks, standing
 from rclpy.impl.deadlock.subjects import subject_of
 from rclpy.impl.entities import (
     Role,
+    action_of,
     after_answers,
     arrived,
     entities_of,
@@ -62,11 +63,12 @@ from rclpy.impl.entities import (
     full_name,
     goal_of,
     name_of,
+    node_of_goal,
     result_requests,
     role_of,
     served,
 )
-from rclpy.impl.nodes import nodes_of
+from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.impl.watches.watches import Watches
 from rclpy.task import Future
@@ -264,7 +266,7 @@ class _Reading:
         for call, goal in result_requests(entity):
             assert isinstance(entity, ActionServer)
             name, label = f"{call}:r", f"service {self._roles[entity].handler} get_result"
-            wait = Call(goal, entity._graphflow_goals.name.partition("/_action/")[0])
+            wait = Call(goal, action_of(entity))
             self._activities[name] = ActivityView(name, label, full_name(node), (), wait, call, process=self._zid)
 
     def _tick(self, timer: Timer) -> str:
@@ -356,7 +358,7 @@ class _Reading:
         """Return the node of a run's callback; for a task, one of its executor's nodes."""
         goal = goal_of(run)
         if goal is not None:
-            return goal._action_server._node
+            return node_of_goal(goal)
         owner = getattr(run.called, "__self__", None)
         if run.node is None and any(node is owner for node in self._nodes):
             return owner  # a callback after its client's answer
@@ -410,7 +412,7 @@ class _Reading:
                     self._client_node = self._owners[entity]
                     return self._of_call(entity.endpoint, sequence, future, level)
             elif isinstance(entity, ActionClient):
-                found = next((key for key, (f, _) in list(entity._graphflow_waiting.items()) if f is future), None)
+                found = next((key for key, (f, _) in list(internals_of(entity).waiting.items()) if f is future), None)
                 if found is not None:
                     self._client_node = self._owners[entity]
                     return self._of_call(*found, future, level)

@@ -24,7 +24,7 @@ from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.impl.deadlock.groups import executors, is_exclusive, threads_of
 from rclpy.impl.deadlock.stacks import Level, Stack, stacks
-from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, role_of
+from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, node_of_goal, role_of
 from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.timer import Timer
@@ -246,12 +246,13 @@ def _due_of(entity: Entity, run: Run) -> str:
     A goal's client requests the result at once, and gets it when the run ends: it is not held up.
     """
     goal = goal_of(run)
-    own = run.entity if goal is None else goal._action_server
+    own = run.entity if goal is None else goal.action_server
     if entity is not own or not isinstance(entity, ActionServer):
         return _called(entity)
-    if entity._graphflow_cancels.inbox.items:
+    inner = internals_of(entity)
+    if inner.cancels.inbox.items:
         return "a request to cancel"
-    return "a new goal" if entity._graphflow_goals.inbox.items else ""
+    return "a new goal" if inner.goals.inbox.items else ""
 
 
 def _is_ready(entity: Entity) -> bool:
@@ -277,7 +278,7 @@ def node_of(run: Run) -> Node | None:
     """Return the node of a run's callback; for a task, one of its executor's nodes."""
     goal = goal_of(run)
     if goal is not None:
-        return goal._action_server._node
+        return node_of_goal(goal)
     return run.node if run.node is not None else next(iter(run.executor.spinning.nodes), None)
 
 

@@ -16,7 +16,7 @@ from graphflow.machines.goal import GoalStatus as Status
 from rclpy.action.server import ActionServer, ServerGoalHandle
 from rclpy.impl.entities import full_name
 from rclpy.impl.mistakes.arguments import described
-from rclpy.impl.nodes import nodes_of
+from rclpy.impl.nodes import internals_of, nodes_of
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
@@ -48,7 +48,8 @@ class Unexecuted:
                     self._check_server(node, server)
 
     def _check_server(self, node: Node, server: ActionServer) -> None:
-        now, goals = time.monotonic(), list(server._goal_handles.values())
+        inner = internals_of(server)
+        now, goals = time.monotonic(), list(inner.handles.values())
         is_busy = any(goal.status in (Status.EXECUTING, Status.CANCELING) for goal in goals)
         has_searched = False
         for goal in goals:
@@ -61,14 +62,14 @@ class Unexecuted:
                 if has_searched:
                     continue
                 has_searched = True
-                if _is_kept(goal, server._goal_handles, goals):
+                if _is_kept(goal, inner.handles, goals):
                     self._kept.add(goal)
             if seconds >= (KEPT if goal in self._kept else WARN_AFTER):
                 self._reported.add(server)
                 text = "%s accepted a goal of %s %.1f s ago, and its execute() was not called: end %s with %s"
                 callback = described(server._handle_accepted_callback)
                 way = "goal_handle.execute()"
-                logger.warning(text, full_name(node), server._action_name, seconds, callback, way)
+                logger.warning(text, full_name(node), inner.action_name, seconds, callback, way)
                 return
 
 

@@ -18,15 +18,14 @@ from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.impl.deadlock.later_servers import comes_after
 from rclpy.impl.deadlock.stacks import Level, stacks
-from rclpy.impl.entities import full_name, role_of
-from rclpy.impl.nodes import nodes_of
+from rclpy.impl.entities import action_of, clients_of, full_name, role_of, wakes_of
+from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.watches.starvation import label_of, place_of
 
 if TYPE_CHECKING:
     from graphflow.machines.cache import GraphCache
     from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.context import Context
-    from graphflow.runtime.endpoints.threaded import ThreadedClient
     from rclpy.node import Node
 
 _WAIT = Wake.wait.__code__
@@ -61,19 +60,19 @@ class Unserved:
         self._since = {c: since for c, since in self._since.items() if c in self._last and not _is_served(c)}
         due: dict[Any, Any] = {}
         for client, node in clients.items():
-            wakes = _wakes(client)
+            wakes = wakes_of(client)
             if wakes and not _is_served(client):
                 self._last[client] = now
                 if now - self._since.setdefault(client, now) >= WARN_AFTER:
                     due.setdefault(wakes[0], client)  # one thread may wait for several
-            if any(endpoint.lost for endpoint in _endpoints(client)):
+            if any(endpoint.lost for endpoint in clients_of(client)):
                 self._report_lost(client, node)
         for wake, client in due.items():
             if (client, client in self._served) not in self._known:
                 self._report_waiting(client, clients[client], wake, now - self._since[client])
 
     def _report_lost(self, client: Client | ActionClient, node: Node) -> None:
-        for endpoint in _endpoints(client):
+        for endpoint in clients_of(client):
             endpoint.lost = 0
         known = (client, client in self._served)
         if known in self._known:
@@ -107,7 +106,7 @@ def nobody(client: Client | ActionClient, cache: GraphCache) -> str:
     """Describe the lack of a server for a client, and the alternatives."""
     if isinstance(client, Client):
         return nobody_serves(cache, client.endpoint.name, client.endpoint.type_name)
-    return nobody_acts(cache, role_of(client).handler, classes.type_name(client._action_type))
+    return nobody_acts(cache, action_of(client), classes.type_name(internals_of(client).action_type))
 
 
 def _clients(node: Node) -> Iterator[Client | ActionClient]:
@@ -115,19 +114,8 @@ def _clients(node: Node) -> Iterator[Client | ActionClient]:
     yield from [waitable for waitable in list(node.waitables) if isinstance(waitable, ActionClient)]
 
 
-def _endpoints(client: Client | ActionClient) -> list[ThreadedClient]:
-    if isinstance(client, Client):
-        return [client.endpoint]
-    return [client._graphflow_goals, client._graphflow_cancels, client._graphflow_results]
-
-
 def _is_served(client: Client | ActionClient) -> bool:
-    return _endpoints(client)[0].has_server
-
-
-def _wakes(client: Client | ActionClient) -> list[Wake]:
-    """Return the wakes of the threads that wait for a client's server."""
-    return list(client.server_wakes if isinstance(client, Client) else client._graphflow_changed)
+    return clients_of(client)[0].has_server
 
 
 def _is_in(level: Level, wake: Wake) -> bool:

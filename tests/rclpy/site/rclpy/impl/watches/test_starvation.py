@@ -19,6 +19,7 @@ from graphflow.deadlock.search import Search
 from rclpy.action import ActionClient, ActionServer
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.deadlock import waiting
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.watches import starvation
 from rclpy.node import Node
 from tests.rclpy.looking import ManualTime, look
@@ -134,7 +135,7 @@ def test_a_goal_whose_result_is_asked_for(node: Node, caplog: Caplog, monkeypatc
             sent: Any = client.send_goal_async(Fibonacci.Goal())
             until(sent.done)
             result = sent.result().get_result_async()
-            until(lambda: server._graphflow_results.inbox.items)
+            until(lambda: internals_of(server).results.inbox.items)
             look()
             clock.advance(0.5)
             look()
