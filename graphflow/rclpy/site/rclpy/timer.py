@@ -199,6 +199,11 @@ class Rate:
         self._is_destroyed = False
         timer.callback = self._tick
 
+    @property
+    def timer(self) -> Timer:
+        """The timer that paces it. graphflow's own."""
+        return self._timer
+
     def _tick(self) -> None:
         with self._lock:
             self._has_ticked = True

@@ -64,7 +64,7 @@ def blocked(level: Level) -> Blocked:
             timeout = names.get("timeout_sec")
             limit = timeout if isinstance(timeout, (int, float)) and timeout >= 0 else None
             if frame.f_code is _SLEEP:
-                return Blocked(timer=names["self"]._timer)
+                return Blocked(timer=names["self"].timer)
             if frame.f_code in _OPENINGS:
                 return Blocked(service=_service_of(names["self"]), timeout=limit)
             if names.get("future") is not None:
