@@ -96,7 +96,7 @@ class Waiting:
     """The waits of one context's rclpy callbacks, read on request."""
 
     def __init__(self, life: ContextState, context: Context) -> None:
-        self._life, self.context = life, context
+        self.life, self.context = life, context
         self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._count, self._lock = count(1), threading.RLock()
         self._positions: dict[int, tuple[int, float]] = {}
@@ -146,7 +146,7 @@ class Waiting:
 
     def _check(self) -> None:
         """Request a search for deadlocks if something is stuck, and reschedule itself. Runs on the loop."""
-        if not self._life.is_ok:
+        if not self.life.is_ok:
             return
         clock = self.context.clock
         clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._check)
@@ -173,7 +173,7 @@ class _Reading:
     def __init__(self, waiting: Waiting) -> None:
         self._waiting, self._context = waiting, waiting.context
         self._zid, self._now = self._context.session.zid, time.monotonic()
-        self._nodes = nodes_of(waiting._life)
+        self._nodes = nodes_of(waiting.life)
         self._owners = {entity: node for node in self._nodes for entity in entities_of(node)}
         self._roles = {entity: role_of(entity) for entity in self._owners}
         self._groups: dict[str, GroupView] = {}
@@ -186,7 +186,7 @@ class _Reading:
         self._stacks = list(stacks())
         self._spun = {executor for stack in self._stacks for executor in stack.spins}
         self._levels = {level.run: level for stack in self._stacks for level in stack.levels if level.run is not None}
-        mine = [executor for executor in executors() if executor.context.life is waiting._life]
+        mine = [executor for executor in executors() if executor.context.life is waiting.life]
         runs = [run for executor in mine for run in list(executor.spinning.running)]
         self._runs: dict[Run, None] = dict.fromkeys([*runs, *self._levels])
         found = [blocked(level) for level in self._levels.values()]
