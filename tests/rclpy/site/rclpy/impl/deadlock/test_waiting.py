@@ -17,7 +17,7 @@ import rclpy
 from graphflow.analysis.class_source import source_of
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from rclpy.impl.deadlock import stacks, waiting
+from rclpy.impl.deadlock import conditions, stacks, waiting
 from rclpy.node import Node
 from tests.cases import sample, slow
 from tests.flat import flat
@@ -36,7 +36,7 @@ def reports(caplog: pytest.LogCaptureFixture) -> list[str]:
 def _files(monkeypatch: pytest.MonkeyPatch) -> None:
     """The program is what these files hold: not the tests, which end futures as well."""
     files = [str(module.__file__) for module in (planted, waiting_programs)]
-    monkeypatch.setattr(waiting, "programs_files", lambda: files)
+    monkeypatch.setattr(conditions, "programs_files", lambda: files)
 
 
 class Program:
