@@ -73,6 +73,18 @@ class NodeBell:
             self.ready[marked.popleft()] = None
 
 
+class Mark:
+    """Signals an entity's work to the node's bell, as soon as the entity exists."""
+
+    def __init__(self, bell: NodeBell) -> None:
+        self._bell = bell
+        self.entity: object = None
+
+    def __call__(self) -> None:
+        if self.entity is not None:
+            self._bell.ready[self.entity] = None
+
+
 def _none() -> None:
     """Return no executor."""
 

@@ -11,7 +11,7 @@ from graphflow.errors import GraphFileError
 from graphflow.names import Resolver
 from graphflow.rclpy import node_bridge
 from graphflow.rclpy.context_state import LOOP, ContextState, parse_only_ros
-from graphflow.rclpy.node_bridge import NodeBell
+from graphflow.rclpy.node_bridge import Mark, NodeBell
 from graphflow.runtime.node_core import core_of
 from graphflow.transport.inbox import Inbox
 
@@ -39,6 +39,17 @@ def test_a_bell_wakes_the_executor_and_tells_the_inboxes_that_have_rung() -> Non
     assert list(bell.ready) == ["guard"]
     inbox.put(4)
     assert executor.woken == 2
+
+
+def test_a_mark_signals_an_entity_that_exists() -> None:
+    """Arrivals before that are found when it is added."""
+    bell = NodeBell()
+    mark = Mark(bell)
+    mark()
+    assert not bell.ready
+    mark.entity = "subscription"
+    mark()
+    assert list(bell.ready) == ["subscription"]
 
 
 def test_a_node_and_its_endpoints_are_in_the_graph_at_once() -> None:

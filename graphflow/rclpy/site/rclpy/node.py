@@ -7,15 +7,13 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
-from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
-from graphflow.names import Resolver
 from graphflow.rclpy import node_bridge
-from graphflow.rclpy.context_state import ContextState, parse_only_ros
+from graphflow.rclpy.context_state import ContextState
 from graphflow.rclpy.messages import classes
-from graphflow.rclpy.node_bridge import HeldNode, NodeBell
+from graphflow.rclpy.node_bridge import HeldNode, Mark, NodeBell
 from graphflow.runtime.endpoints import threaded
-from rclpy._rclpy_pybind11 import NodeNameNonExistentError, RCLInvalidROSArgsError, UnknownROSArgsError
+from rclpy._rclpy_pybind11 import NodeNameNonExistentError
 from rclpy.callback_groups import CallbackGroup
 from rclpy.client import Client
 from rclpy.clock import Clock
@@ -32,6 +30,7 @@ from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
 from rclpy.impl.internals import Holdings, Internals, Known, none
 from rclpy.impl.mistakes.arguments import explained
+from rclpy.impl.node_arguments import read_arguments
 from rclpy.impl.overrides import as_parameters
 from rclpy.impl.parameter_methods import ParameterMethods
 from rclpy.impl.parameters import NodeParameters
@@ -48,8 +47,6 @@ from rclpy.timer import Rate, Timer
 from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from rclpy.utilities import get_default_context
 from rclpy.validate_full_topic_name import validate_full_topic_name
-from rclpy.validate_namespace import validate_namespace
-from rclpy.validate_node_name import validate_node_name
 from rclpy.validate_topic_name import validate_topic_name
 
 if TYPE_CHECKING:
@@ -89,34 +86,18 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         life = context.life
         if life is None or not context.ok():
             raise NotInitializedException("cannot create node")
-        try:
-            own = parse_only_ros(cli_args or ())
-        except GraphflowError as error:
-            raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from None
-        if own.unknown:
-            raise UnknownROSArgsError(f"Found unknown ROS arguments: {own.unknown}")
-        remaps = [*own.remaps, *(life.args.remaps if use_global_arguments else ())]
-        space = namespace or "/"
-        space = space if space.startswith("/") else f"/{space}"
-        validate_node_name(node_name)
-        validate_namespace(space)
-        try:
-            names = Resolver(node_name, space, remaps)
-            values = node_bridge.overrides_for(life.args, names) if use_global_arguments else {}
-            values |= node_bridge.overrides_for(own, names)  # of rules the first counts, of values the last
-        except GraphflowError as error:
-            raise RCLInvalidROSArgsError(str(error)) from None
+        given = read_arguments(life, node_name, namespace, cli_args or (), use_global=use_global_arguments)
         bell = NodeBell()
-        has_rosout = enable_rosout and own.has_rosout and life.args.has_rosout
-        node = node_bridge.open_node(life, node_name, space, remaps, rosout=has_rosout)
+        has_rosout = enable_rosout and given.has_rosout
+        node = node_bridge.open_node(life, node_name, given.namespace, given.remaps, rosout=has_rosout)
         inner = self._graphflow = Internals(context, life, node, bell)
         life.nodes[self] = partial(_destroy, weakref.ref(self))
         self._graphflow_handle_of_node = Handle(partial(_close, life, node))
-        overrides = as_parameters(values) | {p.name: p for p in parameter_overrides or ()}
+        overrides = as_parameters(given.values) | {p.name: p for p in parameter_overrides or ()}
         inner.parameters = NodeParameters(
             overrides, self._graphflow_parameters_changed, allows_undeclared=allow_undeclared_parameters
         )
-        inner.parameters.sources = {name: source for name, (_, source) in values.items()}
+        inner.parameters.sources = {name: source for name, (_, source) in given.values.items()}
         attend(life)
         self._graphflow_open_parameters(start_parameter_services)
         if enable_logger_service:
@@ -281,7 +262,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         inner = self._graphflow
         callbacks = event_callbacks or SubscriptionEventCallbacks()
         handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
-        told, mark = dispatcher(handlers), _Mark(inner.bell)
+        told, mark = dispatcher(handlers), Mark(inner.bell)
         with self.handle:
             endpoint = node_bridge.add(
                 inner.node,
@@ -329,7 +310,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         group = callback_group or self.default_callback_group
         name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
         type_ = registry.interface_class(classes.type_name(srv_type))
-        mark, changed = _Mark(inner.bell), dict[Any, None]()
+        mark, changed = Mark(inner.bell), dict[Any, None]()
 
         def servers_changed() -> None:
             for wake in list(changed):
@@ -372,7 +353,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         group = callback_group or self.default_callback_group
         name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
         type_ = registry.interface_class(classes.type_name(srv_type))
-        mark = _Mark(inner.bell)
+        mark = Mark(inner.bell)
         with self.handle:
             endpoint = node_bridge.add(
                 inner.node,
@@ -464,18 +445,6 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     def __exit__(self, *_: object) -> None:
         self.destroy_node()
-
-
-class _Mark:
-    """Signals an entity's work to the node's bell, as soon as the entity exists."""
-
-    def __init__(self, bell: NodeBell) -> None:
-        self._bell = bell
-        self.entity: object = None
-
-    def __call__(self) -> None:
-        if self.entity is not None:
-            self._bell.ready[self.entity] = None
 
 
 def _destroy(reference: Callable[[], Node | None]) -> None:

@@ -65,6 +65,8 @@ PASSED: dict[str, dict[str, tuple[str, ...]]] = {
         "rclpy.timer": ("TimerInfo",),
         "rclpy.topic_endpoint_info": ("TopicEndpointInfo",),
         "rclpy.type_support": ("MsgType", "SrvType", "SrvTypeRequest", "SrvTypeResponse"),
+        "rclpy.validate_namespace": ("validate_namespace",),
+        "rclpy.validate_node_name": ("validate_node_name",),
         "rclpy.validate_parameter_name": ("validate_parameter_name",),
         "rclpy.waitable": ("Waitable",),
     },
