@@ -22,7 +22,6 @@ from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks, dispatcher
 from rclpy.exceptions import NotInitializedException
 from rclpy.executors import Executor
-from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.handle import Handle
 from rclpy.impl.deadlock.waiting import attend
@@ -30,6 +29,7 @@ from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
 from rclpy.impl.internals import Holdings, Internals, Known, none
 from rclpy.impl.mistakes.arguments import explained
+from rclpy.impl.name_methods import NameMethods
 from rclpy.impl.node_arguments import read_arguments
 from rclpy.impl.overrides import as_parameters
 from rclpy.impl.parameter_methods import ParameterMethods
@@ -44,10 +44,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_para
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Rate, Timer
-from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from rclpy.utilities import get_default_context
-from rclpy.validate_full_topic_name import validate_full_topic_name
-from rclpy.validate_topic_name import validate_topic_name
 
 if TYPE_CHECKING:
     from graphflow.runtime.endpoints.endpoint import Endpoint
@@ -59,7 +56,7 @@ __all__ = ["HIDDEN_NODE_PREFIX", "Node", "NodeNameNonExistentError"]
 HIDDEN_NODE_PREFIX = "_"
 
 
-class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
+class Node(ParameterMethods, DestroyMethods, GraphMethods, NameMethods, Holdings):
     """A node with rclpy's interface, implemented by a graphflow node.
 
     Raises:
@@ -154,42 +151,12 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def handle(self, value: object) -> None:
         raise AttributeError("handle cannot be modified after node creation")
 
-    def get_name(self) -> str:
-        with self.handle:
-            return self._graphflow.node.name
-
-    def get_namespace(self) -> str:
-        with self.handle:
-            return self._graphflow.node.namespace
-
-    def get_fully_qualified_name(self) -> str:
-        with self.handle:
-            return self._graphflow.node.full_name
-
     def get_clock(self) -> Clock:
         """Return the node's clock: wall time, or simulated time if `use_sim_time` is true."""
         return self._graphflow.clock
 
     def get_logger(self) -> RcutilsLogger:
         return self._graphflow.logger
-
-    # names
-
-    def _graphflow_resolved(self, name: str, kind: Any = "topic", *, only_expand: bool = False) -> str:
-        inner = self._graphflow
-        full = expand_topic_name(name, inner.node.name, inner.node.namespace)
-        validate_full_topic_name(full, is_service=kind == "service")
-        return full if only_expand else inner.core.names.resolve(full, kind)
-
-    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the full name of a topic, remapped unless `only_expand`."""
-        with self.handle:
-            return self._graphflow_resolved(topic, only_expand=only_expand)
-
-    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the full name of a service, remapped unless `only_expand`."""
-        with self.handle:
-            return self._graphflow_resolved(service, "service", only_expand=only_expand)
 
     # making and destroying
 
@@ -282,16 +249,6 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         mark()
         self._graphflow_recheck()
         return made
-
-    def _graphflow_topic(self, msg_type: Any, topic: str) -> str:
-        check_is_valid_msg_type(msg_type)
-        validate_topic_name(topic)
-        return self._graphflow_resolved(topic)
-
-    def _graphflow_service(self, srv_type: object, srv_name: str) -> str:
-        check_is_valid_srv_type(srv_type)
-        validate_topic_name(srv_name, is_service=True)
-        return self._graphflow_resolved(srv_name, "service")
 
     def _graphflow_withdraws(self, endpoint: Endpoint) -> Handle:
         life = self._graphflow.life

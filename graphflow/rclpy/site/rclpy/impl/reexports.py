@@ -25,6 +25,7 @@ _SERVICE = {
 }
 _MESSAGE = {"rclpy.event_handler": ("EventHandler", "PublisherEventCallbacks", "SubscriptionEventCallbacks")}
 _MESSAGE_TYPE = {"rclpy.type_support": ("MsgType",)}
+_TYPES = ("MsgType", "SrvType", "SrvTypeRequest", "SrvTypeResponse")
 _NODE: dict[str, tuple[str, ...]] = {"rclpy.node": ("Node",)}
 PASSED: dict[str, dict[str, tuple[str, ...]]] = {
     "action.client": {
@@ -58,16 +59,19 @@ PASSED: dict[str, dict[str, tuple[str, ...]]] = {
         "rclpy.callback_groups": ("MutuallyExclusiveCallbackGroup", "ReentrantCallbackGroup"),
         "rclpy.clock": ("ROSClock",),
         "rclpy.exceptions": _EXCEPTIONS,
+        "rclpy.expand_topic_name": ("expand_topic_name",),
         "rclpy.logging": ("get_logger",),
         "rclpy.parameter": ("PARAMETER_SEPARATOR_STRING",),
         "rclpy.qos": ("qos_profile_parameter_events",),
         "rclpy.time_source": ("TimeSource",),
         "rclpy.timer": ("TimerInfo",),
         "rclpy.topic_endpoint_info": ("TopicEndpointInfo",),
-        "rclpy.type_support": ("MsgType", "SrvType", "SrvTypeRequest", "SrvTypeResponse"),
+        "rclpy.type_support": ("check_is_valid_msg_type", "check_is_valid_srv_type", *_TYPES),
+        "rclpy.validate_full_topic_name": ("validate_full_topic_name",),
         "rclpy.validate_namespace": ("validate_namespace",),
         "rclpy.validate_node_name": ("validate_node_name",),
         "rclpy.validate_parameter_name": ("validate_parameter_name",),
+        "rclpy.validate_topic_name": ("validate_topic_name",),
         "rclpy.waitable": ("Waitable",),
     },
     "parameter": {"rcl_interfaces.msg": ("ParameterType", "ParameterValue")},
