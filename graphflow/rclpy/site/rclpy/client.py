@@ -47,7 +47,7 @@ class Client(ServiceEnd):
         self.context, self.srv_type, self.srv_name, self.qos_profile = context, srv_type, srv_name, qos_profile
         self.callback_group = callback_group
         self.endpoint, self._life, self._handle = client_impl, life, handle
-        self.pending: dict[int, Future] = {}
+        self.pending_requests: dict[int, Future] = {}
         """The futures of calls that have no answer yet, by number. graphflow's own."""
         self._lock = threading.Lock()
         self.server_wakes = changed
@@ -96,22 +96,22 @@ class Client(ServiceEnd):
             future: Future = Future()
             payload = classes.encode(request)
             sequence = self.endpoint.send(payload)
-            self.pending[sequence] = future
+            self.pending_requests[sequence] = future
         self.endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
         # Not in `_settle`: a program may also cancel the future, or set its result.
-        future.when_done(partial(self.pending.pop, sequence, None))
+        future.when_done(partial(self.pending_requests.pop, sequence, None))
         return future
 
     def get_pending_request(self, sequence_number: int) -> Future:
         """Return the future of a pending call by its number. Raises KeyError if it is not pending."""
-        return self.pending[sequence_number]
+        return self.pending_requests[sequence_number]
 
     def remove_pending_request(self, future: Future) -> None:
         """Stop waiting for a response."""
         with self._lock:
-            for sequence, waiting in list(self.pending.items()):
+            for sequence, waiting in list(self.pending_requests.items()):
                 if waiting is future:
-                    del self.pending[sequence]
+                    del self.pending_requests[sequence]
 
     def service_is_ready(self) -> bool:
         """Whether a server is available. Raises RCLError if the context was shut down."""
@@ -143,7 +143,7 @@ class Client(ServiceEnd):
 
     def _settle(self, answered: Answered) -> None:
         with self._lock:
-            future = self.pending.get(answered.sequence)
+            future = self.pending_requests.get(answered.sequence)
         if future is None:
             return
         future.run_callbacks_here()

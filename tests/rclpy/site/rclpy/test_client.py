@@ -56,7 +56,7 @@ def test_without_a_server_nobody_answers(node: Node) -> None:
     assert not client.wait_for_service(timeout_sec=0.02)
     assert client.call(AddTwoInts.Request(), timeout_sec=0.02) is None
     assert time.monotonic() - began >= 0.04
-    assert not client.pending
+    assert not client.pending_requests
 
 
 def test_nobody_is_asked_for_servers_after_the_end(node: Node) -> None:

@@ -133,7 +133,7 @@ def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
     """Return the node's methods that run after an answer for which a client waits."""
     futures: list[Future] = []
     if isinstance(entity, Client):
-        futures = list(entity.pending.values())
+        futures = list(entity.pending_requests.values())
     elif isinstance(entity, ActionClient):
         futures = [future for future, _ in list(internals_of(entity).waiting.values())]
     for future in futures:

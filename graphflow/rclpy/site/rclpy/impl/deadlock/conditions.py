@@ -94,7 +94,7 @@ class Conditions:
             return Wait(Join(self._reading.id_of(future)) if future in self._reading.runs else FREE)
         for entity, owner in self._reading.owners.items():
             if isinstance(entity, Client):
-                sequence = next((n for n, f in list(entity.pending.items()) if f is future), None)
+                sequence = next((n for n, f in list(entity.pending_requests.items()) if f is future), None)
                 if sequence is not None:
                     return Wait(self._of_call(entity.endpoint, sequence, future, level), client_node=owner)
             elif isinstance(entity, ActionClient):

@@ -49,7 +49,7 @@ def test_an_answer_is_waited_for_by_its_call(
     node.create_service(Trigger, "ask", lambda request, response: response)
     client = other.create_client(Trigger, "ask")
     future = client.call_async(Trigger.Request())
-    (sequence,) = client.pending
+    (sequence,) = client.pending_requests
     wait = Conditions(Reading(waiting_of(node))).of_future(future, Level(None), node, None)
     call = Call(client.endpoint.call_id(sequence), "/ask", 1)
     assert wait == (Wait(client_node=other) if is_ended_elsewhere else Wait(call, client_node=other))
