@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from types import CellType
 from typing import TYPE_CHECKING, NamedTuple
@@ -53,7 +53,7 @@ def role_of(entity: Entity) -> Role:
     if isinstance(entity, ActionClient):
         return Role("reply", action_of(entity))
     if isinstance(entity, ActionServer):
-        return Role("action", name_of(entity._execute_callback) or internals_of(entity).action_name)
+        return Role("action", name_of(callbacks_of(entity).execute) or internals_of(entity).action_name)
     kind = next((word for cls, word in _KINDS.items() if isinstance(entity, cls)), "waitable")
     callback = getattr(entity, "callback", None)
     if isinstance(getattr(callback, "__self__", None), Rate):
@@ -163,6 +163,18 @@ def result_requests(entity: Entity) -> Iterator[tuple[str, str]]:
 def goal_of(run: Run) -> ServerGoalHandle | None:
     """Return the goal whose body a run executes."""
     return next((a for a in run.args if isinstance(a, ServerGoalHandle)), None)
+
+
+class ActionCallbacks(NamedTuple):
+    """Callbacks of an action server."""
+
+    execute: Callable[..., object]
+    handle_accepted: Callable[..., object]
+
+
+def callbacks_of(server: ActionServer) -> ActionCallbacks:
+    """Return callbacks of an action server, which rclpy's private names hold: programs may assign them."""
+    return ActionCallbacks(server._execute_callback, server._handle_accepted_callback)
 
 
 def node_of_goal(goal: ServerGoalHandle) -> Node:

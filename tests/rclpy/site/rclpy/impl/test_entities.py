@@ -10,7 +10,7 @@ from std_srvs.srv import Trigger
 
 from graphflow.analysis.class_source import ANSWERED
 from rclpy.action import ActionClient, ActionServer
-from rclpy.impl.entities import after_answers, arrived, role_of
+from rclpy.impl.entities import after_answers, arrived, callbacks_of, role_of
 from rclpy.impl.nodes import internals_of
 from rclpy.node import Node
 from tests.until import until
@@ -59,3 +59,14 @@ def test_a_call_that_is_lost_has_no_answer(node: Node) -> None:
     actions.send_goal_async(Fibonacci.Goal())
     until(lambda: client.endpoint.inbox.items and internals_of(actions).goals.inbox.items)
     assert arrived(client) == arrived(actions) == ((), 0)
+
+
+def test_the_callbacks_of_an_action_server(node: Node) -> None:
+    """Also those that are registered later."""
+
+    def accepted(goal: Any) -> None:
+        """Do nothing."""
+
+    server = ActionServer(node, Fibonacci, "fib", print)
+    server.register_handle_accepted_callback(accepted)
+    assert callbacks_of(server) == (print, accepted)

@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from graphflow.machines.goal import GoalStatus as Status
 from rclpy.action.server import ActionServer, ServerGoalHandle
-from rclpy.impl.entities import full_name
+from rclpy.impl.entities import callbacks_of, full_name
 from rclpy.impl.mistakes.arguments import described
 from rclpy.impl.nodes import internals_of, nodes_of
 
@@ -67,7 +67,7 @@ class Unexecuted:
             if seconds >= (KEPT if goal in self._kept else WARN_AFTER):
                 self._reported.add(server)
                 text = "%s accepted a goal of %s %.1f s ago, and its execute() was not called: end %s with %s"
-                callback = described(server._handle_accepted_callback)
+                callback = described(callbacks_of(server).handle_accepted)
                 way = "goal_handle.execute()"
                 logger.warning(text, full_name(node), inner.action_name, seconds, callback, way)
                 return
