@@ -163,9 +163,6 @@ LONGEST_FILE = 450
 """Lines of a file of the package, at most."""
 LONGER = {
     "runtime/node.py": "one class: all that users call on a node",
-    "rclpy/site/rclpy/node.py": "one class, rclpy's",
-    "rclpy/site/rclpy/action/server.py": "two classes of rclpy that name each other",
-    "rclpy/site/rclpy/impl/deadlock/waiting.py": "one traversal of what a thread waits for",
 }
 """Files of up to 500 lines, and why they are not divided."""
 

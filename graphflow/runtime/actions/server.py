@@ -36,7 +36,6 @@ from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.serialized import RawPublisher
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.rclpy_words import MadeByNodes
-from graphflow.runtime.mistakes.wrong_returns import wrong_return
 from graphflow.runtime.part import Host, Part
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire.goal_status import GoalStates
@@ -387,6 +386,8 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def _why_no_result(self, returned: object) -> Exception | None:
         """Return the error that keeps a handler's return value from being sent as the result; None if it can be."""
         if returned.__class__ is not self.result_class:
+            from graphflow.runtime.mistakes.wrong_returns import wrong_return  # most programs never need it
+
             return wrong_return(returned, self.result_class, self._callback)
         return self._why_unfit(returned)
 

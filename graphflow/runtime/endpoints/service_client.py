@@ -11,7 +11,6 @@ from contextlib import closing, nullcontext
 from types import EllipsisType
 from typing import Any, Generic, NamedTuple
 
-from graphflow.deadlock.unanswered import where_served
 from graphflow.errors import (
     CallError,
     CallTimeout,
@@ -301,6 +300,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         is_heard = self._is_own() or (self._line is not None and self._line.is_heard)
         if timeout < EXPLAINED or server is None or len(self.matched) != 1 or not is_heard:
             return
+        from graphflow.deadlock.unanswered import where_served  # most programs never need it
+
         context = self.host.context
         if text := await where_served(context, context.search.snapshot, call, server.zid):
             error.args = (f"{error}; {text}",)

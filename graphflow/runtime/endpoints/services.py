@@ -24,7 +24,6 @@ from graphflow.runtime.endpoints.direct_calls import DirectRequest, ServerLines,
 from graphflow.runtime.endpoints.endpoint import Endpoint
 from graphflow.runtime.endpoints.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
-from graphflow.runtime.mistakes.wrong_returns import wrong_return
 from graphflow.runtime.part import Host
 from graphflow.transport.base import request_size
 from graphflow.transport.inbox import BYTES_BOUND, REQUESTS_BOUND, RequestInbox
@@ -169,6 +168,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 if result is None and not self._response.SCHEMA.fields:
                     result = self._response()
                 if result.__class__ is not self._response:
+                    from graphflow.runtime.mistakes.wrong_returns import wrong_return  # most programs never need it
+
                     raise wrong_return(result, self._response, self._callback, self.place)
                 payload = self._responses.encode(result)
             except (TypeError, EncodeError) as wrong:

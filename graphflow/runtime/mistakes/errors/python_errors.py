@@ -8,8 +8,6 @@ from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.user_code import place_in
-from graphflow.runtime.mistakes.errors.class_errors import class_in_place
-from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input
 from graphflow.runtime.mistakes.rclpy_words import EXAMPLES
 from graphflow.runtime.mistakes.source.name_errors import owner_of
 from graphflow.runtime.mistakes.source.text_numbers import text_for_number
@@ -206,6 +204,8 @@ def _of_kind(error: BaseException, line: str) -> str:
         return way
     if isinstance(error, TypeError) and (way := text_for_number(error, line)):
         return way
+    from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need it
+
     return class_in_place(error)
 
 
@@ -213,8 +213,10 @@ def remark_on(error: BaseException) -> str:
     """Return advice on the line that raised an error; "" if there is none."""
     if isinstance(error, TimeoutError) and not str(error):
         return "a time limit has passed; catch TimeoutError around the block that has it"
-    if way := advise_on_input(error, ", and read with await self.offload(input)"):
-        return way
+    if isinstance(error, EOFError):
+        from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input  # as below
+
+        return advise_on_input(error, ", and read with await self.offload(input)")
     if type(error) not in (TypeError, AttributeError, NameError, RuntimeError, ValueError):
         return ""
     if hides := hidden(error):

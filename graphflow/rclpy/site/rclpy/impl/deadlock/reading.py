@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Reading:
-    """What the process holds and runs, with the ids by which reports name it.
+    """The groups, callbacks and threads of a process, with the ids by which reports name them.
 
     Attributes:
         owners: The node of each entity.
