@@ -68,7 +68,8 @@ def _reads(cls: type, name: str) -> tuple[str, str, Place] | None:
     if first is None or any(_is_used(file, attribute, name, known) for file, known in files.items()):
         return None
     own = {syntax_of(file).module for file in files}
-    others = other_modules(file_of(sys.modules.get(cls.__module__)) or "")
+    around = file_of(sys.modules.get(cls.__module__)) or ""
+    others = [module for word in {attribute, name} for module in other_modules(around, word)]
     if any(_mentions(module, attribute, name) for module in others if module not in own):
         return None
     return attribute, *first

@@ -156,7 +156,9 @@ def _is_reached(name: str, sources: Iterable[tuple[type, ast.ClassDef, str]]) ->
     """Whether some code of the project reaches an attribute through a class."""
     classes = {parent.__name__ for parent, _, _ in sources} | {"cls", "type(self)", "__class__"}
     files = {file for _, _, file in sources}
-    modules = {syntax_of(file).module for file in files} | {module for file in files for module in other_modules(file)}
+    modules = {syntax_of(file).module for file in files} | {
+        module for file in files for module in other_modules(file, name)
+    }
     return any(
         isinstance(node, ast.Attribute) and node.attr == name and ast.unparse(node.value).rpartition(".")[2] in classes
         for module in modules

@@ -45,7 +45,7 @@ def _sends(cls: type, name: str) -> list[Place]:
         words = words_in(syntax_of(file).module)
         if not words.isdisjoint({*_BY_NAME, *tasks}):
             return []
-        for other in other_modules(file):
+        for other in other_modules(file, name):
             if name in words_in(other):
                 return []
         for use, parents in syntax_of(file).parts:

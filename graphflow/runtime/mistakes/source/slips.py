@@ -23,6 +23,7 @@ from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.analysis.user_code import is_installed, is_users_module
 from graphflow.errors import Place
 from graphflow.names import nearest
+from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
@@ -101,8 +102,8 @@ def _is_in(definition: ast.ClassDef, line: int) -> bool:
     return definition.lineno <= line <= (definition.end_lineno or 0)
 
 
-def other_modules(file: str) -> Iterator[ast.Module]:
-    """Parse the project's other modules, which may use a file's definitions."""
+def other_modules(file: str, word: str) -> Iterator[ast.Module]:
+    """Parse the project's other modules that contain a word; they may use a definition of the file by that name."""
     from graphflow.workspace.project import project_root
 
     root = project_root(Path(file))
@@ -110,7 +111,14 @@ def other_modules(file: str) -> Iterator[ast.Module]:
     for other in sorted(others - {file}):
         if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
             with suppress(OSError, SyntaxError, ValueError):  # no readable source
-                yield syntax_of(other).module
+                # Most do not contain it, and need not be parsed, which takes milliseconds each.
+                if word in _text(other):
+                    yield syntax_of(other).module
+
+
+@cache
+def _text(file: str) -> str:
+    return found_text(Path(file))
 
 
 @cache
@@ -139,7 +147,7 @@ def _idle_methods(
         arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
         kind = _received(arguments[0], space) if len(arguments) == 1 else ""
         is_like_one = kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1)
-        if is_like_one and not any(method.name in words_in(module) for module in other_modules(file)):
+        if is_like_one and not any(method.name in words_in(module) for module in other_modules(file, method.name)):
             if not arguments and (hook := _hook_meant(cls, method.name)):
                 yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}; {hook}"
                 continue
@@ -189,7 +197,7 @@ def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned:
             near = nearest(node.attr, names, cutoff=0.75)
             if near is None or _is_another(node.attr, near):
                 continue
-            if not any(node.attr in words_in(module) for module in other_modules(file)):
+            if not any(node.attr in words_in(module) for module in other_modules(file, node.attr)):
                 yield f"{Place(file, node.lineno)}: self.{node.attr} is set and never read; did you mean self.{near}?"
 
 
