@@ -188,8 +188,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         """Send a message, from any thread. Never waits: a slow subscriber loses messages.
 
         Raises:
-            EncodeError: A field does not fit its type, or the message is of another type. The fields of a message
-                without subscriptions are not checked.
+            EncodeError: A field does not fit its type, or the message is of another type. Of the messages without
+                subscriptions, only the first is checked.
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
@@ -223,12 +223,19 @@ class TopicPublisher(Endpoint, Generic[M]):
         else:
             if self.entity is None:
                 self._announced()  # raises the error
+            if not self.unheard:
+                self._check_fields(message)
             self._order.number += 1
             self.unheard += 1
         if self._deadline is not None:
             self._deadline.touch()
         if self._lease is not None:
             self._lease.touch()
+
+    def _check_fields(self, message: M) -> None:
+        """Encode a message only to check its fields, so that a wrong type is found before there are subscriptions."""
+        encode: Callable[[M], object] = self._codec.encode if self._large is None else self._codec.encode_parts
+        encode(message)
 
     def _with_name(self, value: object) -> str:
         """Return a hint for a value published in place of a message with a single field."""

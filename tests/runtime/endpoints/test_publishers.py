@@ -8,8 +8,10 @@ from typing import Any
 
 import pytest
 
-from graphflow import EncodeError, Qos
+from graphflow import EncodeError, Node, Publisher, Qos
 from graphflow.errors import ClosedError
+from graphflow.msgs.geometry_msgs.msg import Pose
+from graphflow.msgs.nav_msgs.msg import Path
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.runtime.endpoints import publishers
 from graphflow.runtime.endpoints.publishers import TopicPublisher
@@ -51,6 +53,41 @@ async def test_publishing_a_wrong_field_is_an_error(graph: Graph) -> None:
 
     assert node.chatter.published == 1
     assert node.heard.received == 1
+
+
+class Unheard(Node):
+    """Publishers of topics without subscriptions."""
+
+    path = Publisher(Path, "path")
+    words = Publisher(String, "words")
+
+
+async def test_the_first_message_without_subscriptions_is_checked(graph: Graph) -> None:
+    """EncodeError names the field, until a message fits; later messages are not encoded."""
+    node = Unheard()
+    await graph.start(node)
+    wrong = String()
+    wrong.data = 5  # type: ignore[assignment]
+
+    for _ in range(2):
+        with pytest.raises(EncodeError, match=r"String\.data: expected string, got 5; write '5'"):
+            node.words.publish(wrong)
+    assert node.words.published == 0
+    node.words.publish(String(data="good"))
+    node.words.publish(wrong)
+
+    assert node.words.published == node.words.unheard == 2
+
+
+async def test_the_elements_of_a_first_message_without_subscriptions_are_checked(graph: Graph) -> None:
+    """EncodeError names the element of another message class."""
+    node = Unheard()
+    await graph.start(node)
+    path = Path()
+    path.poses.append(Pose())  # type: ignore[arg-type]
+
+    with pytest.raises(EncodeError, match=r"Path\.poses\[0\]"):
+        node.path.publish(path)
 
 
 async def test_publishing_needs_a_running_node(graph: Graph) -> None:
