@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 from graphflow.rclpy.hints import tracebacks
 from rclpy.context import Context
 from rclpy.impl.mistakes.spin_arguments import check_executor, check_future, check_node, warn_of_unused
+from rclpy.impl.mistakes.swallowed_errors import Spin
 from rclpy.parameter import Parameter
 from rclpy.signals import (
     SignalHandlerOptions,
@@ -200,8 +201,9 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     try:
         is_added = executor.add_node(node)
         # As in rclpy, only the end of the context ends it: not the executor's own shutdown, as for `executor.spin`.
-        while executor.context.ok():
-            executor.spin_once()
+        with Spin(executor.context):
+            while executor.context.ok():
+                executor.spin_once()
     finally:
         if is_added:
             _take_out(node, executor, former, "rclpy.spin")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 from weakref import WeakSet
 
 from rclpy.impl.mistakes.spin_arguments import check_node, is_node, warn_no_node
+from rclpy.impl.mistakes.swallowed_errors import Spin
 from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.impl.spinning import (
@@ -164,8 +165,9 @@ class Executor(AbstractContextManager["Executor"]):
 
     def spin(self) -> None:
         """Run callbacks until the context or this executor is shut down."""
-        while self._context.ok() and not self._graphflow.is_shutdown:
-            self.spin_once()
+        with Spin(self._context):
+            while self._context.ok() and not self._graphflow.is_shutdown:
+                self.spin_once()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done, at most `timeout_sec` seconds."""
