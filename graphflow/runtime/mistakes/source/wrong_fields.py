@@ -16,9 +16,20 @@ from graphflow.runtime.declarations.handlers import Handler
 def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]) -> Iterator[str]:
     """Find fields of messages that their type does not have, and literals that do not fit them.
 
+    Those of a service handler whose arguments are named in the wrong order have one answer.
+
     Args:
         handler: What the class declares the method to be.
     """
+    found = list(_wrong_fields(method, handler, file, space))
+    names = [argument.arg for argument in method.args.args]
+    if found and handler is not None and handler.kind == "service" and names[1:] == ["response", "request"]:
+        way = f"write def {method.name}({names[0]}, request, response)"
+        found = [f"{Place(file, method.lineno)}: a service handler receives the request first: {way}"]
+    yield from found
+
+
+def _wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]) -> Iterator[str]:
     bound = _received(method, handler, space)
     times = _meanings(method, bound, space)
     # A name with several meanings, or bound by a loop, is treated as unknown.

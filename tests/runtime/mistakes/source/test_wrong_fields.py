@@ -79,3 +79,11 @@ def test_a_field_that_is_not_there(tmp_path: Path, body: str, told: str) -> None
 def test_other_attributes(tmp_path: Path, body: str) -> None:
     """Are not told: fields, attributes of messages and of other objects, and those that may be missing."""
     assert _told(tmp_path, body) == []
+
+
+@pytest.mark.parametrize("names", ["response, request", "request, response"])
+def test_a_service_handler_whose_arguments_are_swapped(tmp_path: Path, names: str) -> None:
+    """It has one sentence, with the order; in the right order, none."""
+    told = _told(tmp_path, f'@service(AddTwoInts, "add")\nasync def add(self, {names}):\n    response.sum = request.a')
+    order = "9: a service handler receives the request first: write def add(self, request, response)"
+    assert told == ([order] if names.startswith("response") else [])
