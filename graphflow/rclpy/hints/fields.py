@@ -13,6 +13,10 @@ from graphflow.rclpy.hints.frames import PATH, lacking, line_of, named, own
 from graphflow.rclpy.messages import values
 from graphflow.rclpy.messages.classes import StrictMessage
 
+TIMER_INFO = (
+    "a timer calls a callback that has an argument with a TimerInfo: leave the argument out, or give it a value by "
+    "functools.partial(self.callback, value)"
+)
 _FIELD = re.compile(r"The '(\w+)' field must be (?:a sub message )?of type '(\w+)'")
 _ELEMENTS = re.compile(r" (?:set|sequence).* of type '(int|float|str|bool)'")
 _PLAIN = (bool, int, float, str)
@@ -32,6 +36,25 @@ def missing_field(error: BaseException, frames: list[FrameType]) -> str:
     return ""
 
 
+def swapped_arguments(error: BaseException, frames: list[FrameType]) -> str:
+    """Show the order of a service callback's arguments where they are named the other way round."""
+    absent, users = lacking(error, frames), own(frames)
+    if absent is None or not users:
+        return ""
+    code, held = users[-1].f_code, users[-1].f_locals
+    names = code.co_varnames[: code.co_argcount]
+    if names[-2:] != ("response", "request") or not any(held[name] is absent[0] for name in names[-2:]):
+        return ""
+    if not all(type(held[n]).__name__.endswith(part) for n, part in zip(names[-2:], _PARTS, strict=True)):
+        return ""
+    way = f"def {code.co_name}({', '.join((*names[:-2], 'request', 'response'))})"
+    return f"a service's callback receives the request first: {way}"
+
+
+_PARTS = ("_Request", "_Response")
+"""The ends of the names of the messages that a service's callback receives, in their order."""
+
+
 def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
     """Show how to set a field to which a value of another type was assigned."""
     found = _FIELD.match(str(error))
@@ -42,6 +65,8 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
         return _wrong_element(checks, str(error)) if _RANGE_OR_LIST.match(str(error)) else ""
     name, kind = found.groups()
     value, cls = checks[-1]["value"], checks[-1].get("cls")
+    if type(value).__name__ == "TimerInfo":
+        return TIMER_INFO
     set_ = re.match(rf"\s*([\w.\[\]]*\b{name})\s*=(?!=)\s*([^#;]+)", line_of(frames))
     target, given = (set_[1], set_[2].strip()) if set_ is not None else (name, "...")
     if type(value).__name__ == "Parameter":

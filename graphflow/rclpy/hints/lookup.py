@@ -15,7 +15,14 @@ from graphflow.analysis.hiding import hidden
 from graphflow.analysis.user_code import parts_of
 from graphflow.names import nearest
 from graphflow.rclpy.hints.calls import called_value, wrong_call
-from graphflow.rclpy.hints.fields import message_as_value, missing_field, no_message, wrong_value
+from graphflow.rclpy.hints.fields import (
+    TIMER_INFO,
+    message_as_value,
+    missing_field,
+    no_message,
+    swapped_arguments,
+    wrong_value,
+)
 from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
 from graphflow.rclpy.hints.names import missing_name, misspelt_init, unknown_name, unset
 from graphflow.rclpy.hints.pending import early_result
@@ -36,6 +43,8 @@ def hint(error: BaseException) -> str:
 
 
 def _text(error: BaseException, _: list[FrameType]) -> str:
+    if isinstance(error, TypeError) and re.search(r"\bTimerInfo'?(?: and |$)", str(error)):
+        return TIMER_INFO
     for pattern, sentence in TEXTS.items():
         found = re.search(pattern, str(error))
         if found is not None:
@@ -76,12 +85,25 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
         return "future.result() is None until the future is done: add_done_callback(...), or spin until it is"
     if type(thing).__name__ in ("Future", "Run", "Task") and not is_defined_by_user(type(thing)):
         return f"it is in the answer: future.result().{name}, once the future is done: add_done_callback(...)"
-    if type(thing).__name__ == "ServerGoalHandle" and not is_defined_by_user(type(thing)):
-        return f"it is in the goal: goal_handle.request.{name}"
+    if type(thing).__name__ in ("ServerGoalHandle", "ClientGoalHandle") and not is_defined_by_user(type(thing)):
+        return _of_goal(type(thing), name)
     if error.__class__ is AttributeError and type(thing).__module__ == "rclpy.qos":
         near = nearest(name, [word for word in dir(thing) if not word.startswith("_")])
         return f"did you mean {near!r}?" if near is not None else ""
     return ""
+
+
+def _of_goal(cls: type, name: str) -> str:
+    """Show where a field of a goal or of its result is, instead of in its handle."""
+    if cls.__name__ == "ServerGoalHandle":
+        return f"it is in the goal: goal_handle.request.{name}"
+    near = nearest(name, [word for word in dir(cls) if not word.startswith("_")])
+    if near is not None:
+        return f"did you mean {near!r}?"
+    return (
+        "this is the goal's handle, and the result comes later: "
+        f"goal_handle.get_result_async().add_done_callback(self.done), and there future.result().result.{name}"
+    )
 
 
 def _hidden(error: BaseException, _: list[FrameType]) -> str:
@@ -94,6 +116,7 @@ def _without_terminal(error: BaseException, _: list[FrameType]) -> str:
 
 _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _hidden,
+    swapped_arguments,
     missing_field,
     wrong_value,
     no_message,

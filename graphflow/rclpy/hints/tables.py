@@ -40,6 +40,7 @@ ATTRIBUTES = {
 
 TEXTS: dict[str, str] = {
     r'can only concatenate str \(not "(?:int|float|bool)"\)': "format it: f'... {{value}}', or str(value)",
+    r"for \^=?: '(?:float' and '(?:float|int)|int' and 'float)'": "a power is written with **",
     r"no running event loop": (
         "callbacks of rclpy run without asyncio: make a timer for a pause, and await futures of rclpy alone"
     ),

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from example_interfaces.srv import AddTwoInts
 from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.msg import ParameterValue
 from sensor_msgs.msg import Image, JointState
@@ -89,3 +91,23 @@ def test_values_of_fields(tmp_path: Path, line: str, sentence: str) -> None:
     known |= {"made": Twist, "matrix": np.zeros((1, 1)), "float32": np.float32, "int64": np.int64}
     found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
     assert found.startswith(sentence) if sentence else found == ""
+
+
+def test_arguments_of_a_service_in_the_wrong_order() -> None:
+    """The order is told, whether a field is read or set; but a wrong field of the right message has its fields."""
+
+    def swapped(response: Any, request: Any) -> None:
+        response.sum = 3
+
+    def reads(response: Any, request: Any) -> None:
+        assert request.a
+
+    def right(request: Any, response: Any) -> None:
+        assert request.sum
+
+    request, response = AddTwoInts.Request(), AddTwoInts.Response()
+    for wrong in (swapped, reads):
+        way = f"a service's callback receives the request first: def {wrong.__name__}(request, response)"
+        assert hint_of(lambda wrong=wrong: wrong(request, response)) == way
+    assert hint_of(lambda: right(request, response)) == "AddTwoInts_Request has a, b"
+    assert hint_of(lambda: reads(response, AddTwoInts.Response())) == "AddTwoInts_Response has sum"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -15,12 +16,14 @@ from std_msgs.msg import Header, String
 import rclpy
 from graphflow.rclpy.hints import lookup, tracebacks
 from rclpy.action import ActionClient
+from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
+from rclpy.timer import TimerInfo
 from tests.rclpy.hinted import hint_of
 
 ROS: Any = rclpy
@@ -32,6 +35,7 @@ def spin_once(wrong: int) -> None:
 
 OWN: Any = spin_once
 NOW = Clock().now()
+TICK: Any = TimerInfo.__new__(TimerInfo)
 MAKER: Any = MultiThreadedExecutor
 PROFILE: Any = QoSProfile
 WRONG: list[tuple[Callable[[Any], Any], str]] = [
@@ -63,6 +67,15 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (
         lambda n: n.get_clock().now() - n.get_clock().now() > 1.0,
         "use the seconds of a time or duration: .nanoseconds / 1e9",
+    ),
+    (lambda n: (NOW.nanoseconds / 1e9) ^ 2, "a power is written with **"),  # type: ignore[operator]
+    (lambda n: 2.0 * TICK, "a timer calls a callback that has an argument with a TimerInfo: leave the argument out"),
+    (lambda n: math.sin(TICK), "a timer calls a callback that has an argument with a TimerInfo"),
+    (lambda n: float(TICK), "a timer calls a callback that has an argument with a TimerInfo"),
+    (lambda n: TICK < 2.0, "a timer calls a callback that has an argument with a TimerInfo"),
+    (
+        lambda n: setattr(n.header.stamp, "sec", TICK),
+        "leave the argument out, or give it a value by functools.partial(self.callback, value)",
     ),
     (lambda n: 1 / n.declare_parameter("rate", 1.0), "a parameter's value is in .value"),
     (lambda n: Parameter("rate", Parameter.Type.DOUBLE, 2), "a DOUBLE is a float: write 2.0"),
@@ -201,3 +214,20 @@ def test_an_error_that_cannot_be_looked_at() -> None:
         raise AttributeError("'Foo' object has no attribute 'bar'")
     assert (lookup.hint(caught.value), lookup.hint(Wordless())) == ("", "")
     del thing
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        (
+            "delta",
+            "this is the goal's handle, and the result comes later: "
+            "goal_handle.get_result_async().add_done_callback(self.done), and there future.result().result.delta",
+        ),
+        ("acepted", "did you mean 'accepted'?"),
+    ],
+)
+def test_a_field_of_the_result_in_the_handle(name: str, sentence: str) -> None:
+    """The handle has no result's fields; the way to the result is told, and the attribute that is almost meant."""
+    handle = ClientGoalHandle.__new__(ClientGoalHandle)
+    assert hint_of(lambda: getattr(handle, name)) == sentence

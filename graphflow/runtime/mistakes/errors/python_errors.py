@@ -177,9 +177,16 @@ REMARKS = (
         r"\b(?P<name>\w+)\[['\"](?P<field>\w+)['\"]\]",
         "the fields of a message are attributes: write {name}.{field}",
     ),
+    Remark(r"for \^=?: '(float' and '(float|int)|int' and 'float)'", "", "a power is written with **"),
+    Remark(
+        r"'TimerInfo'( and |$)|'\w+' and 'TimerInfo'|not 'TimerInfo'|not TimerInfo$",
+        "",
+        "the argument of a timer's handler is a TimerInfo: leave it out, and take other values from self or a Param",
+    ),
     Remark(r"unsupported operand .*'Param'", "", "a Param has its value on a node: @timer(hz=rate) reads it there"),
 )
 _CALL = re.compile(r"(?:(?P<owner>\w+)\.)?(?P<name>\w+)\(\) (got an unexpected|missing \d|takes )")
+_CLASSES = (TypeError, AttributeError, NameError, UnboundLocalError, RuntimeError, ValueError)
 _OURS = ("ServiceClient", "GoalClient", "TopicPublisher")
 
 
@@ -217,7 +224,7 @@ def remark_on(error: BaseException) -> str:
         from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input  # as below
 
         return advise_on_input(error, ", and read with await self.offload(input)")
-    if type(error) not in (TypeError, AttributeError, NameError, RuntimeError, ValueError):
+    if type(error) not in _CLASSES:
         return ""
     if hides := hidden(error):
         return hides

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import inspect
+import linecache
+import re
 from types import FrameType, ModuleType
 from typing import Any
 
@@ -18,9 +20,13 @@ def owner_of(error: NameError) -> str:
     """
     frames = [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
     name = error.name
-    if not frames or not name or isinstance(error, UnboundLocalError):
+    if not frames:
         return ""
     frame = frames[-1]
+    if isinstance(error, UnboundLocalError):
+        return _unbound_local(error, frame)
+    if not name:
+        return ""
     if "__qualname__" in frame.f_locals and not frame.f_code.co_flags & inspect.CO_OPTIMIZED:
         for base in _bases(frame):
             parent = _value(base, frame)
@@ -31,6 +37,16 @@ def owner_of(error: NameError) -> str:
     if node is not None and not name.startswith("__") and inspect.getattr_static(node, name, None) is not None:
         return f"a method does not see the names of its class: write self.{name}"
     return ""
+
+
+def _unbound_local(error: UnboundLocalError, frame: FrameType) -> str:
+    """Return the correct form of a local variable that is set and read in one statement, as in `count += 1`."""
+    found = re.search(r"variable '(\w+)'", str(error))
+    node = frame.f_locals.get("self")
+    if found is None or node is None or inspect.getattr_static(node, found[1], None) is None:
+        return ""
+    line = linecache.getline(frame.f_code.co_filename, frame.f_lineno)
+    return f"write self.{found[1]}" if re.match(rf"\s*{found[1]}\s*([-+*/%|&]|//|\*\*)?=", line) else ""
 
 
 def _bases(frame: FrameType) -> list[ast.expr]:

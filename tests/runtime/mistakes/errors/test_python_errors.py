@@ -40,6 +40,7 @@ NO_HANDLER = (
     "messages are read from a Subscription(Type, topic) in the body of the class, not from their handler; an async "
     "generator is called: self.moved(...)"
 )
+INFO = "the argument of a timer's handler is a TimerInfo: leave it out, and take other values from self or a Param"
 EXPRESSION = "object {} can't be used in 'await' expression"
 
 
@@ -71,6 +72,13 @@ EXPRESSION = "object {} can't be used in 'await' expression"
             "self.last is a number: initialize it by self.last = self.clock.now(), or write a time span as "
             "Duration.of(self.last)",
         ),
+        ("unsupported operand type(s) for ^: 'float' and 'float'", "d = x^2.0", "a power is written with **"),
+        ("unsupported operand type(s) for ^=: 'int' and 'float'", "n ^= x", "a power is written with **"),
+        ("unsupported operand type(s) for ^: 'set' and 'int'", "s ^ 2", ""),
+        ("unsupported operand type(s) for *: 'TimerInfo' and 'float'", "speed * 2.0", INFO),
+        ("'<' not supported between instances of 'float' and 'TimerInfo'", "0.0 < speed", INFO),
+        ("must be real number, not TimerInfo", "math.sin(speed)", INFO),
+        ("float() argument must be a string or a real number, not 'TimerInfo'", "float(speed)", INFO),
         ("'method' object can't be awaited", "await self.tick", TICK),
         (EXPRESSION.format("TopicSubscription"), "message = await self.heard", HEARD),
         ("'TopicSubscription' object can't be awaited", "message = await self.heard", HEARD),

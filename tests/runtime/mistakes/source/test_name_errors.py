@@ -53,6 +53,13 @@ TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
         ("class N(Base):\n    def work(self):\n        return 2 * gain\nN().work()", "write self.gain"),
         ("class N(Base):\n    def work(self):\n        return 2 * gian\nN().work()", ""),
         ("motion", ""),
+        ("class N(Base):\n    count = 0\n    def work(self):\n        count += 1\nN().work()", "write self.count"),
+        (
+            "class N(Base):\n    count = 0\n    def work(self):\n        count = count + 1\nN().work()",
+            "write self.count",
+        ),
+        ("class N(Base):\n    count = 0\n    def work(self):\n        n += 1\nN().work()", ""),
+        ("class N(Base):\n    count = 0\n    def work(self):\n        print(count)\n        count = 1\nN().work()", ""),
     ],
 )
 def test_names_of_classes(tmp_path: Path, more: str, told: str) -> None:
