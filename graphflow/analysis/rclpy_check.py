@@ -139,7 +139,8 @@ class _Class:
                     yield Finding(_grade(wait), Place(self.file, wait.line), text)
         for wait in self._waits("__init__", True, set()):
             if wait.holds_thread and not wait.spins:
-                text = f"__init__ waits in {wait.what}, and nobody spins the node before it is made: {_LATER}"
+                way = _LATER if wait.client else "go on in the callback that it waits for, or in a timer"
+                text = f"__init__ waits in {wait.what}, and nobody spins the node before it is made: {way}"
                 yield Finding(_grade(wait), Place(self.file, wait.line), text)
 
     def unfollowed(self) -> Iterator[Place]:

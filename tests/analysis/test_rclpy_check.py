@@ -254,3 +254,15 @@ def test_a_folder_of_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     for name in "abc":
         (tmp_path / f"{name}.py").write_text("")
     assert [file.name for file in files_in(tmp_path)] == ["a.py", "b.py"]
+
+
+def test_a_constructor_that_waits_for_a_message(tmp_path: Path) -> None:
+    """There is no request in it: it goes on in a callback."""
+    file = tmp_path / "a.py"
+    file.write_text(
+        "class A(Node):\n    def __init__(self):\n        self.create_subscription(T, 'x', self.on_x, 10)\n"
+        "        self.x = None\n        while self.x is None:\n            time.sleep(0.1)\n\n"
+        "    def on_x(self, msg):\n        self.x = msg\n"
+    )
+    [found] = findings_in(file)
+    assert found.text.endswith("before it is made: go on in the callback that it waits for, or in a timer")

@@ -6,6 +6,7 @@ that spins, which a node without an executor lacks altogether.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -91,6 +92,13 @@ def _joined(ways: Sequence[Sequence[str]]) -> Iterator[str]:
 def _spun(way: Member, graph: WaitGraph) -> Iterator[str]:
     """Yield the remedies for a thread that waits while nothing spins the node."""
     holder, place = graph.activities[way.edge.to], graph.activities[way.edge.to].line
+    if (
+        holder.function == "__init__"
+        and isinstance(way.wait.via, SetBy)
+        and (later := _after_init(way.wait.via, graph))
+    ):
+        yield _text(f"do not wait for {way.wait.via.what} in __init__, in {place}:", *later)
+        return
     reply = _reply_queue(holder, way.wait, graph)
     waiting = [_queue_of(way.edge, graph), reply]
     unspun = [queue for queue in waiting if queue is not None and _is_unspun(queue, graph)]
@@ -110,6 +118,14 @@ def _spun(way: Member, graph: WaitGraph) -> Iterator[str]:
     spin = "executor.spin" if has_executor else "rclpy.spin, args=(node,)"
     start = f"threading.Thread(target={spin}, daemon=True).start(),"
     yield _text(f"let another thread spin {nodes[0]} before {place}:", start, "in place of any spin that comes later")
+
+
+def _after_init(wait: SetBy, graph: WaitGraph) -> list[str]:
+    """Return the clauses for continuing in a callback what a constructor waits to do, since it runs before any spin."""
+    others = " or ".join(_handlers(wait.queues, graph))
+    is_value = re.fullmatch(r"self\.\w+", wait.what) is not None
+    timer = f"or in a timer, which begins with: if {wait.what} is None: return" if is_value else "or in a timer"
+    return [f"go on in {others},", timer] if others else []
 
 
 def _is_unspun(queue: QueueView, graph: WaitGraph) -> bool:

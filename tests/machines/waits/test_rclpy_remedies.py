@@ -214,3 +214,25 @@ def test_a_server_that_nobody_spins_beside_a_client_that_is_spun() -> None:
         "executor.spin_until_future_complete(future)"
     )
     assert other.startswith("let another thread spin /server before arm.py:12:")
+
+
+def test_a_constructor_that_waits_for_a_message() -> None:
+    """It goes on in a callback: a thread that spins the node needs the node, which is not made yet."""
+    maker = ActivityView(
+        "a",
+        "thread MainThread",
+        "/arm",
+        ("s",),
+        SetBy("self.pose", ("q",)),
+        place=Place("/x/arm.py", 12),
+        function="__init__",
+        is_async=False,
+    )
+    pose = QueueView("q", "subscription on_pose", "/arm", ("s",))
+    told_of = told(Edge("a", SetBy("self.pose", ("q",)), "q", "s"), maker, queues=(pose,))
+    assert told_of == [
+        "do not wait for self.pose in __init__, in arm.py:12: go on in on_pose, or in a timer, which begins with: "
+        "if self.pose is None: return"
+    ]
+    elsewhere = replace(maker, function="main")
+    assert "threading.Thread" in told(Edge("a", SetBy("self.pose", ("q",)), "q", "s"), elsewhere, queues=(pose,))[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -108,6 +109,6 @@ def test_arguments_of_a_service_in_the_wrong_order() -> None:
     request, response = AddTwoInts.Request(), AddTwoInts.Response()
     for wrong in (swapped, reads):
         way = f"a service's callback receives the request first: def {wrong.__name__}(request, response)"
-        assert hint_of(lambda wrong=wrong: wrong(request, response)) == way
+        assert hint_of(partial(wrong, request, response)) == way
     assert hint_of(lambda: right(request, response)) == "AddTwoInts_Request has a, b"
     assert hint_of(lambda: reads(response, AddTwoInts.Response())) == "AddTwoInts_Response has sum"
