@@ -28,6 +28,7 @@ from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.called_early import results_passed
+from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.misgiven import misgiven
@@ -89,7 +90,7 @@ def _slips(cls: type) -> Iterator[str]:
                 handler = declared.handlers(parent).get(method.name)
                 yield from wrong_fields(method, handler, file, space)
         found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
-        found = (*found, *ineffective(definition), *overridden(parent, definition))
+        found = (*found, *ineffective(definition), *overridden(parent, definition), *defined_twice(definition))
         found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
