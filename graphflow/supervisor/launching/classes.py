@@ -26,7 +26,7 @@ from graphflow.runtime.mistakes.source.slips import slips, slips_in_groups
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_options import why_not
 from graphflow.typographic import plain
-from graphflow.workspace.project import INSTALLED_DEMOS, add_interfaces
+from graphflow.workspace.project import INSTALLED_DEMOS, add_interfaces, demos_root
 
 if TYPE_CHECKING:
     from graphflow.supervisor.processes.messages import InterfacesJson
@@ -121,8 +121,20 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
     if near is None:
         parent, _, last = module.rpartition(".")
         beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
-        hint = did_you_mean(last, beside) or f"; modules are looked for in {root}"
+        hint = did_you_mean(last, beside) or _bundled(wanted) or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
+
+
+def _bundled(wanted: str) -> str:
+    """Suggest the node that comes with graphflow and is most like a missing module; empty if none is."""
+    folder = demos_root() / "nodes"
+    files = {file.stem: file for file in sorted(folder.glob("*.py"))}
+    is_robot = re.search("turtlebot|gazebo|simulator", wanted.lower()) is not None
+    near = "robot_simulator" if is_robot else nearest(wanted.rpartition(".")[2], files, cutoff=0.75)
+    if near is None or near not in files:
+        return ""
+    found = re.search(r"^class (\w+)\((?:Lifecycle)?Node\)", files[near].read_text("utf-8"), re.MULTILINE)
+    return f"; did you mean 'nodes.{near}:{found[1]}', which comes with graphflow?" if found is not None else ""
 
 
 def nearest_module(module: str, root: str) -> str | None:

@@ -19,6 +19,8 @@ from graphflow.supervisor.launching.classes import add_root, import_class, inter
 from graphflow.supervisor.launching.probed import read_interfaces
 from tests.conftest import PROGRAMS
 
+SIMULATOR = "did you mean 'nodes.robot_simulator:RobotSimulator', which comes with graphflow?"
+
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
@@ -73,6 +75,11 @@ def test_a_class_by_its_path(project: Path) -> None:
             "nowhere.nothing:Robot",
             "cannot import nowhere.nothing: there is no module 'nowhere'; modules are looked for in {project}",
         ),
+        (
+            "turtlebot3_gazebo:Bot",
+            "cannot import turtlebot3_gazebo: there is no module 'turtlebot3_gazebo'; " + SIMULATOR,
+        ),
+        ("sim.simulator:Simulator", "cannot import sim.simulator: there is no module 'sim'; " + SIMULATOR),
         ("robot:Robot", "cannot import robot: there is no module 'robot'; did you mean 'machines.robot:Robot'?"),
         (
             "machines.robt:Robot",
