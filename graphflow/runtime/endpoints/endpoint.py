@@ -34,6 +34,8 @@ class Endpoint(Part):
     """
 
     kind: Kind
+    sensor_example = ""
+    """The code for a subscription to a sensor's topic, as a format string of the type's name and the topic's."""
 
     def __init__(
         self,
@@ -183,9 +185,10 @@ class Endpoint(Part):
             self._tell("matched", int(change.alive), step, len(self.matched), other.node_name)
             self._matched(other, change.alive)
         if change.alive and judged.complaint:
-            is_own = (other.zid, other.nid) == (own.zid, own.nid)
-            if not is_own or own.kind in (Kind.SUBSCRIPTION, Kind.CLIENT):  # of two ends of a node, one complains
-                self._complain(judged.complaint)
+            # Of two ends of a process, one complains.
+            if other.zid != own.zid or own.kind in (Kind.SUBSCRIPTION, Kind.CLIENT):
+                code = self.sensor_example.format(own.type.rpartition("/")[2], own.name)
+                self._complain(judged.complaint + (code if judged.policies == ("reliability",) else ""))
             if judged.reaches:
                 self._tell("incompatible_qos", detail=", ".join(judged.policies))
             else:

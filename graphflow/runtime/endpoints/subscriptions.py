@@ -51,6 +51,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     kind = Kind.SUBSCRIPTION
     latched_profile = "Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)"
+    sensor_example = ', as in @subscription({}, "{}", SENSOR_DATA), from graphflow.qos'
     in_order = False
     """Whether responses sent after a message must not overtake it."""
 

@@ -79,6 +79,7 @@ class ThreadedSubscription(TopicSubscription[Any]):
     """
 
     latched_profile = "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)"
+    sensor_example = ", as in create_subscription({}, '{}', callback, qos_profile_sensor_data), from rclpy.qos"
 
     def __init__(
         self,

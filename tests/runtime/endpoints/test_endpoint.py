@@ -10,6 +10,7 @@ from graphflow import ClosedError, Node, Qos
 from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.qos import SENSOR_DATA
 from graphflow.runtime.endpoints.endpoint import COMPLAIN_EVERY, Endpoint
 from graphflow.runtime.node_core import core_of
 from graphflow.runtime.part import Host
@@ -211,3 +212,16 @@ async def test_two_ends_of_one_node_that_do_not_fit(graph: Graph, caplog: pytest
     await graph.start(node)
     [text] = [message for message in caplog.messages if "nothing passes" in message]
     assert "the publisher of /both, of type std_msgs/msg/Int32, and the subscription here" in text
+
+
+async def test_a_subscription_that_asks_for_more_than_a_sensor_offers(
+    graph: Graph, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The complaint of its node has the code to write."""
+    ear, mouth = Node("ear"), Node("mouth")
+    ear.create_subscription(Int32, "/reading", lambda _: None, 10)
+    mouth.create_publisher(Int32, "/reading", SENSOR_DATA)
+    await graph.start(ear, mouth)
+    [record] = [r for r in caplog.records if r.name.endswith("ear") and "offers less" in r.getMessage()]
+    code = 'as in @subscription(Int32, "/reading", SENSOR_DATA), from graphflow.qos'
+    assert record.getMessage().endswith(f"have the subscription ask for reliability BEST_EFFORT, {code}")
