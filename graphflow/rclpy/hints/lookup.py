@@ -28,6 +28,7 @@ from graphflow.rclpy.hints.names import missing_name, misspelt_init, unknown_nam
 from graphflow.rclpy.hints.pending import early_result
 from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages.classes import StrictMessage
+from graphflow.runtime.mistakes.errors.empty_slices import empty_slice
 from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input
 
 
@@ -110,6 +111,10 @@ def _hidden(error: BaseException, _: list[FrameType]) -> str:
     return hidden(error)
 
 
+def _empty_slice(error: BaseException, frames: list[FrameType]) -> str:
+    return empty_slice(error, line_of(frames))
+
+
 def _without_terminal(error: BaseException, _: list[FrameType]) -> str:
     return advise_on_input(error)
 
@@ -131,6 +136,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _stamp,
     _text,
     message_as_value,
+    _empty_slice,
     _without_terminal,
 )
 """The rules, in order of precedence."""

@@ -35,6 +35,7 @@ def spin_once(wrong: int) -> None:
 
 OWN: Any = spin_once
 NOW = Clock().now()
+NUMBERS = [1.0, 2.0, 3.0]
 TICK: Any = TimerInfo.__new__(TimerInfo)
 MAKER: Any = MultiThreadedExecutor
 PROFILE: Any = QoSProfile
@@ -69,6 +70,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
         "use the seconds of a time or duration: .nanoseconds / 1e9",
     ),
     (lambda n: (NOW.nanoseconds / 1e9) ^ 2, "a power is written with **"),  # type: ignore[operator]
+    (lambda n: min(NUMBERS[-1:1]), "NUMBERS[-1:1] is empty, since slices do not wrap: write ["),
     (lambda n: 2.0 * TICK, "a timer calls a callback that has an argument with a TimerInfo: leave the argument out"),
     (lambda n: math.sin(TICK), "a timer calls a callback that has an argument with a TimerInfo"),
     (lambda n: float(TICK), "a timer calls a callback that has an argument with a TimerInfo"),

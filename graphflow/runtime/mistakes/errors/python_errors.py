@@ -211,9 +211,10 @@ def _of_kind(error: BaseException, line: str) -> str:
         return way
     if isinstance(error, TypeError) and (way := text_for_number(error, line)):
         return way
-    from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need it
+    from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need them
+    from graphflow.runtime.mistakes.errors.empty_slices import empty_slice
 
-    return class_in_place(error)
+    return class_in_place(error) or empty_slice(error, line)
 
 
 def remark_on(error: BaseException) -> str:
