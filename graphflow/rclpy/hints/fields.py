@@ -13,10 +13,6 @@ from graphflow.rclpy.hints.frames import PATH, lacking, line_of, named, own
 from graphflow.rclpy.messages import values
 from graphflow.rclpy.messages.classes import StrictMessage
 
-TIMER_INFO = (
-    "a timer calls a callback that has an argument with a TimerInfo: leave the argument out, or give it a value by "
-    "functools.partial(self.callback, value)"
-)
 _FIELD = re.compile(r"The '(\w+)' field must be (?:a sub message )?of type '(\w+)'")
 _ELEMENTS = re.compile(r" (?:set|sequence).* of type '(int|float|str|bool)'")
 _PLAIN = (bool, int, float, str)
@@ -55,6 +51,20 @@ _PARTS = ("_Request", "_Response")
 """The ends of the names of the messages that a service's callback receives, in their order."""
 
 
+def timer_info(error: BaseException, frames: list[FrameType]) -> str:
+    """Explain a callback's argument that was meant to be a number, and is the TimerInfo that a timer gives it."""
+    held = [f.f_locals.get("value") for f in frames if f.f_code.co_filename == values.__file__]
+    is_set = isinstance(error, AssertionError) and any(type(value).__name__ == "TimerInfo" for value in held)
+    is_used = isinstance(error, TypeError) and re.search(r"\bTimerInfo'?(?: and |$)", str(error)) is not None
+    return _TIMER_INFO if is_set or is_used else ""
+
+
+_TIMER_INFO = (
+    "a timer calls a callback that has an argument with a TimerInfo: leave the argument out, or give it a value by "
+    "functools.partial(self.callback, value)"
+)
+
+
 def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
     """Show how to set a field to which a value of another type was assigned."""
     found = _FIELD.match(str(error))
@@ -65,8 +75,6 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
         return _wrong_element(checks, str(error)) if _RANGE_OR_LIST.match(str(error)) else ""
     name, kind = found.groups()
     value, cls = checks[-1]["value"], checks[-1].get("cls")
-    if type(value).__name__ == "TimerInfo":
-        return TIMER_INFO
     set_ = re.match(rf"\s*([\w.\[\]]*\b{name})\s*=(?!=)\s*([^#;]+)", line_of(frames))
     target, given = (set_[1], set_[2].strip()) if set_ is not None else (name, "...")
     if type(value).__name__ == "Parameter":

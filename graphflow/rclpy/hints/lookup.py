@@ -16,11 +16,11 @@ from graphflow.analysis.user_code import parts_of
 from graphflow.names import nearest
 from graphflow.rclpy.hints.calls import called_value, wrong_call
 from graphflow.rclpy.hints.fields import (
-    TIMER_INFO,
     message_as_value,
     missing_field,
     no_message,
     swapped_arguments,
+    timer_info,
     wrong_value,
 )
 from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
@@ -44,8 +44,6 @@ def hint(error: BaseException) -> str:
 
 
 def _text(error: BaseException, _: list[FrameType]) -> str:
-    if isinstance(error, TypeError) and re.search(r"\bTimerInfo'?(?: and |$)", str(error)):
-        return TIMER_INFO
     for pattern, sentence in TEXTS.items():
         found = re.search(pattern, str(error))
         if found is not None:
@@ -123,6 +121,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _hidden,
     swapped_arguments,
     missing_field,
+    timer_info,
     wrong_value,
     no_message,
     _attribute,

@@ -9,13 +9,13 @@ from __future__ import annotations
 import ast
 import linecache
 import logging
-import sys
 from collections.abc import Iterator
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Self
 
 from graphflow.analysis.syntax import first_line, last_name, syntax_of, walk
-from graphflow.analysis.user_code import is_users_frame, parts_of, short_place, users_frame
+from graphflow.analysis.user_code import is_users_frame, parts_of, short_place
+from rclpy.impl.callers import caller
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -45,7 +45,7 @@ class Spin:
 
     def __exit__(self, _: object, error: BaseException | None, trace: TracebackType | None) -> None:
         if isinstance(error, _PYTHONS_OWN) and self._context.ok():
-            _warn(error, trace, users_frame(sys._getframe(1)))
+            _warn(error, trace, asked.frame if (asked := caller(2)) is not None else None)
 
 
 def _warn(error: Exception, trace: TracebackType | None, spins: FrameType | None) -> None:
