@@ -232,6 +232,8 @@ MISTAKES = {
         ticking("print(self.rate.value)"),
         ticking("self.log('hello')"),
         ticking("print(self.rate())"),
+        ticking("print(self.rate ^ 2)"),
+        ticking("rate = rate * 2"),
         ticking('self.parameters["rate"]'),
         ticking("self.parameters.rate"),
         ticking('self.parameters.set("rate", 2.0)'),
@@ -263,6 +265,10 @@ MISTAKES = {
             "n = 0\n@timer(0.1)\nasync def up(self):\n    self.n += 1\n@timer(1.0)\nasync def twice(self):\n"
             "    n = self.n\n    await self.clock.sleep(0.5)\n    self.n = n + 2",
             "n = self.n; await self.clock.sleep(0.5); self.n = n + 2",
+        ),
+        body(
+            '@service(AddTwoInts, "sum")\nasync def sum_up(self, response, request):\n    response.sum = request.a',
+            "def sum_up(self, response, request): ...",
         ),
         ticking("await self.adder.call(AddTwoInts.Request(), timeout=-1)"),
         ticking("self.goals.send(Fibonacci.Goal())"),
