@@ -9,6 +9,7 @@ import ast
 
 from graphflow.analysis.uncalled import misspelt_main, uncalled_methods
 from graphflow.runtime.mistakes.source.called_early import results_passed, spins_called
+from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.misgiven import misgiven
@@ -20,7 +21,8 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     """Return the lines of a file that Python runs without an error and without effect, each with a sentence."""
     found = [*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module)]
     found += [*results_passed(module, is_of_threads=True), *compared_nanoseconds(module), *mixed_angles(module)]
-    return [*found, *defined_twice(module)]
+    found += [*constant_conditions(module), *defined_twice(module)]
+    return found
 
 
 def foreseen(module: ast.Module) -> list[tuple[int, str]]:
