@@ -1,4 +1,4 @@
-"""Statements without effect: `self.state == "MOVE"`, where `=` was meant."""
+"""Statements without the effect meant: `self.state == "MOVE"`, where `=` was meant, and `self.ticks =+ 1`, for `+=`."""
 
 from __future__ import annotations
 
@@ -27,6 +27,11 @@ def ineffective(code: ast.AST) -> Iterator[tuple[int, str]]:
                 is_inside = False
             case ast.Expr(value=value) if is_inside and (text := _instead(value)):
                 yield node.lineno, text
+            case ast.Assign(targets=[target], value=ast.UnaryOp(op=ast.UAdd(), operand=step) as value) if _is_misplaced(
+                target, value
+            ):
+                place, given = ast.unparse(target), ast.unparse(step)
+                yield node.lineno, f"{place} =+ {given} sets it to {given}; write {place} += {given}"
         children = list(ast.iter_child_nodes(node))
         if isinstance(node, (ast.Try, ast.TryStar, ast.With, ast.AsyncWith)) and len(node.body) == 1:
             children = [child for child in children if child not in node.body]
@@ -42,3 +47,11 @@ def _instead(value: ast.expr) -> str:
             set_ = f"{ast.unparse(left)} {sign}= {ast.unparse(value.right)}"
             return f"{ast.unparse(value)} computes without effect; write {set_}" if sign else ""
     return ""
+
+
+def _is_misplaced(target: ast.expr, value: ast.UnaryOp) -> bool:
+    """Whether a plus sign is written with the equals sign, and not with the number: `x =+ 1`."""
+    if not isinstance(target, _PLACES) or target.end_lineno != value.lineno or value.lineno != value.operand.lineno:
+        return False
+    before, after = value.col_offset - (target.end_col_offset or 0), value.operand.col_offset - value.col_offset
+    return before <= len(" =") and after > len("+")

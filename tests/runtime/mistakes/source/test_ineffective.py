@@ -15,6 +15,8 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
         ('self.state == "MOVE"', "self.state == 'MOVE' compares without effect; write = to set it"),
         ("if pose.x > 9:\n        state == 1", "state == 1 compares without effect; write = to set it"),
         ("self.goals[0] == pose", "self.goals[0] == pose compares without effect; write = to set it"),
+        ("self.ticks =+ 1", "self.ticks =+ 1 sets it to 1; write self.ticks += 1"),
+        ("self.x=+ self.step", "self.x =+ self.step sets it to self.step; write self.x += self.step"),
         ("self.count + 1", "self.count + 1 computes without effect; write self.count += 1"),
         (
             "try:\n        self.state == 1\n        self.go()\n    finally:\n        pass",
@@ -32,6 +34,10 @@ def test_lines_without_an_effect(line: str, told: str) -> None:
     "source",
     [
         "def tick(self):\n    self.state = 'MOVE'",
+        "def tick(self):\n    self.sign = +1",
+        "def tick(self):\n    self.sign=+1",
+        "def tick(self):\n    self.sign = + 0.5",
+        "def tick(self):\n    self.sign =- 1",
         "def tick(self):\n    return self.state == 'MOVE'",
         "def tick(self):\n    assert self.state == 'MOVE'",
         "def tick(self):\n    self.model.add(self.x == 1)",
