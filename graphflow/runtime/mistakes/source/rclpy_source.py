@@ -12,6 +12,7 @@ from graphflow.runtime.mistakes.source.called_early import results_passed, spins
 from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
@@ -21,7 +22,7 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     """Return the lines of a file that Python runs without an error and without effect, each with a sentence."""
     found = [*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module)]
     found += [*results_passed(module, is_of_threads=True), *compared_nanoseconds(module), *mixed_angles(module)]
-    found += [*constant_conditions(module), *defined_twice(module)]
+    found += [*constant_conditions(module), *defined_twice(module), *lost_values(module)]
     return found
 
 

@@ -32,6 +32,7 @@ from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
+from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
@@ -95,7 +96,12 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
-        of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))
+        of_file = (
+            *compared_nanoseconds(module),
+            *mixed_angles(module),
+            *constant_conditions(module),
+            *lost_values(module),
+        )
         found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
