@@ -41,7 +41,7 @@ def _wrong_fields(method: FunctionNode, handler: Handler | None, file: str, spac
     for node, parents in walk(method):
         match node:
             case ast.Attribute(ctx=ast.Load(), attr=field) if type_ := _type_of(node.value, made):
-                if not (_has(type_, field) or any(map(_expects, parents))):
+                if not (_has(type_, field) or any(_expects(parent, node.value) for parent in parents)):
                     yield f"{Place(file, node.lineno)}: {no_field(type_, field)}"
             case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
                 text = _misfit(made[name], field, value)
@@ -130,11 +130,20 @@ def _has(type_: type[Message], field: str) -> bool:
     return field in {f.name for f in type_.SCHEMA.fields} or hasattr(type_, field) or field.startswith("__")
 
 
-def _expects(parent: ast.AST) -> bool:
-    """Whether the statement expects that an attribute may be missing."""
-    for handler in parent.handlers if isinstance(parent, ast.Try) else ():
+def _expects(parent: ast.AST, message: ast.expr) -> bool:
+    """Whether the statement expects that an attribute of a message may be missing.
+
+    An `except` for any error expects it if it is for one plain line, or reads the message another way.
+    """
+    if not isinstance(parent, ast.Try):
+        return False
+    is_plain = len(parent.body) == 1 and isinstance(parent.body[0], (ast.Assign, ast.AnnAssign, ast.Expr, ast.Return))
+    root = next(node.id for node in ast.walk(message) if isinstance(node, ast.Name))
+    for handler in parent.handlers:
         caught = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-        if any(c is None or last_name(c) in ("AttributeError", "Exception", "BaseException") for c in caught):
+        names = {"BaseException" if c is None else last_name(c) for c in caught}
+        reads = any(isinstance(node, ast.Name) and node.id == root for s in handler.body for node in ast.walk(s))
+        if "AttributeError" in names or ((is_plain or reads) and names & {"Exception", "BaseException"}):
             return True
     return False
 

@@ -47,6 +47,10 @@ ADD = '@service(AddTwoInts, "add")\ndef add(self, request, response):\n    '
         (POSE + "print(m.pos.position)", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
         (POSE + "print(m.pose.positon.x)", "10: Pose has no field 'positon'; did you mean 'position'?"),
         (POSE + "m.pos = 1", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
+        (
+            POSE + "try:\n        if m.pos.x > 1:\n            print(1)\n    except Exception:\n        pass",
+            "11: PoseStamped has no field 'pos'; did you mean 'pose'?",
+        ),
         (ADD + "return AddTwoInts.Response(sum=request.c)", "10: AddTwoInts.Request has no field 'c'"),
         (ADD + "response.result = 1\n    return response", "10: AddTwoInts.Response has no field 'result'"),
         (
@@ -66,6 +70,8 @@ def test_a_field_that_is_not_there(tmp_path: Path, body: str, told: str) -> None
     [
         POSE + "print(m.pose.position.x, m.header.stamp, m.to_bytes(), m.SCHEMA, m.__class__)",
         POSE + "try:\n        print(m.pos)\n    except AttributeError:\n        pass",
+        POSE + "try:\n        x = m.pos\n    except Exception:\n        x = None",
+        POSE + "try:\n        if m.pos:\n            print(1)\n    except:\n        print(m.pose)",
         POSE + "print(m.pos if hasattr(m, 'pos') else m.pose)",
         POSE + "m = m.pose\n    print(m.position)",
         POSE + "for m in [m.pose]:\n        print(m.position)",
