@@ -1,6 +1,7 @@
 """Degrees that are mixed with radians: `math.degrees(math.atan2(dy, dx)) - pose.theta`.
 
-An angle counts as one or the other only if a function of `math` or NumPy returns it, or if it is a turtlesim pose's.
+An angle counts as one or the other only if a function of `math` or NumPy returns it, if it is a parameter declared
+with that unit, or if it is a turtlesim pose's.
 """
 
 from __future__ import annotations
@@ -22,17 +23,19 @@ _LIBRARIES = ("math", "np", "numpy")
 _SAME = ("abs", "float")
 
 Unit: TypeAlias = Literal["degrees", "radians", ""]
+_UNITS: dict[str, Unit] = {"deg": "degrees", "rad": "radians"}
+"""The units of parameters."""
 
 
 @cache
 def mixed_angles(module: ast.Module) -> tuple[tuple[int, str], ...]:
     """Return the lines that add, subtract or compare such angles, or take a sine of degrees; each with a correction."""
-    names = _Names(module)
+    names = PoseNames(module)
     return tuple(_mixed(module, names)) if names.has_degrees else ()
 
 
-class _Names:
-    """The imports of a file, and the bindings of its names."""
+class PoseNames:
+    """The imports of a file, the bindings of its names, and which of these are turtlesim poses."""
 
     def __init__(self, module: ast.Module) -> None:
         self.bindings: Bindings = bindings_of(module)
@@ -50,7 +53,9 @@ class _Names:
                     self.poses |= {alias.asname or alias.name for alias in names if alias.name == "Pose"}
                 case ast.Attribute(attr="theta", ctx=ast.Store()):
                     has_own_theta = True
-                case ast.Attribute(attr=name) | ast.Name(id=name) if name in _DEGREES:
+                case ast.Attribute(attr=name) | ast.Name(id=name) | ast.Constant(value=str(name)) if (
+                    name in _DEGREES or _UNITS.get(name) == "degrees"
+                ):
                     self.has_degrees = True
         if has_own_theta:
             self.poses = set()  # somebody may keep degrees there
@@ -108,7 +113,7 @@ _DEPTH = 4
 """The number of names that are followed to a value."""
 
 
-def _mixed(module: ast.Module, names: _Names) -> Iterator[tuple[int, str]]:
+def _mixed(module: ast.Module, names: PoseNames) -> Iterator[tuple[int, str]]:
     for node, parents in walk(module):
         pairs: list[tuple[ast.expr, ast.expr]] = []
         match node:
@@ -127,11 +132,12 @@ def _mixed(module: ast.Module, names: _Names) -> Iterator[tuple[int, str]]:
             units = {_unit(side, names, parents): side for side in (left, right)}
             if units.keys() == {"degrees", "radians"}:
                 degrees, radians = (ast.unparse(units[unit]) for unit in ("degrees", "radians"))
-                text = f"{degrees} is in degrees, and {radians} in radians; write both in radians"
-                yield line, text
+                is_plain = isinstance(units["degrees"], (ast.Name, ast.Attribute))
+                way = f"write math.radians({degrees})" if is_plain else "write both in radians"
+                yield line, f"{degrees} is in degrees, and {radians} in radians; {way}"
 
 
-def _unit(expression: ast.expr, names: _Names, parents: Sequence[ast.AST], depth: int = 0) -> Unit:
+def _unit(expression: ast.expr, names: PoseNames, parents: Sequence[ast.AST], depth: int = 0) -> Unit:
     """Return the unit of an angle; empty if it is not seen.
 
     Args:
@@ -141,6 +147,11 @@ def _unit(expression: ast.expr, names: _Names, parents: Sequence[ast.AST], depth
         case ast.Call(func=function) if (name := names.called(function)) in (*_DEGREES, *_RADIANS, *_INVERSE):
             is_named = any(keyword.arg == "deg" for keyword in expression.keywords)
             return "" if is_named else "degrees" if name in _DEGREES else "radians"
+        case ast.Call(func=function) if last_name(function) == "Param":
+            given = [
+                k.value.value for k in expression.keywords if k.arg == "unit" and isinstance(k.value, ast.Constant)
+            ]
+            return _UNITS.get(str(given[0]), "") if given else ""
         case ast.Call(func=ast.Name(id=name), args=[angle]) if name in _SAME:
             return _unit(angle, names, parents, depth)
         case ast.UnaryOp(op=ast.USub(), operand=angle):

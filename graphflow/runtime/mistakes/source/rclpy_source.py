@@ -16,13 +16,14 @@ from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
+from graphflow.runtime.mistakes.source.never_equal import never_exact
 
 
 def slips(module: ast.Module) -> list[tuple[int, str]]:
     """Return the lines of a file that Python runs without an error and without effect, each with a sentence."""
     found = [*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module)]
     found += [*results_passed(module, is_of_threads=True), *compared_nanoseconds(module), *mixed_angles(module)]
-    found += [*constant_conditions(module), *defined_twice(module), *lost_values(module)]
+    found += [*constant_conditions(module), *defined_twice(module), *lost_values(module), *never_exact(module)]
     return found
 
 

@@ -36,7 +36,7 @@ from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
-from graphflow.runtime.mistakes.source.never_equal import never_equal
+from graphflow.runtime.mistakes.source.never_equal import never_equal, never_exact
 from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
@@ -96,12 +96,8 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
-        of_file = (
-            *compared_nanoseconds(module),
-            *mixed_angles(module),
-            *constant_conditions(module),
-            *lost_values(module),
-        )
+        of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))
+        of_file = (*of_file, *lost_values(module), *never_exact(module))
         found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
 

@@ -17,6 +17,9 @@ from graphflow.msgs.turtlesim.msg import Pose
 class Turtle(Node):
     pose = None
     heading = 0.0
+    wanted = Param(90.0, unit="deg")
+    turn = Param(1.5, unit="rad")
+    bare = Param(90.0)
 
     @subscription(Pose, "pose")
     async def heard(self, m):
@@ -31,17 +34,22 @@ class Turtle(Node):
         {}
 """
 BOTH = "{} is in degrees, and {} in radians; write both in radians"
+PLAIN = "{0} is in degrees, and {1} in radians; write math.radians({0})"
 
 
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("error = angle - self.pose.theta", BOTH.format("angle", "self.pose.theta")),
-        ("error = pose.theta - angle", BOTH.format("angle", "pose.theta")),
+        ("error = angle - self.pose.theta", PLAIN.format("angle", "self.pose.theta")),
+        ("error = pose.theta - angle", PLAIN.format("angle", "pose.theta")),
         ("error = there.theta + -degrees(given)", BOTH.format("-degrees(given)", "there.theta")),
         ("error = math.degrees(given) - atan2(1, 2)", BOTH.format("math.degrees(given)", "atan2(1, 2)")),
         ("error = np.rad2deg(given) - np.arctan2(1, 2)", BOTH.format("np.rad2deg(given)", "np.arctan2(1, 2)")),
         ("if abs(self.heading) > math.radians(90): go()", BOTH.format("abs(self.heading)", "math.radians(90)")),
+        ("error = 2.0 * (self.wanted - m.theta)", ""),
+        ("error = 2.0 * (self.wanted - pose.theta)", PLAIN.format("self.wanted", "pose.theta")),
+        ("error = self.wanted - self.turn", PLAIN.format("self.wanted", "self.turn")),
+        ("x = math.cos(self.wanted)", "self.wanted is in degrees, and cos takes radians"),
         ("angle += pose.theta", ""),
         ("x = math.cos(self.heading)", "self.heading is in degrees, and cos takes radians"),
     ],
@@ -58,6 +66,10 @@ def test_degrees_and_radians(line: str, told: str) -> None:
         "error = math.degrees(math.atan2(1.0, 2.0) - self.pose.theta)",
         "error = angle - math.degrees(self.pose.theta)",
         "error = angle - goal.theta",
+        "error = math.radians(self.wanted) - pose.theta",
+        "error = self.wanted - math.degrees(pose.theta)",
+        "error = self.turn - pose.theta",
+        "error = self.bare - pose.theta",
         "error = angle - given.theta",
         "error = angle - given",
         "error = angle - 90.0",
