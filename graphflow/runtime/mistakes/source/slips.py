@@ -29,6 +29,7 @@ from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.conditions import constant_conditions
+from graphflow.runtime.mistakes.source.contrary_names import contrary_names
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
@@ -97,7 +98,7 @@ def _slips(cls: type) -> Iterator[str]:
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
         of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))
-        of_file = (*of_file, *lost_values(module), *never_exact(module))
+        of_file = (*of_file, *lost_values(module), *never_exact(module), *contrary_names(module))
         found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
