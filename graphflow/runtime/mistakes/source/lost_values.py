@@ -34,7 +34,7 @@ def _locals(cls: ast.ClassDef) -> Iterator[tuple[int, str]]:
     set_ |= {target.id for target in targets if isinstance(target, ast.Name)}
     for method in cls.body:
         if isinstance(method, FunctionNode):
-            yield from _unread(method, read & set_)
+            yield from _unread(method, read & set_) if read & set_ else ()
 
 
 def _unread(method: FunctionNode, attributes: set[str]) -> Iterator[tuple[int, str]]:
@@ -47,12 +47,16 @@ def _unread(method: FunctionNode, attributes: set[str]) -> Iterator[tuple[int, s
                 known.add(name)
             case ast.Global(names=names) | ast.Nonlocal(names=names):
                 known.update(names)
-    for node, _ in walk(method, into_functions=False):
+            case ast.Attribute(attr=name, ctx=ast.Store()) if is_own(node):
+                known.add(name)  # the method tells the two apart
+    for node, parents in walk(method, into_functions=False):
+        if any(isinstance(parent, ast.ClassDef) for parent in parents):
+            continue
         match node:
             case (
                 ast.Assign(targets=[ast.Name(id=name)], value=value)
                 | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value)
-            ) if name in attributes - known and _is_pure(value):
+            ) if name in attributes - known and _is_pure(value) and ast.unparse(value) != f"self.{name}":
                 text = f"{name} = {ast.unparse(value)}"
                 yield node.lineno, f"{text} sets a local variable, which nothing reads; write self.{text}"
 

@@ -30,7 +30,7 @@ _UNITS: dict[str, Unit] = {"deg": "degrees", "rad": "radians"}
 @cache
 def mixed_angles(module: ast.Module) -> tuple[tuple[int, str], ...]:
     """Return the lines that add, subtract or compare such angles, or take a sine of degrees; each with a correction."""
-    names = PoseNames(module)
+    names = pose_names(module)
     return tuple(_mixed(module, names)) if names.has_degrees else ()
 
 
@@ -107,6 +107,12 @@ class PoseNames:
             last_name(call.func) == "subscription" and bool(call.args) and last_name(call.args[0]) in self.poses
             for call in calls
         )
+
+
+@cache
+def pose_names(module: ast.Module) -> PoseNames:
+    """Return the names of a module, collected once."""
+    return PoseNames(module)
 
 
 _DEPTH = 4

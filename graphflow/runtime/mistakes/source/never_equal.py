@@ -17,7 +17,7 @@ from graphflow.interface import Parameter
 from graphflow.names import nearest
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
-from graphflow.runtime.mistakes.source.mixed_angles import PoseNames
+from graphflow.runtime.mistakes.source.mixed_angles import PoseNames, pose_names
 
 _NUMBERS = {"bool": "a bool", "int": "an int", "float": "a float"}
 _TRUE, _FALSE = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
@@ -186,9 +186,11 @@ def never_exact(module: ast.Module) -> tuple[tuple[int, str], ...]:
 
 
 def _exact(module: ast.Module) -> Iterator[tuple[int, str]]:
-    names = PoseNames(module)
+    names = pose_names(module)
+    if not names.poses:
+        return
     words = {last_name(node) for node in ast.walk(module) if isinstance(node, (ast.Name, ast.Attribute))}
-    if not names.poses or any("teleport" in word.lower() for word in words):
+    if any("teleport" in word.lower() for word in words):
         return
     for node, parents in walk(module):
         match node:
