@@ -262,6 +262,31 @@ MISTAKES = {
             "if self.on == 'true': ...",
         ),
         body(
+            "def near(self):\n    return True\n@timer(0.1)\nasync def tick(self):\n    if self.near: pass",
+            "def near(self): ..., then if self.near: ...",
+        ),
+        body(
+            "@timer(0.1)\nasync def tick(self):\n    if self.node_name == 'a' or 'b': pass",
+            "if self.node_name == 'a' or 'b': ...",
+        ),
+        body(
+            "state = 'MOVE'\n@timer(0.1)\nasync def tick(self):\n    if self.state == 'TURNING': self.state = 'TURN'",
+            "if self.state == 'TURNING': self.state = 'TURN'",
+        ),
+        body("n = 0\n@timer(0.1)\nasync def tick(self):\n    self.n =+ 1", "self.n =+ 1"),
+        body(
+            "state = 'MOVE'\n@timer(0.1)\nasync def tick(self):\n    print(self.state)\n    state = 'BACK'",
+            "state = 'BACK', for self.state",
+        ),
+        body(
+            "words = Publisher(String, 'words')\n@timer(0.1)\nasync def tick(self):\n    return String()",
+            "@timer(0.1) def tick(self): return String()",
+        ),
+        body(
+            "wait_ms = Param(100)\n@timer(0.1)\nasync def tick(self):\n    await self.clock.sleep(self.wait_ms)",
+            "wait_ms = Param(100), then await self.clock.sleep(self.wait_ms)",
+        ),
+        body(
             "n = 0\n@timer(0.1)\nasync def up(self):\n    self.n += 1\n@timer(1.0)\nasync def twice(self):\n"
             "    n = self.n\n    await self.clock.sleep(0.5)\n    self.n = n + 2",
             "n = self.n; await self.clock.sleep(0.5); self.n = n + 2",
