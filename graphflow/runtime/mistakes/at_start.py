@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 
-from graphflow.runtime.mistakes.source.slips import slips, slips_in_groups
+from graphflow.analysis.user_code import is_users_module
 
 
 def warn_at_start(
@@ -18,6 +18,10 @@ def warn_at_start(
         is_regrouped: Whether a graph file changes its groups.
     """
     cls: type = type(instance)
+    if not is_users_module(cls.__module__):
+        return
+    from graphflow.runtime.mistakes.source.slips import slips, slips_in_groups  # commands' own nodes need none of it
+
     found = slips(cls)
     if not is_regrouped:
         found = (*found, *slips_in_groups(cls))
