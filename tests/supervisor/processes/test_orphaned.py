@@ -31,7 +31,7 @@ class Stuck(Node):
         super().__init__("stuck")
         subprocess.Popen(["sleep", "600"], start_new_session=True)
 
-    @timer(0.01)
+    @timer(0.5)  # the node is ready before
     def tick(self):
         time.sleep(600)
 """
