@@ -101,11 +101,12 @@ def _pose_with_covariance(message: PoseWithCovarianceStamped, pose: Pose, header
 
 def turned_covariance(covariance: Any, pose: Pose) -> NDArray[np.float64]:
     """Rotate the axes of a pose's covariance, 6 by 6 as 36 numbers; translation does not change it."""
-    both = np.kron(np.eye(2), _matrix(pose))
+    both = np.kron(np.eye(2), rotation_matrix(pose))
     return np.asarray((both @ np.reshape(covariance, (6, 6)) @ both.T).ravel())
 
 
-def _matrix(pose: Pose) -> NDArray[np.float64]:
+def rotation_matrix(pose: Pose) -> NDArray[np.float64]:
+    """Return the matrix of a pose's rotation, of shape (3, 3)."""
     return np.array([rotate(pose.rotation, axis) for axis in AXES]).T
 
 
@@ -138,7 +139,7 @@ def _is_valid(scan: LaserScan, ranges: NDArray[np.float64]) -> NDArray[np.bool_]
 
 def _scan(message: LaserScan, pose: Pose, header: Header) -> PointCloud2:
     """Convert a scan to a cloud with the fields x, y, z and, where the scan has them, intensity."""
-    points = scan_points(message) @ _matrix(pose).T + pose.translation
+    points = scan_points(message) @ rotation_matrix(pose).T + pose.translation
     columns = [points]
     names = ["x", "y", "z"]
     if len(message.intensities) == len(message.ranges):
@@ -178,7 +179,7 @@ def _cloud(message: PointCloud2, pose: Pose, header: Header) -> PointCloud2:
     dtype = np.dtype({"names": list("xyz"), "formats": kinds, "offsets": offsets, "itemsize": message.point_step})
     points = np.ndarray((message.height, message.width), dtype, data, strides=(row, message.point_step))
     stacked = np.stack([points[name].astype(np.float64) for name in "xyz"], axis=-1)
-    placed = stacked @ _matrix(pose).T + pose.translation
+    placed = stacked @ rotation_matrix(pose).T + pose.translation
     for index, name in enumerate("xyz"):
         points[name] = placed[..., index]
     out = type(message)(header=header, height=message.height, width=message.width, fields=message.fields)

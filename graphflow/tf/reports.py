@@ -31,12 +31,9 @@ class Reports:
 
     def late(self, sender: str, frame: str) -> None:
         """Warn of a transform that is older than everything kept, or that finds no room."""
-        text = (
-            "a transform of %r from %s is dropped: it is older than all that is kept, or the buffer is full; are the "
-        )
-        self._once(
-            "late", frame, text + "clocks of both machines, and use_sim_time of both nodes, the same?", frame, sender
-        )
+        text = "a transform of %r from %s is dropped: it is older than all that is kept, or the buffer is full; "
+        text += "are the clocks of both machines, and use_sim_time of both nodes, the same?"
+        self._once("late", frame, text, frame, sender)
 
     def two_senders(self, frame: str, parent: str, first: str, second: str) -> None:
         """Warn of a frame that two publishers place by turns."""

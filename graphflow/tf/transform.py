@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,10 +12,8 @@ from graphflow.msgs.geometry_msgs.msg import Transform as TransformMessage
 from graphflow.msgs.geometry_msgs.msg import TransformStamped
 from graphflow.msgs.std_msgs.msg import Header
 from graphflow.tf import messages
-from graphflow.tf.poses import AXES, Pose, Quaternion, Vector, from_rpy, rotate, to_rpy
+from graphflow.tf.poses import Pose, Quaternion, Vector, from_rpy, to_rpy
 from graphflow.times import Time
-
-M = TypeVar("M")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,12 +85,9 @@ class Transform:
     def matrix(self) -> NDArray[np.float64]:
         """Return the homogeneous matrix, of shape (4, 4)."""
         out = np.eye(4)
-        out[:3, :3] = self._turn()
+        out[:3, :3] = messages.rotation_matrix(self.pose)
         out[:3, 3] = self.pose.translation
         return out
-
-    def _turn(self) -> NDArray[np.float64]:
-        return np.array([rotate(self.pose.rotation, axis) for axis in AXES]).T
 
     def inverse(self) -> Transform:
         """Return the pose of `parent` in `child`."""
@@ -111,11 +106,11 @@ class Transform:
 
     def points(self, points: ArrayLike) -> NDArray[np.float64]:
         """Convert points in `child` to `parent`: an array of shape (..., 3), in metres, to a new array."""
-        return np.asarray(points, dtype=np.float64) @ self._turn().T + self.pose.translation
+        return np.asarray(points, dtype=np.float64) @ messages.rotation_matrix(self.pose).T + self.pose.translation
 
     def vectors(self, vectors: ArrayLike) -> NDArray[np.float64]:
         """Rotate vectors, which have no place, such as velocities: an array of shape (..., 3)."""
-        return np.asarray(vectors, dtype=np.float64) @ self._turn().T
+        return np.asarray(vectors, dtype=np.float64) @ messages.rotation_matrix(self.pose).T
 
     def apply(self, message: Any) -> Any:
         """Convert a message with a header from `child` to `parent`; a `LaserScan` becomes a `PointCloud2`.
