@@ -134,9 +134,9 @@ class NodeCore:
     # contents
 
     @property
-    def held(self) -> Mapping[str, object]:
+    def objects(self) -> Mapping[str, object]:
         """The runtime objects of the class's declarations, by attribute."""
-        return self._binding.held
+        return self._binding.objects
 
     @property
     def handlers(self) -> frozenset[str]:

@@ -9,12 +9,12 @@ from graphflow.errors import DeclarationError
 from graphflow.interface import EndpointInfo
 from graphflow.runtime.call_site import here
 from graphflow.runtime.declarations.creator import Maker
-from graphflow.runtime.declarations.declare import Bound, Held
+from graphflow.runtime.declarations.declare import Bound, Declaration
 from graphflow.tf.buffer import STATIC_TOPIC, TOPIC, TYPE, TransformBuffer
 from graphflow.times import to_ns
 
 
-class Transforms(Held):
+class Transforms(Declaration):
     """The transforms of the node: `await self.tf.lookup("map", "base_link")`, `self.tf.send(...)`.
 
     Args:

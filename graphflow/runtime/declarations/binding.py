@@ -44,12 +44,12 @@ class Binding:
     """The runtime objects of one node's declarations.
 
     Attributes:
-        held: Endpoints and parameter values, by attribute.
+        objects: Endpoints and parameter values, by attribute.
         node, owner: The node, and its core.
     """
 
     def __init__(self, node: Creator, owner: Owner, parameters: Parameters) -> None:
-        self.held: dict[str, object] = {}
+        self.objects: dict[str, object] = {}
         self.node, self.owner, self._parameters = node, owner, parameters
         self._class = type(node)
         self._timers: list[tuple[Rate, Timer]] = []
@@ -64,18 +64,18 @@ class Binding:
         """Declare the parameters; they come first, since the periods of timers may refer to them."""
         for parameter in COMMON_PARAMETERS.values():
             self._parameters.declare(parameter)
-        for attribute, item in declared.held(self._class).items():
+        for attribute, item in declared.declarations(self._class).items():
             if isinstance(item, Param):
-                self.held[attribute] = item.create(self)
+                self.objects[attribute] = item.create(self)
                 self._of_class.add(item.parameter.name)
         self._parameters.check(self._check)
         self._parameters.observe(self._changed)
 
     def bind(self) -> None:
         """Create the endpoints, handlers and timers."""
-        for attribute, item in declared.held(self._class).items():
+        for attribute, item in declared.declarations(self._class).items():
             if not isinstance(item, Param):
-                self.held[attribute] = item.create(self)
+                self.objects[attribute] = item.create(self)
         for attribute, handler in declared.handlers(self._class).items():
             self._bind_handler(getattr(self.node, attribute), handler)
 

@@ -41,7 +41,7 @@ class _Core(Protocol):
     """A node's runtime objects, as its declarations read them."""
 
     @property
-    def held(self) -> Mapping[str, object]:
+    def objects(self) -> Mapping[str, object]:
         """Endpoints and parameter values, by attribute."""
 
     @property
@@ -102,7 +102,7 @@ class Group:
         return f"Group({self.name or 'unnamed'}, limit={self.limit})"
 
 
-class Held(MadeByNodes, ABC):
+class Declaration(MadeByNodes, ABC):
     """A declaration as a class attribute; on a node, its runtime object."""
 
     attribute = ""
@@ -121,10 +121,10 @@ class Held(MadeByNodes, ABC):
 
     def on(self, node: Bound) -> object:
         """Return the runtime object on a node."""
-        return node._core.held[self.attribute]
+        return node._core.objects[self.attribute]
 
 
-class Publisher(Held, Generic[M]):
+class Publisher(Declaration, Generic[M]):
     """A publisher of the node.
 
     Args:
@@ -171,7 +171,7 @@ class Publisher(Held, Generic[M]):
         return self if node is None else self.on(node)
 
 
-class Subscription(Held, Generic[M]):
+class Subscription(Declaration, Generic[M]):
     """A subscription that the node iterates: `async for message in self.chatter`. Arguments as for `Publisher`.
 
     Args:
@@ -217,7 +217,7 @@ class Subscription(Held, Generic[M]):
         return self if node is None else self.on(node)
 
 
-class Client(Held, Generic[Request, Response]):
+class Client(Declaration, Generic[Request, Response]):
     """A client of a service: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`.
 
     Args:
@@ -258,7 +258,7 @@ class Client(Held, Generic[Request, Response]):
         return self if node is None else self.on(node)
 
 
-class ActionClient(Held, Generic[Goal, Result, Feedback]):
+class ActionClient(Declaration, Generic[Goal, Result, Feedback]):
     """A client of an action: `async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal`."""
 
     MAKER = 'create_action_client(Type, "name"), or declare ActionClient(Type, "name") in the class'
@@ -284,7 +284,7 @@ class ActionClient(Held, Generic[Goal, Result, Feedback]):
         return self if node is None else self.on(node)
 
 
-class Param(Held, Generic[V]):
+class Param(Declaration, Generic[V]):
     """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` read and set it.
 
     Args:

@@ -22,8 +22,8 @@ from graphflow.interface import (
 from graphflow.runtime.callables import code_of, file_of
 from graphflow.runtime.declarations.declare import (
     HOOK_MARK,
+    Declaration,
     Group,
-    Held,
     Param,
     ParamHook,
     Publisher,
@@ -52,11 +52,11 @@ def default_name(cls: type[NodeClass]) -> str:
     return cls.node_name or snake_case(cls.__name__)
 
 
-def held(cls: type) -> dict[str, Held]:
+def declarations(cls: type) -> dict[str, Declaration]:
     """Return the declarations of a class and its parents by attribute; a subclass's replace its parents'."""
-    found: dict[str, Held] = {}
+    found: dict[str, Declaration] = {}
     for attribute, value in _members(cls):
-        if isinstance(value, Held):
+        if isinstance(value, Declaration):
             found[attribute] = value
         else:
             found.pop(attribute, None)
@@ -94,7 +94,7 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
 def hooks(cls: type) -> frozenset[str]:
     """Return the methods called outside any handler: parameter checks, event callbacks and goal decisions."""
     found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
-    endpoints = (declared for declared in held(cls).values() if isinstance(declared, (Publisher, Subscription)))
+    endpoints = (declared for declared in declarations(cls).values() if isinstance(declared, (Publisher, Subscription)))
     called: list[object] = [declared.on_event for declared in endpoints]
     for handler in handlers(cls).values():
         called += [handler.on_event]
@@ -127,7 +127,7 @@ def check_attributes(cls: type, node: type) -> None:
         DeclarationError: An attribute does.
     """
     taken = reserved(node)
-    found: dict[str, object] = {**held(cls), **handlers(cls), **groups(cls)}
+    found: dict[str, object] = {**declarations(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
         code = code_of(value)
         is_override = code is not None and "super" in code.co_names
@@ -139,7 +139,7 @@ def check_attributes(cls: type, node: type) -> None:
         if attribute == "name" and isinstance(declared, str):
             hint = f"; to name the nodes of the class write node_name = {declared!r}"
         code = code_of(declared)
-        if isinstance(declared, (Held, Handler)):
+        if isinstance(declared, (Declaration, Handler)):
             place = declared.place
         else:
             place = Place(code.co_filename, code.co_firstlineno) if code is not None else place_of(cls)
@@ -185,7 +185,7 @@ def interface_of(cls: type[NodeClass]) -> Interface:
     """
     place = _source_place(cls)
     params, methods = _params(cls), handlers(cls)
-    endpoints = [endpoint for declared in held(cls).values() for endpoint in declared.endpoints()]
+    endpoints = [endpoint for declared in declarations(cls).values() for endpoint in declared.endpoints()]
     for attribute, handler in methods.items():
         _check_rate(cls, attribute, handler, params)
         if handler.kind in ("subscription", "service", "action"):
@@ -203,7 +203,7 @@ def interface_of(cls: type[NodeClass]) -> Interface:
         groups={name: GroupInfo(g.limit, g.when_full, g.thread) for name, g in groups(cls).items()},
         dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
         is_managed=cls.is_managed,
-        attributes=tuple(held(cls)),
+        attributes=tuple(declarations(cls)),
     )
 
 
@@ -218,7 +218,7 @@ def _source_place(cls: type) -> Place:
 def _params(cls: type) -> dict[str, Parameter]:
     """Return the parameters of a class by name. Raises DeclarationError for a name that is taken."""
     found: dict[str, Parameter] = {}
-    for parameter in (declared.parameter for declared in held(cls).values() if isinstance(declared, Param)):
+    for parameter in (declared.parameter for declared in declarations(cls).values() if isinstance(declared, Param)):
         if parameter.name in COMMON_PARAMETERS:
             raise DeclarationError(
                 f"{parameter.place}: every node has the parameter {parameter.name!r}; rename this one"

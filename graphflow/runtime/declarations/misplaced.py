@@ -12,7 +12,7 @@ from types import CellType, CodeType, FunctionType
 
 from graphflow.errors import DeclarationError, Place
 from graphflow.runtime.declarations import declared
-from graphflow.runtime.declarations.declare import HOOK_MARK, Held, Param, ParamHook
+from graphflow.runtime.declarations.declare import HOOK_MARK, Declaration, Param, ParamHook
 from graphflow.runtime.declarations.handlers import MARK, Handler
 
 
@@ -32,7 +32,7 @@ def check_misplaced(cls: type) -> None:
     # Up to Python 3.13, annotations are evaluated with the class body; later versions do so on access.
     annotations = vars(cls).get("__annotations__", {})
     for attribute, value in annotations.items() if isinstance(annotations, Mapping) else ():
-        if isinstance(value, Held):
+        if isinstance(value, Declaration):
             raise DeclarationError(f"{value.place}: {attribute} is only annotated; write = instead of the colon")
         if (inner := next(_handlers_in(value), None)) is not None:
             raise DeclarationError(f"{inner.place}: @{inner.kind} goes above a method; {attribute} is only annotated")
@@ -51,12 +51,12 @@ def _declares(annotation: str, space: Mapping[str, object]) -> bool:
     if isinstance(function, ast.Attribute):
         return isinstance(function.value, ast.Name) and function.value.id == "graphflow"
     found = space.get(function.id) if isinstance(function, ast.Name) else None
-    return isinstance(found, type) and issubclass(found, Held)
+    return isinstance(found, type) and issubclass(found, Declaration)
 
 
 def _wrapped_by(value: object) -> Iterator[object]:
     """Return marked functions that an attribute wraps instead of being one itself."""
-    if _is_marked(value) or isinstance(value, (Held, type)):
+    if _is_marked(value) or isinstance(value, (Declaration, type)):
         return
     inner: list[object]
     if isinstance(value, property):
@@ -103,7 +103,7 @@ def _refuse_wrapped(attribute: str, value: object, inner: object) -> None:
 
 def _refuse_collected(attribute: str, value: Collection[object], known: Collection[int]) -> None:
     for item in value.values() if isinstance(value, dict) else value:
-        if not isinstance(item, Held) or id(item) in known:
+        if not isinstance(item, Declaration) or id(item) in known:
             continue
         kind = type(item).__name__
         if isinstance(value, tuple) and len(value) == 1:
@@ -124,11 +124,11 @@ def check_made(node: object) -> None:
         DeclarationError: It has assigned one.
     """
     for attribute, value in vars(node).items():
-        if isinstance(value, Held) and not value.attribute:
+        if isinstance(value, Declaration) and not value.attribute:
             raise DeclarationError(f"{value.place}: {not_of_node(attribute, type(value))}")
 
 
-def not_of_node(attribute: str, kind: type[Held]) -> str:
+def not_of_node(attribute: str, kind: type[Declaration]) -> str:
     """Return the sentence for a declaration that is assigned to an attribute of a node."""
     way = f"write {attribute} = {kind.__name__}(...) in the body of the class"
     if not issubclass(kind, Param):

@@ -83,8 +83,8 @@ class Losses:
 
     def _warn_of_unread(self, dropped: int) -> None:
         node = getattr(self._host, "instance", None)
-        held = {**getattr(self._host, "held", {}), **getattr(node, "__dict__", {})}
-        used = [held[name] for name in _names_used(type(node)) if name in held]
+        values = {**getattr(self._host, "objects", {}), **getattr(node, "__dict__", {})}
+        used = [values[name] for name in _names_used(type(node)) if name in values]
         if any(getattr(x, "kind", None) is Kind.SUBSCRIPTION and x.name == self._name for x in used):
             return  # a method will read it, which has not come so far
         text = "nothing has read %s yet, and its messages are lost, %d so far: write "

@@ -9,11 +9,11 @@ from graphflow.errors import Place
 from graphflow.interface import EndpointInfo
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.declarations.creator import Maker
-from graphflow.runtime.declarations.declare import Held
+from graphflow.runtime.declarations.declare import Declaration
 from graphflow.testing import Graph
 
 
-class Twin(Held):
+class Twin(Declaration):
     """Two publishers, one of them remapped by the node's rules."""
 
     place = Place("twin.py", 1)
@@ -35,4 +35,4 @@ async def test_a_declaration_of_a_new_kind(graph: Graph) -> None:
     await graph.start(node)
     assert [(e.name, e.attribute) for e in Twins.interface().endpoints] == [("a", "pair"), ("b", "pair")]
     assert {"/a", "/left/b"} <= {e.name for e in node.endpoints}
-    assert node._core.held["pair"][1] == "/c"  # type: ignore[index]
+    assert node._core.objects["pair"][1] == "/c"  # type: ignore[index]

@@ -14,7 +14,7 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import DeclarationError, Place
-from graphflow.runtime.declarations.declare import Held
+from graphflow.runtime.declarations.declare import Declaration
 from graphflow.runtime.declarations.misplaced import not_of_node
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.early_waits import early_waits
@@ -68,5 +68,5 @@ def _made_too_late(definition: ast.ClassDef, space: dict[str, object]) -> Iterat
             match statement:
                 case ast.Assign(targets=[ast.Attribute() as target], value=ast.Call(func=function)) if is_own(target):
                     kind = resolved(function, space)
-                    if isinstance(kind, type) and issubclass(kind, Held):
+                    if isinstance(kind, type) and issubclass(kind, Declaration):
                         yield statement.lineno, not_of_node(target.attr, kind)

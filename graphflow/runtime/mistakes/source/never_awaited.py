@@ -61,7 +61,7 @@ def _called(function: ast.expr, cls: type, parent: type, space: dict[str, object
         case ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr="clock"), attr=name):
             return inspect.getattr_static(Clock, name, None)
         case ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=owner), attr=name):
-            return inspect.getattr_static(_AT_WORK.get(type(declared.held(cls).get(owner)), object), name, None)
+            return inspect.getattr_static(_AT_WORK.get(type(declared.declarations(cls).get(owner)), object), name, None)
         case ast.Attribute(value=owner, attr=name) if is_super(owner):
             after = cls.__mro__[cls.__mro__.index(parent) + 1 :]
             return next((vars(one)[name] for one in after if name in vars(one)), None)

@@ -40,9 +40,9 @@ def never_equal(cls: type, owner: type, definition: ast.ClassDef, module: ast.Mo
         cls: The class of the nodes.
         owner: The class itself, or the parent of it that `definition` defines.
     """
-    held, own = declared.held(cls), declared.held(owner)
+    declarations, own = declared.declarations(cls), declared.declarations(owner)
     # A subclass may declare the parameter anew, with other choices.
-    params = {k: v.parameter for k, v in held.items() if isinstance(v, Param) and own.get(k) is v}
+    params = {k: v.parameter for k, v in declarations.items() if isinstance(v, Param) and own.get(k) is v}
     words = {node.attr for node in ast.walk(definition) if isinstance(node, ast.Attribute)}
     if words.isdisjoint({*params, "parameters", "status", "lifecycle_state"}):
         return

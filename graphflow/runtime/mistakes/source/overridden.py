@@ -69,7 +69,7 @@ def _is_heard(cls: type, lost: Handler) -> bool:
     """Whether a class has another handler with the purpose of a lost one."""
     if any(_use(handler) == _use(lost) for handler in declared.handlers(cls).values()):
         return lost.kind in _LOST
-    streams = [held for held in declared.held(cls).values() if isinstance(held, Subscription)]
+    streams = [item for item in declared.declarations(cls).values() if isinstance(item, Subscription)]
     return lost.kind == "subscription" and any((s.name, s.type) == (lost.name, lost.type) for s in streams)
 
 

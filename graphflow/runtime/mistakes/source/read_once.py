@@ -45,8 +45,8 @@ def without_effect(cls: type, name: str) -> str:
 @cache
 def _reads(cls: type, name: str) -> tuple[str, str, Place] | None:
     """Return the attribute of a parameter, and the only method that reads it, with the line."""
-    held = declared.held(cls)
-    attribute = next((a for a, v in held.items() if isinstance(v, Param) and v.parameter.name == name), None)
+    declarations = declared.declarations(cls)
+    attribute = next((a for a, v in declarations.items() if isinstance(v, Param) and v.parameter.name == name), None)
     if attribute is None:
         return None
     files: dict[str, set[ast.AST]] = {}

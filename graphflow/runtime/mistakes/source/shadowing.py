@@ -40,7 +40,10 @@ def check_bound_once(cls: type) -> None:
     Raises:
         DeclarationError: One is; the text has both lines.
     """
-    names = {**declared.handlers(cls), **{k: v for k, v in declared.held(cls).items() if not isinstance(v, Param)}}
+    names = {
+        **declared.handlers(cls),
+        **{k: v for k, v in declared.declarations(cls).items() if not isinstance(v, Param)},
+    }
     for parent in cls.__mro__:
         found = definition_of(parent) if is_users_module(parent.__module__) else None
         if found is not None:

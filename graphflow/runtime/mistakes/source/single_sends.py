@@ -26,7 +26,7 @@ def single_sends(node: object, publisher: object) -> list[Place]:
     """Return the lines at which a node publishes with one of its publishers; empty if one may run twice, or unknown."""
     cls = type(node)
     names = {name for name, value in vars(node).items() if value is publisher}
-    names |= {name for name in declared.held(cls) if getattr(node, name, None) is publisher}
+    names |= {name for name in declared.declarations(cls) if getattr(node, name, None) is publisher}
     if len(names) != 1:
         return []
     try:

@@ -192,7 +192,7 @@ def _received(argument: ast.arg, space: dict[str, object]) -> str:
 
 def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str]) -> Iterator[str]:
     """Find attributes that are set, never read, and spelt almost as a declaration of the class."""
-    names = declared.held(cls)
+    names = declared.declarations(cls)
     for method in definition.body:
         for node, parents in walk(method):
             if not (isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and is_own(node)):
@@ -220,7 +220,7 @@ _COUNTING = {*"0123456789xyzabclr"}
 
 def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, object]) -> Iterator[str]:
     """Find declarations that a method replaces by setting a class attribute instead of the node's."""
-    names = declared.held(cls)
+    names = declared.declarations(cls)
     for method in definition.body:
         for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
             match node:
@@ -233,7 +233,9 @@ def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, o
 def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterator[str]:
     """Find list parameters that are modified in place: no check and no tool sees the change."""
     lists = {
-        name for name, p in declared.held(cls).items() if isinstance(p, Param) and p.parameter.type.startswith("list[")
+        name
+        for name, p in declared.declarations(cls).items()
+        if isinstance(p, Param) and p.parameter.type.startswith("list[")
     }
     for method in definition.body:
         for node in ast.walk(method) if isinstance(method, FunctionNode) else ():

@@ -22,9 +22,11 @@ _WAITS = ("call", "send", "send_goal", "wait_ready")
 
 def wrong_units(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
     """Find the lines of a class that give a parameter in another unit than is taken; each comes with a sentence."""
-    held = declared.held(cls)
-    params = {name: item.parameter for name, item in held.items() if isinstance(item, Param) and item.parameter.unit}
-    clients = {f"self.{name}" for name, item in held.items() if isinstance(item, (Client, ActionClient))}
+    declarations = declared.declarations(cls)
+    params = {
+        name: item.parameter for name, item in declarations.items() if isinstance(item, Param) and item.parameter.unit
+    }
+    clients = {f"self.{name}" for name, item in declarations.items() if isinstance(item, (Client, ActionClient))}
     calls = [n for m in definition.body if params and isinstance(m, FunctionNode) for n in ast.walk(m)]
     for call in calls:
         if not isinstance(call, ast.Call):
