@@ -21,7 +21,7 @@ from graphflow.qos import SENSOR_DATA
 
 
 class State(Enum):
-    """What the robot is doing."""
+    """The robot's activities."""
 
     DRIVE = "drive"
     TURN_LEFT = "turn left"

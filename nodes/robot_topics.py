@@ -46,7 +46,7 @@ class Due:
 
 
 class RobotTopics:
-    """What a robot publishes, and the commands it takes; below its name, or at the node's names if it has none."""
+    """The topics and commands of a robot: below its name, or at the node's names if it has none."""
 
     def __init__(self, node: Node, tf: TransformBuffer, robot: SimulatedRobot, *, stamped: bool) -> None:
         self._node, self._tf, self.robot = node, tf, robot

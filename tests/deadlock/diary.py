@@ -63,16 +63,16 @@ class Report(NamedTuple):
 FORESEEN = re.compile("Mishap|TaskGroup")
 """Errors that are meant to happen."""
 STUMBLED = re.compile("LIKELY DEADLOCK|the search for deadlocks|a snapshot of waits that cannot be read")
-"""What is not meant to be said, at whatever level."""
+"""Log records that fail a test, at whatever level."""
 
 
 def dead(picture: WaitGraph) -> set[str]:
-    """Who is dead of those that users have written."""
+    """Return the deadlocked activities of user code."""
     return {name for name in deadlocked(picture) if not picture.activities[name].is_inner}
 
 
 class Diary(logging.Handler):
-    """What happened in one system, in order: everything that is written down has its time, and counts up."""
+    """The events of one system, in order, each with its time."""
 
     def __init__(self, system: System) -> None:
         super().__init__(logging.DEBUG)
@@ -96,13 +96,13 @@ class Diary(logging.Handler):
         """Calls that ended with DeadlockError."""
         self.reports: list[Report] = []
         self.looks: list[Report] = []
-        """Who was dead in pictures that the test has taken."""
+        """The deadlocks of the wait graphs that the test has taken."""
         self.behind: list[str] = []
-        """Who was said to wait for a ring after its report."""
+        """Messages that an activity waits behind a reported ring."""
         self.cleared = 0
         """Reports that were taken back."""
         self.stumbled: list[str] = []
-        """What was logged and should not have been."""
+        """Log messages that should not have come."""
 
     def write(self) -> int:
         self.times.append(asyncio.get_running_loop().time())
