@@ -6,7 +6,7 @@ from bisect import bisect_left
 from dataclasses import dataclass, field
 
 from graphflow.errors import ExtrapolationError, FrameLoop, TransformError, UnconnectedFrames, UnknownFrame
-from graphflow.names import did_you_mean
+from graphflow.names import nearest
 from graphflow.tf.poses import IDENTITY, Pose
 
 FRAMES_BOUND = 10_000
@@ -218,7 +218,9 @@ class Frames:
         names = self.names()
         more = " ..." if len(names) > SHOWN else ""
         known = f"the known frames are {', '.join(names[:SHOWN])}{more}" if names else "no frame is known so far"
-        text = f"{target} -> {source}: there is no frame {frame!r}{did_you_mean(frame, names)}; {known}"
+        near = nearest(frame, names)
+        hint = f"; did you mean {near!r}?" if near else ""
+        text = f"{target} -> {source}: there is no frame {frame!r}{hint}; {known}"
         return UnknownFrame(text, target, source, frame)
 
     def _unconnected(self, target: str, source: str) -> UnconnectedFrames:
