@@ -171,6 +171,18 @@ async def test_a_publisher_that_stops(graph: Graph) -> None:
         listener.tf.get("odom", "base_link", graph.clock.now())
 
 
+async def test_a_slow_publisher(graph: Graph) -> None:
+    """It has not stopped if less than three of its periods have passed."""
+    listener, sender = Listener(), Listener("odometry")
+    await graph.start(listener, sender)
+    for _ in range(5):
+        sender.tf.send(Transform.of("odom", "base_link"))
+        await graph.clock.advance(2.0)
+    await graph.clock.advance(3.0)
+    with pytest.raises(ExtrapolationError, match=r"5\.00 s older; /odometry publishes it at 0\.5 Hz$"):
+        listener.tf.get("odom", "base_link", graph.clock.now())
+
+
 async def test_messages(graph: Graph) -> None:
     """A message with a header is converted at the time of its stamp."""
     listener = Listener()

@@ -64,7 +64,7 @@ def test_up_down_and_across(frames: Frames) -> None:
     [
         ("map", "lasre", 0, UnknownFrame, "map -> lasre: there is no frame 'lasre'; did you mean 'laser'?; the known"),
         ("mpa", "laser", 0, UnknownFrame, "mpa -> laser: there is no frame 'mpa'; did you mean 'map'?"),
-        ("map", "xyz", 0, UnknownFrame, "there is no frame 'xyz'; the known frames are "),
+        ("map", "xyz", 0, UnknownFrame, "'xyz'; the known frames are base, laser, map, moon, odom ..."),
         (
             *("moon", "laser", 0, UnconnectedFrames),
             "moon is in the tree of sky, laser is in the tree of map, and no transform connects the two",

@@ -59,9 +59,12 @@ def test_poses_and_polygons() -> None:
     assert xyz(moved.position) == (1.0, 2.0, 0.0)
     assert (moved.orientation.z, moved.orientation.w) == pytest.approx((math.sqrt(0.5), math.sqrt(0.5)))
     uncertain = PoseWithCovarianceStamped(header=IN_LASER)
-    uncertain.pose.covariance = np.diag([4.0, 1.0, 9.0, 0.1, 0.2, 0.3]).ravel()
+    covariance = np.diag([4.0, 1.0, 9.0, 0.1, 0.2, 0.3])
+    covariance[0, 2] = covariance[2, 0] = 0.7  # of x and z: x becomes y
+    uncertain.pose.covariance = covariance.ravel()
     turned = np.reshape(LEFT.apply(uncertain).pose.covariance, (6, 6))
     assert np.allclose(np.diag(turned), [1.0, 4.0, 9.0, 0.2, 0.1, 0.3])
+    assert np.allclose([turned[1, 2], turned[2, 1], turned[0, 2]], [0.7, 0.7, 0.0])
     polygon = PolygonStamped(header=IN_LASER)
     polygon.polygon.points = [Point32(x=2.0), Point32(y=1.0)]
     moved_points = LEFT.apply(polygon).polygon.points
