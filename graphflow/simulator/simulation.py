@@ -51,19 +51,21 @@ class SimulatedRobot:
     """A robot in a world. Made by `Simulation`.
 
     Attributes:
+        seed: Of its noise.
         collisions: Ticks in which its body has touched an obstacle or another robot.
     """
 
     placed: Placed
     robot: Robot
-    dice: np.random.Generator
-    odometry: Odometry
-    charge: Charge | None
-    collisions: int = 0
-    is_touching: bool = False
-    _target: tuple[float, float] = (0.0, 0.0)
-    _speed: tuple[float, float] = (0.0, 0.0)
-    _commanded: float = -math.inf
+    seed: tuple[int, int]
+    odometry: Odometry = field(init=False)
+    charge: Charge | None = field(init=False)
+    collisions: int = field(init=False)
+    is_touching: bool = field(init=False)
+    _dice: np.random.Generator = field(init=False, repr=False)
+    _target: tuple[float, float] = field(init=False)
+    _speed: tuple[float, float] = field(init=False)
+    _commanded: float = field(init=False)
     _model: mujoco.MjModel = field(init=False, repr=False)
     _data: mujoco.MjData = field(init=False, repr=False)
     _body: int = field(init=False)
@@ -72,6 +74,18 @@ class SimulatedRobot:
     _motors: tuple[int, int] = field(init=False)
     _geoms: frozenset[int] = field(init=False, repr=False)
     _beams: NDArray[np.float64] | None = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin again at time 0: at rest, with a full battery and new odometry, and with the same noise."""
+        self.odometry = Odometry(self.robot.wheels)
+        self.charge = None if self.robot.battery is None else Charge(self.robot.battery)
+        self.collisions, self.is_touching = 0, False
+        self._dice = np.random.default_rng(self.seed)
+        self._target = self._speed = 0.0, 0.0
+        self._commanded = -math.inf
 
     def bind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Find the robot's parts in a model."""
@@ -169,7 +183,7 @@ class SimulatedRobot:
         mujoco.mj_multiRay(
             self._model, self._data, origin, rays, None, 1, self._body, found, distances, None, count, reach
         )
-        return noisy(distances, lidar, self.dice)
+        return noisy(distances, lidar, self._dice)
 
     def imu(self) -> ImuReading:
         """Return what the IMU reports now.
@@ -181,8 +195,8 @@ class SimulatedRobot:
         if imu is None:
             raise ValueError(f"a {self.robot.name} has no IMU")
         own = self.placed.name
-        gyro = self._data.sensor(f"{own}/gyro").data + self.dice.normal(0.0, imu.gyro_noise, 3)
-        pull = self._data.sensor(f"{own}/accelerometer").data + self.dice.normal(0.0, imu.accelerometer_noise, 3)
+        gyro = self._data.sensor(f"{own}/gyro").data + self._dice.normal(0.0, imu.gyro_noise, 3)
+        pull = self._data.sensor(f"{own}/accelerometer").data + self._dice.normal(0.0, imu.accelerometer_noise, 3)
         w, x, y, z = (float(number) for number in self._data.qpos[self._qpos + 3 : self._qpos + 7])
         return ImuReading((x, y, z, w), gyro, pull)
 
@@ -224,10 +238,8 @@ class Simulation:
         return float(self._data.time)
 
     def _add(self, placed: Placed, robot: Robot) -> None:
-        charge = None if robot.battery is None else Charge(robot.battery)
-        dice = np.random.default_rng([self._seed, self._spawned])
+        self.robots[placed.name] = SimulatedRobot(placed, robot, (self._seed, self._spawned))
         self._spawned += 1
-        self.robots[placed.name] = SimulatedRobot(placed, robot, dice, Odometry(robot.wheels), charge)
 
     def _compile(self) -> None:
         """Make a model of the world and its robots; what moves goes on from where it is."""
@@ -286,12 +298,8 @@ class Simulation:
     def reset(self) -> None:
         """Begin again: time, obstacles, robots of the world, and noise are as at the start; spawned robots stay."""
         mujoco.mj_resetData(self._model, self._data)
-        for index, robot in enumerate(self.robots.values()):
-            robot.dice = np.random.default_rng([self._seed, index])
-            robot.odometry = Odometry(robot.robot.wheels)
-            robot.charge = None if robot.robot.battery is None else Charge(robot.robot.battery)
-            robot.collisions = 0
-            robot.command(0.0, 0.0)
+        for robot in self.robots.values():
+            robot.restart()
         mujoco.mj_forward(self._model, self._data)
 
 

@@ -137,6 +137,28 @@ def test_reset() -> None:
     assert (robot.scan() == first).all()
 
 
+def test_a_robot_stands_after_a_reset() -> None:
+    """The speed that it had is forgotten."""
+    simulation = world()
+    robot = drive(simulation, 2.0, 0.2, 0.5)
+    simulation.reset()
+    drive(simulation, 0.5)
+    assert (robot.pose.x, robot.pose.yaw) == pytest.approx((0.0, 0.0), abs=1e-4)
+
+
+def test_reset_after_a_deletion() -> None:
+    """The noise of each robot is its own again."""
+    simulation = world(
+        robots=[{"model": "burger"}, {"model": "burger", "name": "second", "at": [3.0, 3.0]}],
+        walls=[{"points": [[1.0, -2.0], [1.0, 2.0]]}],
+    )
+    second = simulation.robots["second"]
+    simulation.delete("")
+    first = second.scan()
+    simulation.reset()
+    assert (second.scan() == first).all()
+
+
 def test_trouble() -> None:
     """A robot that lies on its side, or falls out of the world, is noticed."""
     simulation = world()
