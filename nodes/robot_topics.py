@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # it imports mujoco, which may not be there
     from graphflow.simulator import SimulatedRobot
 
 STATE_HZ = 1.0
-"""Messages a second of the battery; the bumper's come with each change, too."""
+"""Messages a second of the battery and the bumper; the bumper's come with each change, too."""
 COVARIANCE = [0.001, 0.001, 1e6, 1e6, 1e6, 0.03]
 """Variances of x, y, z, roll, pitch and yaw; what the wheels cannot know is large."""
 
@@ -126,9 +126,11 @@ class RobotTopics:
             self._publish_scan(stamp)
         if dues["odom"].is_now(time):
             self._publish_odom(stamp)
-        if dues["state"].is_now(time) or self.robot.is_touching is not self._was_touching:
+        is_due = dues["state"].is_now(time)
+        if is_due or self.robot.is_touching is not self._was_touching:
             self._was_touching = self.robot.is_touching
             self.bumper.publish(Bool(data=self._was_touching))
+        if is_due:
             self._publish_battery(stamp)
 
     def _publish_odom(self, stamp: Time) -> None:

@@ -117,7 +117,6 @@ class Robot(Model):
         command_timeout: Seconds after which a robot without commands stops.
         odom_rate: Odometry messages per second.
         caster: The caster's point on the ground, x and y in metres.
-        frames: Fixed frames of the description: the parent, and x, y, z in it.
         base_frame, footprint_frame: The frames of the body, and of its point on the ground.
         base_height: The height of the base frame above the footprint.
     """
