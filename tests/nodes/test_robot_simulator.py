@@ -12,6 +12,7 @@ from graphflow.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from graphflow.msgs.nav_msgs.msg import Odometry
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.msgs.sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
+from graphflow.msgs.std_msgs.msg import Bool
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
 from graphflow.tf import Transforms
@@ -50,6 +51,41 @@ async def test_commands_and_frames(graph: Graph, kind: Any) -> None:
     assert scanner.translation == pytest.approx((0.37 - 0.032, 0.0, 0.182), abs=0.04)
     assert listener.tf.parent("wheel_left_link") == "base_link"
     assert abs(listener.tf.get("base_link", "wheel_left_link").translation[1]) == pytest.approx(0.08)
+
+
+async def test_frames_of_the_parts(graph: Graph) -> None:
+    """They are where the TurtleBot3's description has them."""
+    listener = Listener(use_sim_time=True)
+    await graph.start(RobotSimulator(world="empty"), listener)
+    await graph.clock.advance(0.1)
+    places = {name: listener.tf.get("base_link", name).translation for name in listener.tf.frames if name != "odom"}
+    assert places["base_scan"] == pytest.approx((-0.032, 0.0, 0.172))
+    assert places["imu_link"] == pytest.approx((-0.032, 0.0, 0.068))
+    assert places["wheel_left_link"] == pytest.approx((0.0, 0.08, 0.023))
+    assert places["wheel_right_link"] == pytest.approx((0.0, -0.08, 0.023))
+
+
+async def test_contents(graph: Graph, tmp_path: Any) -> None:
+    """Gravity and turns in the IMU's, the period in a scan, the current out of the battery; a touch at once."""
+    file = tmp_path / "wall.yaml"
+    file.write_text("robots: [{}]\nwalls: [{points: [[0.3, -1.0], [0.3, 1.0]]}]")
+    await graph.start(RobotSimulator(world=str(file)))
+    imu, scans = graph.tap(Imu, "/imu"), graph.tap(LaserScan, "/scan")
+    battery, bumper = graph.tap(BatteryState, "/battery_state"), graph.tap(Bool, "/bumper")
+    drive = graph.publisher(Twist, "/cmd_vel")
+    for _ in range(5):
+        drive.publish(Twist(angular=Vector3(z=0.5)))
+        await graph.clock.advance(0.1)
+    assert imu.latest.linear_acceleration.z == pytest.approx(9.81, abs=0.3)
+    assert imu.latest.angular_velocity.z == pytest.approx(0.5, abs=0.1)
+    assert scans.latest.scan_time == pytest.approx(0.2)
+    assert battery.latest.current < -0.3
+    for _ in range(30):
+        drive.publish(FORWARD)
+        await graph.clock.advance(0.1)
+    touches = [message.data for message in bumper]
+    assert True in touches
+    assert len(touches) > len(battery)
 
 
 async def test_pause_and_reset(graph: Graph) -> None:

@@ -44,6 +44,15 @@ def test_odometry() -> None:
     assert coarse.x == 0.0
 
 
+def test_odometry_on_an_arc() -> None:
+    """A step along an arc goes in the direction of its middle."""
+    odometry = Odometry(Wheels(radius=0.1, separation=0.2, mass=0.1, torque=1.0))
+    odometry.update(0.0, math.pi, 1.0)  # around the left wheel, which stands
+    assert odometry.yaw == pytest.approx(math.pi / 2)
+    way = 0.1 * math.pi / 2
+    assert (odometry.x, odometry.y) == pytest.approx((way * math.sqrt(0.5), way * math.sqrt(0.5)))
+
+
 def test_a_battery() -> None:
     """It loses charge and voltage, and never more than it has."""
     charge = Charge(Battery(voltage=12.0, capacity=1.0, idle=1.0, driving=1.0))

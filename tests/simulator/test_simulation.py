@@ -11,6 +11,7 @@ import pytest
 
 from graphflow.simulator.files import find, read_robot, read_world
 from graphflow.simulator.mjcf import TICK
+from graphflow.simulator.robot import Robot
 from graphflow.simulator.simulation import SimulatedRobot, Simulation
 from graphflow.simulator.world import World
 
@@ -64,6 +65,35 @@ def test_a_scan() -> None:
     assert near == pytest.approx(0.982, abs=0.05)
 
 
+def exact(**changes: Any) -> dict[str, Robot]:
+    """Return the burger with a scanner that has no noise."""
+    burger = ROBOTS["burger"]
+    assert burger.lidar is not None
+    lidar = burger.lidar.model_copy(update={"noise": 0.0, "dropouts": 0.0, **changes})
+    return {"burger": burger.model_copy(update={"lidar": lidar})}
+
+
+def test_beams_begin_at_the_scanner() -> None:
+    """It is 3.2 cm behind the middle of a burger, which turns with it."""
+    walls = [{"points": [[x, -2.0], [x, 2.0]], "thickness": 0.02} for x in (1.01, -2.01)]
+    made = World.model_validate({"robots": [{"model": "burger"}], "walls": walls})
+    simulation = Simulation(made, exact())
+    robot = simulation.robots[""]
+    scan = robot.scan()
+    assert (scan[0], scan[180]) == pytest.approx((1.032, 1.968), abs=1e-3)
+    robot.place(0.0, 0.0, math.pi / 2)
+    simulation.tick()
+    scan = robot.scan()
+    assert (scan[270], scan[90]) == pytest.approx((1.0, 2.0), abs=5e-3)
+
+
+def test_limits_of_acceleration() -> None:
+    """A robot gets faster by no more than its motors may, on the straight and in turns."""
+    straight, turning = drive(world(), 0.04, 0.22, 0.0), drive(world(), 0.04, 0.0, 2.84)
+    assert straight.wheel_angles[1] * 0.033 < 0.5 * 2.5 * 0.05**2
+    assert turning.wheel_angles[1] * 0.033 < 0.5 * 2.5 * 0.05**2
+
+
 def test_collisions() -> None:
     """Driving into a wall is noticed; a light box is pushed away, a wall is not."""
     simulation = world(walls=[{"points": [[0.5, -1.0], [0.5, 1.0]]}])
@@ -109,13 +139,15 @@ def test_the_same_seed_gives_the_same_run() -> None:
 
 
 def test_spawning_and_deleting() -> None:
-    """The others go on from where they are."""
+    """The others go on from where they are, as fast as they were."""
     simulation = world()
-    robot = drive(simulation, 2.0, 0.2, 0.0)
+    robot = drive(simulation, 2.0, 0.2, 0.5)
     before, time = robot.pose, simulation.time
+    speed = robot._data.qvel.copy()
     placed = World.model_validate({"robots": [{"name": "new", "at": [3.0, 3.0]}]}).robots[0]
     simulation.spawn(placed, ROBOTS["rover"])
     assert robot.pose.x == pytest.approx(before.x)
+    assert robot._data.qvel[: len(speed)] == pytest.approx(speed)
     assert simulation.time == time
     assert simulation.robots["new"].pose.x == pytest.approx(3.0)
     with pytest.raises(ValueError, match="there is a robot 'new' already"):
@@ -138,12 +170,15 @@ def test_reset() -> None:
 
 
 def test_a_robot_stands_after_a_reset() -> None:
-    """The speed that it had is forgotten."""
+    """The speed that it had is forgotten; so it is when it is placed elsewhere."""
     simulation = world()
     robot = drive(simulation, 2.0, 0.2, 0.5)
     simulation.reset()
     drive(simulation, 0.5)
     assert (robot.pose.x, robot.pose.yaw) == pytest.approx((0.0, 0.0), abs=1e-4)
+    drive(simulation, 2.0, 0.2, 0.0)
+    robot.place(1.0, 1.0, 0.0)
+    assert not robot._data.qvel.any()
 
 
 def test_reset_after_a_deletion() -> None:
