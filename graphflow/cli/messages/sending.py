@@ -83,8 +83,10 @@ class _Logs:
         await asyncio.sleep(server_logs.PATIENCE)
         self._show((log for _, log in self._heard), str(error).partition(" the goal: ")[2])
 
-    def tell(self) -> None:
-        """Show those that came when the goal had just been sent, as they may be about its request."""
+    async def tell(self, *, is_empty: bool) -> None:
+        """Show those that came when the goal had just been sent; for an empty result, they are the only reason."""
+        if is_empty and not self._heard:
+            await asyncio.sleep(server_logs.PATIENCE)
         self._show(log for heard, log in self._heard if heard - self._began < AT_ONCE)
 
     def _show(self, logs: Iterable[Any], known: str = "") -> None:
@@ -130,7 +132,7 @@ async def _result(sent: ClientGoalHandle[Any, Any, Any], reporter: _Reporter, lo
     try:
         result = await sent.result()
         code = exits.OK
-        logs.tell()
+        await logs.tell(is_empty=result == type(result)())
     except (GoalAborted, GoalCanceled) as error:
         output.talk(str(error))
         await logs.explain(error)
