@@ -154,7 +154,9 @@ SERVICES = Qos()
 PARAMETERS = Qos(depth=1000)
 PARAMETER_EVENTS = Qos(depth=1000)
 ROSOUT = Qos(depth=1000, durability=Durability.TRANSIENT_LOCAL, lifespan_ns=10_000_000_000)
-ACTION_STATUS = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
+LATCHED = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
+"""The latest message is kept for late subscribers: for maps, robot descriptions and other states that seldom change."""
+ACTION_STATUS = LATCHED
 CLOCK = Qos(depth=1, reliability=Reliability.BEST_EFFORT)
 BEST_AVAILABLE = Qos(reliability=Reliability.BEST_AVAILABLE, durability=Durability.BEST_AVAILABLE)
 SYSTEM_DEFAULT = Qos(depth=0)

@@ -23,7 +23,7 @@ FILES = ("folders", "workspace", "markup", "launchfiles", "console", "graph", "a
 """Reads files and the environment; nothing that waits."""
 RUNTIME = ("transport", "executor", "deadlock", "runtime")
 """Where waiting happens."""
-TOOLS = ("tf", "introspect", "simulator", "bag", "viewer", "supervisor", "testing", "nodes", "rclpy")
+TOOLS = ("tf", "maps", "introspect", "simulator", "bag", "viewer", "supervisor", "testing", "nodes", "rclpy")
 ENTRY_POINTS = ("cli", "tui")
 PACKAGES = (*PURE, *FILES, *RUNTIME, *TOOLS, *ENTRY_POINTS)
 """From the bottom up: a package imports itself and those before it. No entry point imports another."""
@@ -35,6 +35,7 @@ ONLY_IN = {
     "websockets": ("viewer",),
     "rosbags": ("bag",),
     "mujoco": ("simulator",),
+    "PIL": ("maps",),
 }
 """Libraries that one package knows."""
 

@@ -63,6 +63,7 @@ _VERBS = {
     "component": ("ros.component", "Load nodes into running processes, and unload them."),
     "lifecycle": ("ros.lifecycle", "Show and change the states of lifecycle nodes."),
     "tf": ("ros.tf", "Show transforms between frames; publish static ones."),
+    "map": ("ros.map", "Show and save maps."),
     "waits": ("graphs.waits", "Show which handlers hold slots, what they wait for, and where."),
     "groups": ("graphs.waits", "Show a node's groups, or change them while it runs."),
     "doctor": ("ros.doctor", "Check the running graph for problems."),

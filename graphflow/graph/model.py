@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from typing import Annotated, Any, NotRequired, TypedDict, get_args
+from typing import Annotated, Any, get_args
 
 from pydantic import (
     AfterValidator,
@@ -169,16 +169,6 @@ LIFECYCLE = ("unconfigured", "inactive", "active")
 """The states that a lifecycle node can be brought to when it starts."""
 LOG_LEVELS = ("debug", "info", "warn", "error", "fatal")
 After = Annotated[Any, AfterValidator(_after)]
-
-
-class Fault(TypedDict):
-    """A fault that pydantic finds; the part of its `ErrorDetails` that is used here."""
-
-    type: str
-    loc: tuple[int | str, ...]
-    msg: str
-    input: object
-    ctx: NotRequired[dict[str, Any]]
 
 
 class _Model(BaseModel):

@@ -13,13 +13,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictStr, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictStr
 
 from graphflow.errors import GraphFileError, Problem
-from graphflow.graph.model import Fault, keys_of
 from graphflow.graph.zenoh_address import endpoint
 from graphflow.markup import source
-from graphflow.names import did_you_mean
+from graphflow.markup.validated import validated
 
 
 def _encrypted(text: str) -> str:
@@ -62,10 +61,7 @@ def read_profile(path: Path) -> NetProfile:
         GraphFileError: The profile has mistakes; all of them, with their places.
     """
     src = source.read_file(path, str(path))
-    try:
-        profile = NetProfile.model_validate(src.data)
-    except ValidationError as error:
-        raise GraphFileError([_problem(src, fault) for fault in error.errors()]) from None
+    profile = validated(src, NetProfile)
     problems = []
     files: dict[str, str] = {}
     for key, name in profile.tls.model_dump().items():
@@ -78,15 +74,3 @@ def read_profile(path: Path) -> NetProfile:
     if problems:
         raise GraphFileError(problems)
     return profile.model_copy(update={"tls": Certificates(**files)})
-
-
-def _problem(src: source.Source, fault: Fault) -> Problem:
-    path = tuple(part for part in fault["loc"])
-    if fault["type"] == "extra_forbidden":
-        known = keys_of(Certificates if path[0] == "tls" else NetProfile)
-        return Problem(src.key_place(path), f"unknown key {path[-1]!r}{did_you_mean(str(path[-1]), known)}")
-    if fault["type"] == "missing":
-        return Problem(src.place(path[:-1]), f"the key {path[-1]!r} is missing")
-    if fault["type"] == "value_error":
-        return Problem(src.place(path), str(fault["ctx"]["error"]))
-    return Problem(src.place(path), f"{fault['input']!r}: {fault['msg'].lower()}")

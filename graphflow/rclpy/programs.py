@@ -29,9 +29,18 @@ from graphflow.rclpy.messages import finder
 from graphflow.runtime.mistakes import unrun
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
-from graphflow.workspace.executables import SLIP, of_ros
+from graphflow.workspace.executables import EXECUTABLES, SLIP, of_ros
 from graphflow.workspace.installed import package_of
-from graphflow.workspace.packages import KINDS, Package, Workspace, bundled, find_workspace, is_graphflows, uses_ros
+from graphflow.workspace.packages import (
+    BUNDLED,
+    KINDS,
+    Package,
+    Workspace,
+    bundled,
+    find_workspace,
+    is_graphflows,
+    uses_ros,
+)
 from graphflow.workspace.setup_file import EntryPoint
 from graphflow.workspace.unfound import launching
 
@@ -70,6 +79,8 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     package = named or packages.get(what)
     if package is None and what in bundled().packages and enabling.elsewhere() is None:
         package, workspace = bundled().packages[what], bundled()
+    if package is not None and package.folder.parent == BUNDLED and (what, *words[:1]) in EXECUTABLES:
+        return None  # a native node, beside the package's rclpy programs
     if package is None:
         outside = package_of(what)
         if outside is None or not words or words[0] not in outside.programs:

@@ -19,9 +19,9 @@ from graphflow.simulator.robot import Robot
 from graphflow.simulator.world import World
 
 if TYPE_CHECKING:
-    from graphflow.simulator.simulation import ImuReading, Pose2D, SimulatedRobot, Simulation
+    from graphflow.simulator.simulation import ImuReading, SimulatedRobot, Simulation
 
-__all__ = ["ImuReading", "Pose2D", "Robot", "SimulatedRobot", "Simulation", "World", "simulate"]
+__all__ = ["ImuReading", "Robot", "SimulatedRobot", "Simulation", "World", "simulate"]
 
 
 def __getattr__(name: str) -> object:

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import UnionType
-from typing import TypeVar, Union, get_args, get_origin
-
-from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, Problem
-from graphflow.graph.model import Fault, keys_of
 from graphflow.markup import source
-from graphflow.names import did_you_mean, nearest
+from graphflow.markup.validated import validated
+from graphflow.names import nearest
 from graphflow.simulator.robot import Robot
 from graphflow.simulator.world import World
 
 HERE = Path(__file__).parent
-M = TypeVar("M", bound=BaseModel)
 
 
 def bundled(kind: str) -> list[str]:
@@ -54,7 +49,7 @@ def read_world(file: Path) -> tuple[World, dict[str, Robot]]:
         GraphFileError: A file has mistakes; all of them, with their places.
     """
     src = source.read_file(file, str(file))
-    world = _validated(src, World)
+    world = validated(src, World)
     robots: dict[str, Robot] = {}
     problems = []
     for index, placed in enumerate(world.robots):
@@ -73,42 +68,4 @@ def read_robot(file: Path) -> Robot:
     Raises:
         GraphFileError: It has mistakes; all of them, with their places.
     """
-    return _validated(source.read_file(file, str(file)), Robot)
-
-
-def _validated(src: source.Source, kind: type[M]) -> M:
-    try:
-        return kind.model_validate({} if src.data is None else src.data)
-    except ValidationError as error:
-        raise GraphFileError([_problem(src, fault, kind) for fault in error.errors()]) from None
-
-
-def _problem(src: source.Source, fault: Fault, kind: type[BaseModel]) -> Problem:
-    path = tuple(fault["loc"])
-    if fault["type"] == "extra_forbidden":
-        known = keys_of(_model_at(kind, path[:-1]))
-        near = did_you_mean(str(path[-1]), known) or f"; known are {', '.join(sorted(known))}"
-        text = f"unknown key {path[-1]!r}{near}"
-        return Problem(src.key_place(path), text)
-    if fault["type"] == "missing":
-        return Problem(src.place(path[:-1]), f"the key {path[-1]!r} is missing")
-    if fault["type"] == "value_error":
-        return Problem(src.place(path), str(fault["ctx"]["error"]))
-    return Problem(src.place(path), f"{fault['input']!r}: {fault['msg'].lower()}")
-
-
-def _model_at(kind: type[BaseModel], path: tuple[int | str, ...]) -> type[BaseModel]:
-    """Return the model of the value at a path."""
-    for part in path:
-        if isinstance(part, str) and part in kind.model_fields:
-            inner = _model_in(kind.model_fields[part].annotation)
-            kind = inner or kind
-    return kind
-
-
-def _model_in(annotation: object) -> type[BaseModel] | None:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    if get_origin(annotation) in (Union, UnionType, list) or get_args(annotation):
-        return next((found for part in get_args(annotation) if (found := _model_in(part)) is not None), None)
-    return None
+    return validated(source.read_file(file, str(file)), Robot)

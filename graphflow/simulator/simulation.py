@@ -15,20 +15,12 @@ from graphflow.simulator.mjcf import FLOOR, STEPS, TICK, model, mover_name
 from graphflow.simulator.robot import Lidar, Robot
 from graphflow.simulator.sensors import Charge, Odometry, noisy
 from graphflow.simulator.world import Mover, Placed, World
+from graphflow.tf.planar import Pose2D
 
 FALLEN = 0.5
 """Cosine of the tilt beyond which a robot counts as fallen."""
 EDGE = 100.0
 """Metres from the origin beyond which a robot has left the world."""
-
-
-@dataclass(frozen=True, slots=True)
-class Pose2D:
-    """A true place: x, y in metres, yaw in radians."""
-
-    x: float
-    y: float
-    yaw: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from graphflow.msgs.geometry_msgs.msg import Transform as TransformMessage
 from graphflow.msgs.geometry_msgs.msg import TransformStamped
 from graphflow.msgs.std_msgs.msg import Header
 from graphflow.tf import messages
+from graphflow.tf.planar import Pose2D
 from graphflow.tf.poses import Pose, Quaternion, Vector, from_rpy, to_rpy
 from graphflow.times import Time
 
@@ -81,6 +82,11 @@ class Transform:
     def yaw(self) -> float:
         """The rotation about z in radians, from -pi to pi."""
         return to_rpy(self.pose.rotation)[2]
+
+    @property
+    def planar(self) -> Pose2D:
+        """x, y and yaw: the pose of something that stands on a floor."""
+        return Pose2D(self.pose.translation[0], self.pose.translation[1], self.yaw)
 
     def matrix(self) -> NDArray[np.float64]:
         """Return the homogeneous matrix, of shape (4, 4)."""

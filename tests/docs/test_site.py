@@ -7,6 +7,7 @@ import re
 
 import graphflow
 import graphflow.bag
+import graphflow.maps
 import graphflow.simulator
 import graphflow.testing
 import graphflow.tf
@@ -22,7 +23,15 @@ def test_everything_public_is_in_the_reference_once() -> None:
     found = re.findall(r"^\.\. auto(?:class|function|exception):: ([\w.]+)$", text, re.MULTILINE)
     public = [
         f"{package.__name__}.{name}"
-        for package in (graphflow, graphflow.bag, graphflow.simulator, graphflow.testing, graphflow.tf, graphflow.tui)
+        for package in (
+            graphflow,
+            graphflow.bag,
+            graphflow.maps,
+            graphflow.simulator,
+            graphflow.testing,
+            graphflow.tf,
+            graphflow.tui,
+        )
         for name in package.__all__
     ]
     assert sorted(found) == sorted(set(public) - {"graphflow.__version__"})

@@ -11,9 +11,10 @@ from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.checks import foreign_keys, rewritten
-from graphflow.graph.model import BLOCKS, Fault, GroupBlock, NodeSpec, keys_of
+from graphflow.graph.model import BLOCKS, GroupBlock, NodeSpec, keys_of
 from graphflow.markup import source
 from graphflow.markup.source import Source
+from graphflow.markup.validated import Fault
 from graphflow.names import did_you_mean, nearest
 from graphflow.times import seconds_in
 from graphflow.typographic import is_quoted
