@@ -12,13 +12,14 @@ from graphflow.msgs.geometry_msgs.msg import Point, Quaternion, Twist, TwistStam
 from graphflow.msgs.geometry_msgs.msg import Pose as PoseMessage
 from graphflow.msgs.nav_msgs.msg import Odometry
 from graphflow.msgs.sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
-from graphflow.msgs.std_msgs.msg import Bool, Header
-from graphflow.qos import SENSOR_DATA
+from graphflow.msgs.std_msgs.msg import Bool, Header, String
+from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, TransformBuffer
 
 if TYPE_CHECKING:  # it imports mujoco, which may not be there
     from graphflow.simulator import SimulatedRobot
 
+JOINTS = ["wheel_left_joint", "wheel_right_joint"]
 STATE_HZ = 1.0
 """Messages a second of the battery and the bumper; the bumper's come with each change, too."""
 COVARIANCE = [0.001, 0.001, 1e6, 1e6, 1e6, 0.03]
@@ -71,6 +72,8 @@ class RobotTopics:
             "state": Due(STATE_HZ),
         }
         self._was_touching = False
+        self.description = node.create_publisher(String, f"{made}robot_description", LATCHED)
+        self.description.publish(String(data=robot.description(made)))
 
     @property
     def title(self) -> str:
@@ -87,7 +90,7 @@ class RobotTopics:
         """Withdraw the topics."""
         self.commands.close()
         publishers: list[TopicPublisher[Any] | None] = [self.odom, self.joints, self.bumper, self.scan, self.imu]
-        for publisher in (*publishers, self.battery):
+        for publisher in (*publishers, self.battery, self.description):
             if publisher is not None:
                 publisher.close()
 
@@ -145,14 +148,14 @@ class RobotTopics:
         rotation = (0.0, 0.0, turn.z, turn.w)
         moving = [Transform.of(frame, child, (odometry.x, odometry.y, 0.0), rotation=rotation, stamp=stamp)]
         angles, wheels = self.robot.wheel_angles, model.wheels
-        base, names = self.frame(model.base_frame), ["wheel_left_joint", "wheel_right_joint"]
+        base = self.frame(model.base_frame)
         half = wheels.separation / 2
         for name, angle, y in (("left", angles[0], half), ("right", angles[1], -half)):
             # The wheel's frame has its axle along z, as in the TurtleBot3's description.
             place, rpy = (0.0, y, wheels.radius - model.base_height), (-math.pi / 2, angle, 0.0)
             moving.append(Transform.of(base, self.frame(f"wheel_{name}_link"), place, rpy=rpy, stamp=stamp))
         self._tf.send(*moving)
-        self.joints.publish(JointState(header=Header(stamp=stamp), name=names, position=list(angles)))
+        self.joints.publish(JointState(header=Header(stamp=stamp), name=JOINTS, position=list(angles)))
 
     def _publish_scan(self, stamp: Time) -> None:
         lidar = self.robot.robot.lidar

@@ -23,7 +23,19 @@ FILES = ("folders", "workspace", "markup", "launchfiles", "console", "graph", "a
 """Reads files and the environment; nothing that waits."""
 RUNTIME = ("transport", "executor", "deadlock", "runtime")
 """Where waiting happens."""
-TOOLS = ("tf", "maps", "introspect", "simulator", "bag", "viewer", "supervisor", "testing", "nodes", "rclpy")
+TOOLS = (
+    "tf",
+    "maps",
+    "introspect",
+    "description",
+    "simulator",
+    "bag",
+    "viewer",
+    "supervisor",
+    "testing",
+    "nodes",
+    "rclpy",
+)
 ENTRY_POINTS = ("cli", "tui")
 PACKAGES = (*PURE, *FILES, *RUNTIME, *TOOLS, *ENTRY_POINTS)
 """From the bottom up: a package imports itself and those before it. No entry point imports another."""
@@ -36,6 +48,7 @@ ONLY_IN = {
     "rosbags": ("bag",),
     "mujoco": ("simulator",),
     "PIL": ("maps",),
+    "xacro": ("description",),
 }
 """Libraries that one package knows."""
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from graphflow.simulator.mjcf import FLOOR, STEPS, TICK, model, mover_name
 from graphflow.simulator.robot import Lidar, Robot
 from graphflow.simulator.sensors import Charge, Odometry, noisy
+from graphflow.simulator.urdf import described
 from graphflow.simulator.world import Mover, Placed, World
 from graphflow.tf.planar import Pose2D
 
@@ -138,6 +139,10 @@ class SimulatedRobot:
         """Its true place."""
         x, y, _, w, i, j, k = self._data.qpos[self._qpos : self._qpos + 7]
         return Pose2D(float(x), float(y), math.atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k)))
+
+    def description(self, prefix: str = "") -> str:
+        """Return its description in URDF; `prefix` precedes the names of its frames."""
+        return described(self.robot, prefix)
 
     @property
     def trouble(self) -> str:

@@ -38,6 +38,8 @@ EXECUTABLES = {
     ("composition", "listener"): "nodes.listener:Listener",
     ("turtlebot3_gazebo", "simulator"): "nodes.robot_simulator:RobotSimulator",
     ("turtlebot3_teleop", "teleop_keyboard"): "nodes.robot_teleop:RobotTeleop",
+    ("robot_state_publisher", "robot_state_publisher"): "nodes.robot_state_publisher:RobotStatePublisher",
+    ("joint_state_publisher", "joint_state_publisher"): "nodes.joint_state_publisher:JointStatePublisher",
     ("nav2_map_server", "map_server"): "nodes.map_server:MapServer",
     ("slam_toolbox", "async_slam_toolbox_node"): "nodes.mapper:Mapper",
     ("slam_toolbox", "sync_slam_toolbox_node"): "nodes.mapper:Mapper",

@@ -13,6 +13,7 @@ import click
 import pytest
 
 import graphflow
+import graphflow.description
 import graphflow.maps
 import graphflow.simulator
 import graphflow.tui
@@ -23,6 +24,7 @@ from tests.docs.test_docs import PAGES, blocks
 
 PUBLIC_MODULES = (
     *("graphflow.msgs.", "graphflow.testing.", "graphflow.qos.", "graphflow.bag.", "graphflow.nodes.", "graphflow.tf."),
+    *(f"graphflow.description.{name}." for name in graphflow.description.__all__),
     *(f"graphflow.maps.{name}." for name in graphflow.maps.__all__),
     *(f"graphflow.simulator.{name}." for name in graphflow.simulator.__all__),
     *(f"graphflow.tui.{name}." for name in graphflow.tui.__all__),

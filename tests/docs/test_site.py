@@ -7,6 +7,7 @@ import re
 
 import graphflow
 import graphflow.bag
+import graphflow.description
 import graphflow.maps
 import graphflow.simulator
 import graphflow.testing
@@ -26,6 +27,7 @@ def test_everything_public_is_in_the_reference_once() -> None:
         for package in (
             graphflow,
             graphflow.bag,
+            graphflow.description,
             graphflow.maps,
             graphflow.simulator,
             graphflow.testing,

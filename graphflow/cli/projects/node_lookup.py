@@ -104,7 +104,7 @@ def _check_order(executable: str, words: Sequence[str]) -> None:
     Raises:
         UsageFault: It does; the text has the right order.
     """
-    if not words or words[0].startswith("-"):
+    if not words or words[0].startswith("-") or words[0] == executable:
         return
     package = find_workspace(Path.cwd()).packages.get(words[0])
     if executable in _executables_of(words[0]) or (package is not None and package.known_as(executable)):

@@ -22,9 +22,3 @@ def program() -> Callable[[str], Program]:
         return runpy.run_path(str(BUNDLED / package / "programs" / f"{file}.py"))
 
     return load
-
-
-@pytest.fixture
-def importable(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The modules of the package `robot_state_publisher` can be imported."""
-    monkeypatch.syspath_prepend(str(BUNDLED / "robot_state_publisher"))
