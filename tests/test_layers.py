@@ -47,7 +47,7 @@ ONLY_IN = {
     "websockets": ("viewer",),
     "rosbags": ("bag",),
     "mujoco": ("simulator",),
-    "PIL": ("maps",),
+    "PIL": ("maps", "introspect"),
     "xacro": ("description",),
 }
 """Libraries that one package knows."""

@@ -3,7 +3,7 @@
 Read `grid` first: the cells of a map and their place. `files` reads and writes the map files of ROS's map_server,
 `mapper` builds a map from scans and corrects the odometry by it, `matching` finds the place of a scan in a map, and
 `picture` draws maps. Knows no node; the nodes are `nodes/mapper.py` and `nodes/map_server.py`. May import `tf` and
-everything below the runtime; the only package that imports Pillow.
+everything below the runtime.
 """
 
 from graphflow.maps.files import MapFileError, read_map, write_map

@@ -6,8 +6,9 @@ finds chains, `poses` and `planar` have the arithmetic, `transform` the result o
 packages are built on the other modules. May import the runtime and everything below it.
 """
 
-from graphflow.tf.buffer import FrameInfo, TransformBuffer
+from graphflow.tf.buffer import TransformBuffer
 from graphflow.tf.declaration import Transforms
+from graphflow.tf.info import FrameInfo
 from graphflow.tf.planar import Pose2D
 from graphflow.tf.poses import Pose
 from graphflow.tf.transform import Transform

@@ -18,6 +18,7 @@ from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints
 from graphflow.tf.faults import fault_of
 from graphflow.tf.frames import Frames, seconds
+from graphflow.tf.info import FrameInfo, Sender
 from graphflow.tf.reports import Reports
 from graphflow.tf.transform import Transform, pose_of, stamped
 from graphflow.times import NANOSECONDS, HasFields, Time, to_ns
@@ -38,45 +39,6 @@ BACK = NANOSECONDS
 
 Stamp: TypeAlias = Time | HasFields | None
 """A time: a `Time`, a message's stamp, or None for the latest."""
-
-
-@dataclass(frozen=True, slots=True)
-class FrameInfo:
-    """The transforms of one frame, as a node receives them.
-
-    Attributes:
-        publisher: The full name of the node that publishes it; "" if that has ended.
-        rate: Transforms per second over the time that is kept; 0 for a static frame, and for a single transform.
-        newest: The time of the newest transform.
-        delay, longest_delay: Seconds from a transform's time to its arrival: on average, and at most.
-    """
-
-    frame: str
-    parent: str
-    publisher: str
-    is_static: bool
-    rate: float
-    newest: Time
-    delay: float
-    longest_delay: float
-
-
-@dataclass(slots=True)
-class Sender:
-    """The latest publisher of a frame.
-
-    Attributes:
-        received_ns: When its latest transform arrived, by the node's clock.
-        count, delays_ns, longest_ns: The number of its transforms, and the sum and the longest of their delays.
-        former: The GIDs of those before it.
-    """
-
-    gid: bytes
-    former: frozenset[bytes] = frozenset()
-    received_ns: int = 0
-    count: int = 0
-    delays_ns: int = 0
-    longest_ns: int = 0
 
 
 @dataclass(slots=True, eq=False)
@@ -171,6 +133,7 @@ class TransformBuffer(AttributeHints):
             Time(history.stamps[-1]),
             sender.delays_ns / sender.count / NANOSECONDS,
             sender.longest_ns / NANOSECONDS,
+            (self._owner.clock.monotonic_ns() - sender.received_ns) / NANOSECONDS,
         )
 
     def infos(self) -> list[FrameInfo]:

@@ -128,9 +128,10 @@ def _twist(message: TwistStamped, pose: Pose, header: Header) -> TwistStamped:
 def scan_points(scan: LaserScan) -> NDArray[np.float64]:
     """Return the points of a scan in its own frame, of shape (n, 3); beams outside its range limits have none."""
     ranges = np.asarray(scan.ranges, dtype=np.float64)
-    angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
-    points = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
-    return points[_is_valid(scan, ranges)]
+    # Beams without an echo are left out first: infinity times the sine of 0 is no number.
+    valid = np.flatnonzero(_is_valid(scan, ranges))
+    ranges, angles = ranges[valid], scan.angle_min + scan.angle_increment * valid
+    return np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
 
 
 def _is_valid(scan: LaserScan, ranges: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
-from graphflow.tf.buffer import FrameInfo
+from graphflow.tf.info import FrameInfo
 from graphflow.tf.poses import AXES, rotate, to_rpy
 from graphflow.tf.transform import Transform
 

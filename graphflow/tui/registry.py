@@ -11,6 +11,7 @@ from graphflow.tui.view import View
 _FOLDERS = {
     "topics": ("topics", "echo", "hz", "plot"),
     "nodes": ("nodes", "detail", "crash", "params", "tree", "top"),
+    "robot": ("map", "tf", "scan", "image", "joints"),
 }
 """Packages below `views`, with the views in each; other views have a module of their own."""
 TOUR = "tour"

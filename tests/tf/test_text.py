@@ -8,8 +8,12 @@ from graphflow import Time
 from graphflow.tf import FrameInfo, Transform
 from graphflow.tf.text import described, monitored, remark, tree
 
-ODOM = FrameInfo("odom", "map", "/slam", is_static=False, rate=30.0, newest=Time(0), delay=0.01, longest_delay=0.2)
-LASER = FrameInfo("laser", "odom", "", is_static=True, rate=0.0, newest=Time(0), delay=0.0, longest_delay=0.0)
+ODOM = FrameInfo(
+    "odom", "map", "/slam", is_static=False, rate=30.0, newest=Time(0), delay=0.01, longest_delay=0.2, silent=0.0
+)
+LASER = FrameInfo(
+    "laser", "odom", "", is_static=True, rate=0.0, newest=Time(0), delay=0.0, longest_delay=0.0, silent=0.0
+)
 
 
 def test_a_transform() -> None:

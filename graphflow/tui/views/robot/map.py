@@ -1,4 +1,4 @@
-"""A robot with a laser scanner from above, and keys that drive it."""
+"""A robot from above: its map, its scan, its trail and its way; keys drive it, and send it to places."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from graphflow.tui.feeds.hub import Hub
 from graphflow.tui.feeds.topic_monitor import TopicMonitor
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from graphflow.tui.views.robot.layers import Layers
+from graphflow.tui.views.robot.topics import next_of, topics_of
 from graphflow.tui.widgets.map_canvas import MapCanvas, RobotDrawing
 
 if TYPE_CHECKING:
@@ -30,13 +32,18 @@ KEPT = 10.0
 BACK = 1.0
 """Seconds by which a scan's time jumps back when a simulation begins again."""
 ZOOM = 1.25
+GOAL, ESTIMATE = "goal_pose", "initialpose"
+"""The topics of rviz's tools "2D Goal Pose" and "2D Pose Estimate"."""
 
 
 class RobotMap(View):
-    """A robot in a fixed frame: its scan, its trail, and the obstacles seen so far."""
+    """A robot in a fixed frame: its map or the obstacles seen so far, its scan, its trail, its path and its goal.
+
+    The arrow keys drive, or move the cursor while a place is chosen: `g` and Enter, or a click, send the robot there.
+    """
 
     NAME = "map"
-    DOC = "a robot from above: its scan, its trail, obstacles; arrow keys drive"
+    DOC = "a robot from above: map, scan, trail, path; arrow keys drive, g sets a goal"
     EVERY = 0.2
     ACTIONS = (
         Action("forward", "drive", keys=("up",), hint=True, label="↑↓←→ drive"),
@@ -47,6 +54,10 @@ class RobotMap(View):
         Action("closer", "zoom in", keys=("plus", "equals_sign"), hint=True, label="+- zoom"),
         Action("farther", "zoom out", keys=("minus",)),
         Action("follow", "follow the robot, or stay", keys=("f",), hint=True, label="f follow"),
+        Action("goal", "set a goal", keys=("g",), hint=True),
+        Action("estimate", "say where the robot is", keys=("e",)),
+        Action("accept", "take the place of the cursor", keys=("enter",)),
+        Action("give_up", "choose no place", keys=("escape",)),
         Action("next_robot", "next robot", keys=("n",), hint=True),
         Action("clear", "clear", keys=("C",), hint=True),
     )
@@ -63,6 +74,9 @@ class RobotMap(View):
         self._latest = 0.0
         self._frame = ""
         self._trouble = ""
+        self._choosing = ""
+        """The topic for which a place is being chosen; "" if none is."""
+        self._layers: Layers | None = None
         self._empty = Static("waiting for a robot: no node publishes a laser scan yet", classes="hint")
 
     def compose(self) -> ComposeResult:
@@ -75,6 +89,8 @@ class RobotMap(View):
 
     @property
     def note(self) -> str:
+        if self._choosing:
+            return "goal: arrows, Enter, or a click" if self._choosing == GOAL else "the robot's place: arrows, Enter"
         if self._trouble or self._drawing.pose is None:
             return self._trouble
         x, y, yaw = self._drawing.pose
@@ -88,16 +104,15 @@ class RobotMap(View):
             self._watch(self._topic)
         if self._monitor is not None:
             self._monitor.look()
+        if self._layers is not None and self._frame:
+            self._layers.look(self._frame)
         is_there = self._monitor is not None and self._monitor.count > 0
         self._canvas.display, self._empty.display = is_there, not is_there
         if is_there:
             self._canvas.redraw()
 
     def _scans(self) -> list[str]:
-        live = self.hub.live
-        if live is None or live.node is None:
-            return []
-        return sorted(topic for topic, types in live.cache.topics().items() if SCAN in types)
+        return topics_of(self.hub.live, SCAN)
 
     def _watch(self, topic: str) -> None:
         live = self.hub.live
@@ -120,6 +135,9 @@ class RobotMap(View):
             self._tf.close()
         self._tf = TransformBuffer(live.node, core_of(live.node), to_ns(KEPT), listen=True)
         self._drawing.clear()
+        if self._layers is not None:
+            self._layers.close()
+        self._layers = Layers(live, self._drawing, self._tf, self._topic.rpartition("/")[0])
         self._latest = 0.0
 
     def _scanned(self, scan: LaserScan, _: float) -> None:
@@ -166,9 +184,71 @@ class RobotMap(View):
         if self._monitor is not None:
             self._monitor.close()
             self._monitor = None
+        if self._layers is not None:
+            self._layers.close()
+            self._layers = None
         if self._tf is not None:
             self._tf.close()
             self._tf = None
+
+    # choosing a place
+
+    def _choose(self, topic: str) -> None:
+        if self._drawing.pose is None:
+            self.say("there is no robot yet", bad=True)
+            return
+        self._choosing, self._drawing.cursor = topic, self._drawing.cursor or self._drawing.pose[:2]
+        self._canvas.redraw()
+
+    def _step(self, dx: int, dy: int) -> None:
+        """Move the cursor by cells of the screen."""
+        x, y = self._drawing.cursor or (0.0, 0.0)
+        step = self._drawing.radius / 15
+        self._drawing.cursor = x + dx * step, y + dy * step
+        self._canvas.redraw()
+
+    def on_map_canvas_chosen(self, event: MapCanvas.Chosen) -> None:
+        """Take a place that was clicked, as a goal unless something else is being chosen."""
+        if self._choosing:
+            self._drawing.cursor = event.x, event.y
+            self.do_accept()
+
+    def do_goal(self) -> None:
+        self._choose(GOAL)
+
+    def do_estimate(self) -> None:
+        self._choose(ESTIMATE)
+
+    def do_give_up(self) -> None:
+        self._choosing, self._drawing.cursor = "", None
+        self._canvas.redraw()
+
+    def do_accept(self) -> None:
+        """Send the place of the cursor; the heading is that of the way there."""
+        live, cursor, pose = self.hub.live, self._drawing.cursor, self._drawing.pose
+        if live is None or live.node is None or not self._choosing or cursor is None or pose is None:
+            return
+        from graphflow.msgs.geometry_msgs.msg import Point, Pose, PoseStamped, PoseWithCovarianceStamped, Quaternion
+        from graphflow.msgs.std_msgs.msg import Header
+
+        is_goal = self._choosing == GOAL
+        yaw = math.atan2(cursor[1] - pose[1], cursor[0] - pose[0]) if is_goal else pose[2]
+        topic = f"{self._topic.rpartition('/')[0]}/{self._choosing}"
+        header = Header(frame_id=self._frame, stamp=live.node.clock.now())
+        turn = Quaternion(z=math.sin(yaw / 2), w=math.cos(yaw / 2))
+        place = Pose(position=Point(x=cursor[0], y=cursor[1]), orientation=turn)
+        if is_goal:
+            live.publisher(PoseStamped, topic).publish(PoseStamped(header=header, pose=place))
+            self._drawing.goal = *cursor, yaw
+        else:
+            estimate = PoseWithCovarianceStamped(header=header)
+            estimate.pose.pose = place
+            live.publisher(PoseWithCovarianceStamped, topic).publish(estimate)
+        self.do_give_up()
+        kind = "PoseStamped" if is_goal else "PoseWithCovarianceStamped"
+        values = f"{{position: {{x: {cursor[0]:.2f}, y: {cursor[1]:.2f}}}}}"
+        values = f"{{header: {{frame_id: {self._frame}}}, pose: {values if is_goal else f'{{pose: {values}}}'}}}"
+        self.did(f"graphflow topic pub --once {topic} geometry_msgs/msg/{kind} '{values}'")
 
     # driving
 
@@ -188,17 +268,24 @@ class RobotMap(View):
         values = f"{{linear: {{x: {linear}}}, angular: {{z: {angular}}}}}"
         self.did(f"graphflow topic pub --once {topic} {type_name} '{values}'")
 
+    def _arrow(self, velocity: tuple[float, float], step: tuple[int, int]) -> None:
+        """Drive, or move the cursor while a place is chosen."""
+        if self._choosing:
+            self._step(*step)
+        else:
+            self._drive(*velocity)
+
     def do_forward(self) -> None:
-        self._drive(LINEAR, 0.0)
+        self._arrow((LINEAR, 0.0), (0, 1))
 
     def do_backward(self) -> None:
-        self._drive(-LINEAR, 0.0)
+        self._arrow((-LINEAR, 0.0), (0, -1))
 
     def do_left(self) -> None:
-        self._drive(0.0, ANGULAR)
+        self._arrow((0.0, ANGULAR), (-1, 0))
 
     def do_right(self) -> None:
-        self._drive(0.0, -ANGULAR)
+        self._arrow((0.0, -ANGULAR), (1, 0))
 
     def do_stop(self) -> None:
         self._drive(0.0, 0.0)
@@ -216,8 +303,7 @@ class RobotMap(View):
     def do_next_robot(self) -> None:
         topics = self._scans()
         if topics:
-            at = topics.index(self._topic) + 1 if self._topic in topics else 0
-            self._watch(topics[at % len(topics)])
+            self._watch(next_of(topics, self._topic))
 
     def do_clear(self) -> None:
         self._drawing.clear()
