@@ -3,15 +3,15 @@
     pip install 'graphflow-zenoh[sim]'
     graphflow up graphs/tb_sim.yaml world:=house
 
-It takes `cmd_vel` and publishes `scan`, `odom`, `imu`, `joint_states`, `battery_state`, `bumper`, transforms and
-`/clock`. Several robots of a world have their topics and frames below their names. Worlds and robots are YAML files:
-see `graphflow/simulator/worlds/` and `robots/`.
+It takes `cmd_vel` and publishes `scan`, `odom`, `imu`, `joint_states`, `battery_state`, `bumper`, images, transforms
+and `/clock`. Several robots of a world have their topics and frames below their names. Worlds and robots are YAML
+files: see `graphflow/simulator/worlds/` and `robots/`.
 """
 
 from __future__ import annotations
 
 import graphflow
-from graphflow import Node, Param, Publisher, Time, service, timer
+from graphflow import Param, Publisher, Time, service, timer
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import CLOCK
@@ -19,6 +19,7 @@ from graphflow.simulator import simulate
 from graphflow.tf import Transforms
 
 from .robot_topics import Due, RobotTopics
+from .simulation_services import SimulationServices
 
 PERIOD = 0.01
 """Seconds between two turns of the node, in each of which the simulation catches up with the time."""
@@ -27,7 +28,7 @@ BEHIND = 0.1
 """Seconds of simulated time that one turn makes up for; what exceeds them is lost, and the simulation slower."""
 
 
-class RobotSimulator(Node):
+class RobotSimulator(SimulationServices):
     """A world with robots."""
 
     node_name = "simulator"
@@ -37,14 +38,13 @@ class RobotSimulator(Node):
     model = Param("", read_only=True, doc="A robot in place of those of the world: burger, waffle, rover, or a file.")
     seed = Param(0, ge=0, read_only=True, doc="Of all noise; the same seed gives the same run.")
     rate = Param(1.0, gt=0.0, le=100.0, doc="How fast simulated time runs; 2.0 is twice as fast.")
-    paused = Param(False, doc="Whether simulated time stands still.")
     stamped = Param(False, read_only=True, doc="Whether cmd_vel is of type TwistStamped instead of Twist.")
     clock_topic = Publisher(Clock, "/clock", CLOCK)
     tf = Transforms(listen=False)
 
     async def on_start(self) -> None:
         self.simulation = simulate(self.world, self.seed, self.model)
-        self.robots: dict[str, RobotTopics] = {}
+        self.robots = {}
         for name in self.simulation.robots:
             self.announce(name)
         self.log.info("world %s: %s", self.world, ", ".join(t.title for t in self.robots.values()) or "no robot")
@@ -81,14 +81,17 @@ class RobotSimulator(Node):
                 self.in_trouble.add(name)
                 self.log.error("robot %s: %s; call reset_simulation", name or topics.robot.robot.name, trouble)
 
-    @service(Empty, "reset_simulation")
-    async def reset(self, request: Empty.Request) -> Empty.Response:
+    def restart(self) -> None:
         """Begin again: time is 0, and everything is where it was."""
         self.simulation.reset()
         self.in_trouble.clear()
         for topics in self.robots.values():
             topics.restart()
         self.clock_due.restart()
+
+    @service(Empty, "reset_simulation")
+    async def reset(self, request: Empty.Request) -> Empty.Response:
+        self.restart()
         return Empty.Response()
 
     @service(Empty, "pause_physics")

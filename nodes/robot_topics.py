@@ -16,6 +16,8 @@ from graphflow.msgs.std_msgs.msg import Bool, Header, String
 from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, TransformBuffer
 
+from .camera_topics import CameraTopics
+
 if TYPE_CHECKING:  # it imports mujoco, which may not be there
     from graphflow.simulator import SimulatedRobot
 
@@ -69,9 +71,11 @@ class RobotTopics:
             "odom": Due(model.odom_rate),
             "scan": Due(model.lidar.rate if model.lidar else 1.0),
             "imu": Due(model.imu.rate if model.imu else 1.0),
+            "camera": Due(model.camera.rate if model.camera else 1.0),
             "state": Due(STATE_HZ),
         }
         self._was_touching = False
+        self.camera = CameraTopics(node, robot, made) if model.camera else None
         self.description = node.create_publisher(String, f"{made}robot_description", LATCHED)
         self.description.publish(String(data=robot.description(made)))
 
@@ -89,6 +93,8 @@ class RobotTopics:
     def close(self) -> None:
         """Withdraw the topics."""
         self.commands.close()
+        if self.camera is not None:
+            self.camera.close()
         publishers: list[TopicPublisher[Any] | None] = [self.odom, self.joints, self.bumper, self.scan, self.imu]
         for publisher in (*publishers, self.battery, self.description):
             if publisher is not None:
@@ -118,6 +124,8 @@ class RobotTopics:
             if sensor is not None:
                 x, y, z = sensor.at
                 fixed.append(Transform.of(base, self.frame(sensor.frame), (x, y, z - height)))
+        if self.camera is not None:
+            fixed += self.camera.frames(base, height)
         self._tf.send_static(*fixed)
 
     def publish(self, time: float) -> None:
@@ -129,6 +137,8 @@ class RobotTopics:
             self._publish_scan(stamp)
         if dues["odom"].is_now(time):
             self._publish_odom(stamp)
+        if self.camera is not None and dues["camera"].is_now(time):
+            self.camera.publish(stamp)
         is_due = dues["state"].is_now(time)
         if is_due or self.robot.is_touching is not self._was_touching:
             self._was_touching = self.robot.is_touching

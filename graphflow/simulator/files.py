@@ -12,6 +12,8 @@ from graphflow.simulator.robot import Robot
 from graphflow.simulator.world import World
 
 HERE = Path(__file__).parent
+SCENES = (".xml", ".mjcf", ".urdf")
+"""Endings of files that MuJoCo reads itself."""
 
 
 def bundled(kind: str) -> list[str]:
@@ -29,7 +31,7 @@ def find(name: str, kind: str, folder: Path) -> Path:
     Raises:
         FileNotFoundError: There is neither; the text lists the bundled ones.
     """
-    if "/" not in name and not name.endswith((".yaml", ".yml")):
+    if "/" not in name and not name.endswith((".yaml", ".yml", *SCENES)):
         file, known = HERE / kind / f"{name}.yaml", bundled(kind)
         near = nearest(name, known)
         meant = f"; did you mean {near!r}?" if near else ""
@@ -48,8 +50,13 @@ def read_world(file: Path) -> tuple[World, dict[str, Robot]]:
     Raises:
         GraphFileError: A file has mistakes; all of them, with their places.
     """
+    if file.suffix in SCENES:
+        return _with_a_robot(scene=str(file.resolve())), {"burger": read_robot(find("burger", "robots", file))}
     src = source.read_file(file, str(file))
-    world = validated(src, World)
+    if isinstance(src.data, dict) and {"image", "resolution"} <= src.data.keys():  # a map's file in place of a world's
+        world = _with_a_robot(map={"file": str(file.resolve())})
+    else:
+        world = _located(validated(src, World), src, file.parent)
     robots: dict[str, Robot] = {}
     problems = []
     for index, placed in enumerate(world.robots):
@@ -60,6 +67,34 @@ def read_world(file: Path) -> tuple[World, dict[str, Robot]]:
     if problems:
         raise GraphFileError(problems)
     return world, robots
+
+
+def _with_a_robot(**parts: object) -> World:
+    """Return a world of some parts with a robot in its middle."""
+    return World.model_validate({**parts, "robots": [{}]})
+
+
+def _located(world: World, src: source.Source, folder: Path) -> World:
+    """Return a world with whole paths.
+
+    Raises:
+        GraphFileError: A file does not exist.
+    """
+    changes: dict[str, object] = {}
+    problems = []
+    for key, name in (("scene", world.scene), ("map", world.map.file if world.map is not None else "")):
+        if not name:
+            continue
+        found = (folder / name).resolve()
+        place = src.place(("map", "file") if key == "map" else (key,))
+        if not found.is_file():
+            problems.append(Problem(place, f"there is no file {found}"))
+        elif key == "scene" and found.suffix not in SCENES:
+            problems.append(Problem(place, f"a scene is a file of MuJoCo or URDF, {', '.join(SCENES)}, not {name}"))
+        changes[key] = world.map.model_copy(update={"file": str(found)}) if key == "map" and world.map else str(found)
+    if problems:
+        raise GraphFileError(problems)
+    return world.model_copy(update=changes)
 
 
 def read_robot(file: Path) -> Robot:

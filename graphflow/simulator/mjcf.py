@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from graphflow.maps import read_map
+from graphflow.maps.rectangles import rectangles
 from graphflow.simulator.robot import Robot
 from graphflow.simulator.world import Placed, Wall, World
 
@@ -15,6 +17,9 @@ STEPS = 2
 TICK = STEPS * TIMESTEP
 """Seconds of a tick, after which sensors may be read."""
 FLOOR = "floor"
+WALL, OBSTACLE, LOOSE, MOVING = "0.85 0.82 0.75 1", "0.45 0.55 0.7 1", "0.85 0.55 0.25 1", "0.75 0.3 0.3 1"
+"""Colours of walls, and of obstacles that stand, can be pushed, and move: red, green, blue, opacity."""
+BODY = "0.25 0.28 0.32 1"
 CASTER_RADIUS = 0.008
 WHEEL_WIDTH = 0.003
 """Half the width in metres of a wheel's contact; a wide one would scrub in turns, as a rubber tyre does not."""
@@ -29,9 +34,18 @@ def model(world: World, robots: Sequence[tuple[Placed, Robot]]) -> str:
     SubElement(root, "compiler", angle="radian")
     SubElement(root, "option", timestep=f"{TIMESTEP}", integrator="implicitfast", cone="elliptic")
     SubElement(root, "size", memory="64M")
+    _looks(root)
     body = SubElement(root, "worldbody")
     # `condim` 3 has no rolling friction; the larger friction of two touching bodies counts.
-    SubElement(body, "geom", name=FLOOR, type="plane", size="0 0 1", friction=f"{world.friction} 0.005 0.0001")
+    SubElement(
+        body,
+        "geom",
+        name=FLOOR,
+        type="plane",
+        size="0 0 1",
+        material="floor",
+        friction=f"{world.friction} 0.005 0.0001",
+    )
     _obstacles(body, world)
     actuators, sensors = SubElement(root, "actuator"), SubElement(root, "sensor")
     for placed, robot in robots:
@@ -39,13 +53,35 @@ def model(world: World, robots: Sequence[tuple[Placed, Robot]]) -> str:
     return tostring(root, encoding="unicode")
 
 
+def _looks(root: Element) -> None:
+    """Describe what cameras see: light, colours, and a floor of squares by which one sees it move."""
+    visual = SubElement(root, "visual")
+    SubElement(visual, "global", offwidth="1920", offheight="1080")
+    SubElement(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
+    SubElement(visual, "map", znear="0.005", zfar="50")
+    asset = SubElement(root, "asset")
+    sky = {"type": "skybox", "builtin": "gradient", "rgb1": "0.6 0.75 0.9", "rgb2": "0.9 0.95 1"}
+    SubElement(asset, "texture", sky, name="sky", width="256", height="256")
+    squares = {"type": "2d", "builtin": "checker", "rgb1": "0.75 0.75 0.72", "rgb2": "0.62 0.62 0.6"}
+    SubElement(asset, "texture", squares, name="squares", width="256", height="256")
+    SubElement(asset, "material", name="floor", texture="squares", texuniform="true", texrepeat="2 2")
+
+
 def _obstacles(parent: Element, world: World) -> None:
+    if world.map is not None:
+        grid = read_map(world.map.file)
+        turn, up = _text([0, 0, grid.origin[2]]), world.map.height / 2
+        for part in rectangles(grid):
+            half, place = [part.width / 2, part.height / 2, up], [part.x, part.y, up]
+            SubElement(parent, "geom", type="box", size=_text(half), pos=_text(place), euler=turn, rgba=WALL)
     for wall in world.walls:
         for (x, y), (u, v) in _segments(wall):
             length, yaw = math.hypot(u - x, v - y), math.atan2(v - y, u - x)
             half = [length / 2 + wall.thickness / 2, wall.thickness / 2, wall.height / 2]
             place = [(x + u) / 2, (y + v) / 2, wall.height / 2]
-            SubElement(parent, "geom", type="box", size=_text(half), pos=_text(place), euler=_text([0, 0, yaw]))
+            SubElement(
+                parent, "geom", type="box", size=_text(half), pos=_text(place), euler=_text([0, 0, yaw]), rgba=WALL
+            )
     for index, box in enumerate(world.boxes):
         length, width, height = box.size
         solid = {"type": "box", "size": _text([length / 2, width / 2, height / 2])}
@@ -56,7 +92,7 @@ def _obstacles(parent: Element, world: World) -> None:
     for index, mover in enumerate(world.moving):
         body = SubElement(parent, "body", name=mover_name(index), mocap="true", pos=_text([*mover.path[0], 0.0]))
         size = _text([mover.radius, mover.height / 2])
-        SubElement(body, "geom", type="cylinder", size=size, pos=_text([0, 0, mover.height / 2]))
+        SubElement(body, "geom", type="cylinder", size=size, pos=_text([0, 0, mover.height / 2]), rgba=MOVING)
 
 
 def mover_name(index: int) -> str:
@@ -73,9 +109,9 @@ def _solid(parent: Element, name: str, place: Sequence[float], yaw: float, mass:
     if mass:  # it can be pushed
         body = SubElement(parent, "body", name=name, pos=_text(place), euler=_text([0, 0, yaw]))
         SubElement(body, "freejoint")
-        SubElement(body, "geom", {**solid, "mass": f"{mass}", "friction": "0.6 0.005 0.0001"})
+        SubElement(body, "geom", {**solid, "mass": f"{mass}", "friction": "0.6 0.005 0.0001", "rgba": LOOSE})
     else:
-        SubElement(parent, "geom", {**solid, "pos": _text(place), "euler": _text([0, 0, yaw])})
+        SubElement(parent, "geom", {**solid, "rgba": OBSTACLE, "pos": _text(place), "euler": _text([0, 0, yaw])})
 
 
 def _robot(
@@ -92,7 +128,7 @@ def _robot(
     else:
         length, width, height = base.size or (0.1, 0.1, base.height)
         solid = {"type": "box", "size": _text([length / 2, width / 2, height / 2])}
-    solid |= {"name": f"{own}/body", "pos": _text(base.at), "mass": f"{base.mass}"}
+    solid |= {"rgba": BODY, "name": f"{own}/body", "pos": _text(base.at), "mass": f"{base.mass}"}
     SubElement(body, "geom", solid)
     if robot.lidar is not None:  # what the scanners of other robots see
         SubElement(body, "geom", type="cylinder", size="0.035 0.02", pos=_text(robot.lidar.at), mass="0.05")
@@ -101,6 +137,13 @@ def _robot(
     SubElement(
         body, "geom", type="sphere", size=f"{CASTER_RADIUS}", pos=_text(caster), mass="0.005", condim="1", priority="1"
     )
+    camera = robot.camera
+    if camera is not None:
+        # A camera of MuJoCo looks along its -z axis, with x to the right and y up.
+        sine, cosine = math.sin(camera.pitch), math.cos(camera.pitch)
+        axes = _text([0.0, -1.0, 0.0, sine, 0.0, cosine])
+        fovy = f"{math.degrees(camera.vertical_fov)}"
+        SubElement(body, "camera", name=f"{own}/camera", pos=_text(camera.at), xyaxes=axes, fovy=fovy)
     imu = robot.imu.at if robot.imu is not None else base.at
     SubElement(body, "site", name=f"{own}/imu", pos=_text(imu))
     wheels = robot.wheels

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, StrictStr
@@ -93,6 +94,38 @@ class Imu(Model):
     accelerometer_noise: NotNegative = 0.0
 
 
+class Camera(Model):
+    """A camera that looks ahead.
+
+    Attributes:
+        frame: Of the camera's body; that of its images, with z ahead, has `_optical` behind it.
+        pitch: Radians by which it looks down.
+        width, height: Of an image, in pixels.
+        fov: The horizontal angle of view in radians.
+        rate: Images per second.
+        depth: Whether it also measures depths.
+    """
+
+    frame: StrictStr = "camera_link"
+    at: Place
+    pitch: Number = 0.0
+    width: Annotated[int, Field(ge=8, le=1920)] = 320
+    height: Annotated[int, Field(ge=8, le=1080)] = 240
+    fov: Annotated[float, Field(gt=0.05, lt=2.8)] = 1.085
+    rate: Positive = 10.0
+    depth: bool = False
+
+    @property
+    def focal(self) -> float:
+        """The focal length in pixels."""
+        return self.width / 2 / math.tan(self.fov / 2)
+
+    @property
+    def vertical_fov(self) -> float:
+        """The vertical angle of view in radians."""
+        return 2 * math.atan(self.height / 2 / self.focal)
+
+
 class Battery(Model):
     """A battery.
 
@@ -135,4 +168,5 @@ class Robot(Model):
     base_height: NotNegative = 0.01
     lidar: Lidar | None = None
     imu: Imu | None = None
+    camera: Camera | None = None
     battery: Battery | None = None

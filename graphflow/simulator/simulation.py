@@ -11,8 +11,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from graphflow.simulator.cameras import Cameras
 from graphflow.simulator.mjcf import FLOOR, STEPS, TICK, model, mover_name
-from graphflow.simulator.robot import Lidar, Robot
+from graphflow.simulator.robot import Camera, Lidar, Robot
 from graphflow.simulator.sensors import Charge, Odometry, noisy
 from graphflow.simulator.urdf import described
 from graphflow.simulator.world import Mover, Placed, World
@@ -61,6 +62,7 @@ class SimulatedRobot:
     _commanded: float = field(init=False)
     _model: mujoco.MjModel = field(init=False, repr=False)
     _data: mujoco.MjData = field(init=False, repr=False)
+    _cameras: Cameras = field(init=False, repr=False)
     _body: int = field(init=False)
     _qpos: int = field(init=False)
     _wheels: tuple[int, int] = field(init=False)
@@ -80,9 +82,10 @@ class SimulatedRobot:
         self._target = self._speed = 0.0, 0.0
         self._commanded = -math.inf
 
-    def bind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    def bind(self, model: mujoco.MjModel, data: mujoco.MjData, cameras: Cameras) -> None:
         """Find the robot's parts in a model."""
         own = self.placed.name
+        self._cameras = cameras
         self._model, self._data = model, data
         self._body = model.body(f"{own}/base").id
         self._qpos = int(model.joint(f"{own}/free").qposadr[0])
@@ -182,6 +185,26 @@ class SimulatedRobot:
         )
         return noisy(distances, lidar, self._dice)
 
+    def image(self) -> NDArray[np.uint8]:
+        """Return what its camera sees now: red, green and blue, of shape (height, width, 3).
+
+        Raises:
+            ValueError: The robot has no camera.
+            NoCamera: This machine cannot draw off screen.
+        """
+        camera = self._camera()
+        return self._cameras.image(f"{self.placed.name}/camera", camera.width, camera.height)
+
+    def depth(self) -> NDArray[np.float32]:
+        """Return the depths that its camera measures now, in metres, of shape (height, width). Raises as `image`."""
+        camera = self._camera()
+        return self._cameras.depth(f"{self.placed.name}/camera", camera.width, camera.height)
+
+    def _camera(self) -> Camera:
+        if self.robot.camera is None:
+            raise ValueError(f"a {self.robot.name} has no camera")
+        return self.robot.camera
+
     def imu(self) -> ImuReading:
         """Return what the IMU reports now.
 
@@ -223,6 +246,7 @@ class Simulation:
     def __init__(self, world: World, models: Mapping[str, Robot], seed: int = 0) -> None:
         self._world, self._seed, self._spawned = world, seed, 0
         self._former: tuple[mujoco.MjModel | None, mujoco.MjData | None] = None, None
+        self._cameras: Cameras | None = None
         self.robots: dict[str, SimulatedRobot] = {}
         for placed in world.robots:
             self._add(placed, models[placed.model])
@@ -243,14 +267,22 @@ class Simulation:
         former, before = self._former
         text = model(self._world, [(robot.placed, robot.robot) for robot in self.robots.values()])
         try:
-            self._model = mujoco.MjModel.from_xml_string(text)
+            spec = mujoco.MjSpec.from_string(text)
+            if self._world.scene:
+                scene = mujoco.MjSpec.from_file(self._world.scene)
+                spec.attach(scene, frame=spec.worldbody.add_frame(), prefix="scene/")
+            self._model = spec.compile()
         except ValueError as error:
-            raise ValueError(f"MuJoCo refuses the world: {error}") from None
+            what = f" with {self._world.scene}" if self._world.scene else ""
+            raise ValueError(f"MuJoCo refuses the world{what}: {error}") from None
         self._data = mujoco.MjData(self._model)
+        if self._cameras is not None:
+            self._cameras.close()
+        self._cameras = Cameras(self._model, self._data)
         self._mocaps = [int(self._model.body(mover_name(i)).mocapid[0]) for i in range(len(self._movers))]
         self._floor = self._model.geom(FLOOR).id
         for robot in self.robots.values():
-            robot.bind(self._model, self._data)
+            robot.bind(self._model, self._data, self._cameras)
         if before is not None and former is not None:
             self._data.time = before.time
             _copy_state(former, before, self._model, self._data)

@@ -1,4 +1,4 @@
-"""Worlds: a floor with walls, boxes, cylinders, polygons, moving obstacles and robots."""
+"""Worlds: a floor with walls, boxes, cylinders, polygons, moving obstacles, maps, scenes and robots."""
 
 from __future__ import annotations
 
@@ -84,6 +84,17 @@ class Mover(Model):
     height: Positive = 0.5
 
 
+class MapWalls(Model):
+    """Walls from the occupied cells of a map.
+
+    Attributes:
+        file: The map's YAML file, beside the world's.
+    """
+
+    file: StrictStr
+    height: Positive = 0.5
+
+
 class Placed(Model):
     """A robot in the world.
 
@@ -106,6 +117,9 @@ class World(Model):
     boxes: list[Box] = Field([], max_length=OBSTACLES_BOUND)
     cylinders: list[Cylinder] = Field([], max_length=OBSTACLES_BOUND)
     moving: list[Mover] = Field([], max_length=OBSTACLES_BOUND)
+    map: MapWalls | None = None
+    scene: StrictStr = ""
+    """A file of MuJoCo (MJCF) or URDF, beside the world's, that is part of the world as it is."""
     robots: list[Placed] = Field([], max_length=ROBOTS_BOUND)
     friction: Positive = 1.0
     """Of the floor; on ice, below 0.1, wheels slip."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from graphflow.errors import GraphFileError
+from graphflow.errors import GraphFileError, GraphflowError
+from graphflow.maps import GridMap, write_map
+from graphflow.simulator import simulate
 from graphflow.simulator.files import bundled, find, read_robot, read_world
 
 
@@ -42,6 +45,10 @@ MISTAKES = {
     "robots: [{name: 'a b'}]": ["'a b' is not a node name"],
     "friction: 0": ["1:11: 0: input should be greater than 0"],
     "walls: {}": ["1:8: {}: input should be a valid list"],
+    "scene: no.xml": ["1:8: there is no file "],
+    "scene: w.yaml": ["1:8: a scene is a file of MuJoCo or URDF, .xml, .mjcf, .urdf, not w.yaml"],
+    "map: {file: no.yaml}": ["1:13: there is no file "],
+    "map: {}": ["1:6: the key 'file' is missing"],
     "- a": ["1:1: ['a']: input should be a valid dictionary"],
 }
 
@@ -73,3 +80,27 @@ def test_a_missing_world() -> None:
     """The error lists what is there."""
     with pytest.raises(FileNotFoundError, match=r"no world 'hexagn'; did you mean 'hexagon'\?; bundled are empty"):
         find("hexagn", "worlds", Path())
+
+
+def test_scenes_and_maps(tmp_path: Path) -> None:
+    """Files of MuJoCo, URDF and map_server are worlds themselves, or part of one, with a robot in the middle."""
+    scene = '<mujoco><worldbody><geom type="box" size=".1 .1 .5" pos="0.7 0 .5"/></worldbody></mujoco>'
+    (tmp_path / "s.xml").write_text(scene)
+    collision = '<collision><origin xyz="0.7 0 0.5"/><geometry><box size="0.2 0.2 1"/></geometry></collision>'
+    (tmp_path / "s.urdf").write_text(f'<robot name="r"><link name="a">{collision}</link></robot>')
+    cells = np.zeros((10, 20), np.int8)
+    cells[:, 16:18] = 100
+    write_map(GridMap(cells, 0.1, (-1.0, -0.5, 0.0)), tmp_path / "m")
+    (tmp_path / "w.yaml").write_text("scene: s.xml\nmap: {file: m.yaml, height: 1.0}\nrobots: [{at: [0, 0]}]\n")
+    for name in ("s.xml", "s.urdf", "m.yaml", "w.yaml"):
+        simulation = simulate(str(tmp_path / name))
+        for _ in range(10):
+            simulation.tick()
+        assert simulation.robots[""].scan()[0] == pytest.approx(0.6 + 0.032, abs=0.06), name
+
+
+def test_a_scene_that_is_none(tmp_path: Path) -> None:
+    """MuJoCo's reason is told, with the file."""
+    (tmp_path / "s.xml").write_text("<mujoco><worldbody><geom/></worldbody></mujoco>")
+    with pytest.raises(GraphflowError, match=r"MuJoCo refuses the world with .*s\.xml: "):
+        simulate(str(tmp_path / "s.xml"))
