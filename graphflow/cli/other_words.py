@@ -102,6 +102,9 @@ _LINES = {
     "version": "--version",
 }
 """Our verb, which the remaining words follow; or a whole command, in which `{0}` is the first of them."""
+ROBOT_VIEWS = (
+    "in its place: graphflow attach, then :map, :tf, :scan, :image and :joints; in 3-D, graphflow view for Foxglove"
+)
 _NO_CORE = "none is needed: nodes find each other, and each machine starts its own rendezvous"
 _TOPICS = "a topic exists as soon as a node publishes or subscribes to it"
 _RENAMED = "names are changed when a node is started: graphflow run NODE -r OLD:=NEW"
@@ -121,8 +124,8 @@ _SENTENCES = {
     "node create": "a node is a class in a file: graphflow init NAME writes one, and graphflow run FILE.py runs it",
     "test": "tests are run by pytest: python -m pytest",
     "rostest": "tests are run by pytest: python -m pytest",
-    **dict.fromkeys(("rviz", "rviz2"), "RViz is not included: graphflow view serves Foxglove and Lichtblick"),
-    **dict.fromkeys(("gazebo", "gz"), "the only simulator included is turtlesim: graphflow run turtlesim"),
+    **dict.fromkeys(("rviz", "rviz2"), ROBOT_VIEWS),
+    **dict.fromkeys(("gazebo", "gz", "ign"), "in its place there is a simulator on MuJoCo: graphflow up tb_sim"),
     **dict.fromkeys(("roscd", "rosls", "rosed"), "graphflow pkg prefix --share PACKAGE prints where a package is"),
     "rosclean": "each run has its own folder of logs: graphflow logs shows them",
     "setup": "nothing has to be set up or sourced: graphflow init NAME creates a project",

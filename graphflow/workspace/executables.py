@@ -44,6 +44,9 @@ EXECUTABLES = {
     ("slam_toolbox", "async_slam_toolbox_node"): "nodes.mapper:Mapper",
     ("slam_toolbox", "sync_slam_toolbox_node"): "nodes.mapper:Mapper",
     ("cartographer_ros", "cartographer_node"): "nodes.mapper:Mapper",
+    ("teleop_twist_keyboard", "teleop_twist_keyboard"): "nodes.twist_teleop:TwistTeleop",
+    ("aro_reactive_control", "reactive_control"): "nodes.reactive_control:EventDriven",
+    ("joint_state_publisher_gui", "joint_state_publisher_gui"): "nodes.joint_state_publisher:JointStatePublisher",
     ("lifecycle", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
     ("lifecycle", "lifecycle_listener"): "nodes.lifecycle_listener:LifecycleListener",
     ("lifecycle_py", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
@@ -52,6 +55,7 @@ EXECUTABLES = {
 _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "mimic": "turtle_mimic"} | {
     "lifecycle_talker": "lc_talker",
     "lifecycle_listener": "lc_listener",
+    "joint_state_publisher_gui": "joint_state_publisher",
 }
 """Names of nodes that differ from those of their executables."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
