@@ -11,6 +11,8 @@ GraphflowError
 |-- GraphFileError            a graph file has mistakes; carries all problems with their places
 |-- TransportError            the network refused: port taken, silent rendezvous, another user's
 |-- BagError                  a bag cannot be read or written
+|-- MapFileError              a map's picture cannot be read, or a map cannot be written
+|-- NoCamera                  the machine cannot draw the images of simulated cameras
 |-- ClosedError               a node, session or endpoint is used after it was closed
 |-- WrongThread               a thread other than the event loop's uses a node
 |-- TooManyErrors             a node's handlers have failed too often, and the node ends
@@ -88,6 +90,14 @@ class TransportError(GraphflowError):
 
 class BagError(GraphflowError):
     """A bag cannot be read or written."""
+
+
+class MapFileError(GraphflowError):
+    """A map's picture cannot be read, or a map cannot be written."""
+
+
+class NoCamera(GraphflowError):
+    """The machine cannot draw the images of simulated cameras off screen; the text says what is missing."""
 
 
 class ClosedError(GraphflowError):

@@ -75,6 +75,7 @@ class RobotTopics:
             "state": Due(STATE_HZ),
         }
         self._was_touching = False
+        self._told: set[str] = set()
         self.camera = CameraTopics(node, robot, made) if model.camera else None
         self.description = node.create_publisher(String, f"{made}robot_description", LATCHED)
         self.description.publish(String(data=robot.description(made)))
@@ -106,10 +107,30 @@ class RobotTopics:
 
     def command(self, twist: Twist) -> None:
         """Take a velocity."""
+        self._explain(twist)
         try:
             self.robot.command(twist.linear.x, twist.angular.z)
         except ValueError as error:
             self._node.log.warning("%scmd_vel: %s; it is left out", self._before, error, throttle=2.0)
+
+    def _explain(self, twist: Twist) -> None:
+        """Say, once each, which part of a command has no effect."""
+        model, topic = self.robot.robot, f"{self._before}cmd_vel"
+        ignored = {"linear.y": twist.linear.y, "linear.z": twist.linear.z}
+        ignored |= {"angular.x": twist.angular.x, "angular.y": twist.angular.y}
+        for field, value in ignored.items():
+            if value:
+                self._once(f"{topic}: {field} is ignored: a {model.name} drives by linear.x and turns by angular.z")
+        most, turn = model.max_linear, model.max_angular
+        if math.isfinite(twist.linear.x) and abs(twist.linear.x) > 1.5 * most:
+            self._once(f"{topic} asks for more than a {model.name} can: it drives at most {most:g} m/s")
+        if math.isfinite(twist.angular.z) and abs(twist.angular.z) > 1.5 * turn:
+            self._once(f"{topic} asks for more than a {model.name} can: it turns at most by {turn:g} rad/s")
+
+    def _once(self, text: str) -> None:
+        if text not in self._told:
+            self._told.add(text)
+            self._node.log.warning("%s", text)
 
     def command_stamped(self, message: TwistStamped) -> None:
         """Take a velocity with a header."""
@@ -130,6 +151,9 @@ class RobotTopics:
 
     def publish(self, time: float) -> None:
         """Publish what is due at a time in seconds."""
+        if self.robot.has_timed_out:
+            timeout = self.robot.robot.command_timeout
+            self._once(f"no {self._before}cmd_vel for {timeout:g} s: it stops; publish again and again, from a timer")
         stamp, dues = Time(round(time * 1e9)), self.dues
         if self.imu is not None and dues["imu"].is_now(time):
             self._publish_imu(stamp)

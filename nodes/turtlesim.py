@@ -66,7 +66,7 @@ class TurtleSim(Node):
         super().__init__(name, **options)
         self.world = World()
         self.reins: dict[str, Reins] = {}
-        self.explained_radians = False
+        self.explained: set[str] = set()
         self.hatch_first()
 
     async def on_start(self) -> None:
@@ -182,8 +182,8 @@ class TurtleSim(Node):
 
     def explain_radians(self, field: str, angle: float, before: float = 0.0) -> None:
         """Warn, once, of an angle that seems to be in degrees, which is obeyed all the same."""
-        if not self.explained_radians and in_degrees(angle, before):
-            self.explained_radians = True
+        if field not in self.explained and in_degrees(angle, before):
+            self.explained.add(field)
             self.log.warning("%s is in radians; %g degrees are %.4g", field, angle, math.radians(angle))
 
     def remove(self, name: str) -> None:
@@ -280,11 +280,21 @@ class Reins:
             turtle.command(0.0, 0.0, turning, self.node.clock.monotonic_ns())
 
     def command(self, twist: Twist) -> None:
+        self.explain_ignored(twist)
         if self.rotation is not None and not self.rotation.ended.done():
             self.node.log.warning("Velocity command received during rotation goal. Aborting goal")
             self.rotation.ended.set_exception(Abort())
         sideways = twist.linear.y if self.node.holonomic else 0.0
         self.turtle.command(twist.linear.x, sideways, twist.angular.z, self.node.clock.monotonic_ns())
+
+    def explain_ignored(self, twist: Twist) -> None:
+        """Warn, once each, of parts of a command that have no effect."""
+        parts = {"linear.z": twist.linear.z, "angular.x": twist.angular.x, "angular.y": twist.angular.y}
+        parts |= {} if self.node.holonomic else {"linear.y": twist.linear.y}
+        for field, value in parts.items():
+            if value and field not in self.node.explained:
+                self.node.explained.add(field)
+                self.node.log.warning("%s is ignored: a turtle drives by linear.x and turns by angular.z", field)
 
     def set_pen(self, request: SetPen.Request) -> None:
         colour = (request.r, request.g, request.b)

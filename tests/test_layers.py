@@ -274,7 +274,7 @@ def test_no_file_is_too_long() -> None:
 def test_every_module_has_a_test_of_its_name() -> None:
     """`graphflow/a/b.py` is tested by `tests/a/test_b.py`, so that both are found by the name of one."""
     files = [p for p in PACKAGE.rglob("*.py") if not p.stem.startswith("__")]
-    modules = [p.relative_to(PACKAGE) for p in files if not p.name.endswith(".launch.py")]  # run by tests of `launch`
+    modules = [p.relative_to(PACKAGE) for p in files if not p.name.endswith("launch.py")]  # run by tests of `launch`
     tests = Path(__file__).parent
     assert not [m.as_posix() for m in modules if not (tests / m.parent / f"test_{m.name}").exists()]
 

@@ -57,3 +57,21 @@ def polled_futures(test: ast.expr) -> Iterator[ast.expr]:
 def dotted(expression: ast.expr) -> str:
     """Return a name, or an attribute of one, as the code writes it; empty for anything else."""
     return ast.unparse(expression) if isinstance(expression, (ast.Name, ast.Attribute)) else ""
+
+
+def early_questions(module: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find lines that ask whether a future is done right after the call that made it: nothing has spun in between."""
+    for node in ast.walk(module):
+        body = getattr(node, "body", None)
+        for first, second in zip(body, body[1:], strict=False) if isinstance(body, list) else ():
+            match first, second:
+                case (
+                    ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(attr=verb))),
+                    ast.If(test=ast.Call(func=ast.Attribute(value=asked, attr="done"))),
+                ) if verb in ("call_async", "send_goal_async") and dotted(target) and dotted(target) == dotted(asked):
+                    name = dotted(target)
+                    text = f"{name} cannot be done yet, since nothing spins between the two lines"
+                    yield (
+                        second.lineno,
+                        f"{text}; write {name}.add_done_callback(...), or await it in an async callback",
+                    )

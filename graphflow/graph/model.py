@@ -19,6 +19,7 @@ from pydantic import (
     model_validator,
 )
 
+from graphflow.domain import DOMAIN_VARIABLES
 from graphflow.interface import DeadlockPolicy, WhenFull
 from graphflow.machines.restarts import BACKOFF, POLICIES
 from graphflow.names import nearest
@@ -319,6 +320,10 @@ def _check_executable(data: Mapping[str, object], has: Collection[str]) -> None:
 
 
 def _check_class(data: Mapping[str, object], has: Collection[str]) -> None:
+    env = data.get("env")
+    domain = next((name for name in DOMAIN_VARIABLES if isinstance(env, dict) and name in env), None)
+    if domain is not None and isinstance(env, dict):
+        raise ValueError(f"env: {domain} has no effect on a node of the graph; write domain: {env[domain]} at the top")
     wrong = min((key for key in ("args", "keep_names") if key in has), default=None)
     if wrong is not None:
         which = f"the class {data['class']}" if isinstance(data.get("class"), str) else "a node with a class"

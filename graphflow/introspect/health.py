@@ -67,6 +67,7 @@ def examine(view: View, first: Look, second: Look) -> Health:
     faults = [
         *_twins(view),
         *shared(view.cache),
+        *_rivals(view.cache),
         *_echoes(view.cache, then, counts, seconds),
         *_losses(counts),
         *_floods(then, counts, seconds),
@@ -98,6 +99,20 @@ def _twins(view: View) -> Iterator[str]:
     for name, count in Counter(view.cache.nodes(hidden=False)).items():
         if count > 1:
             yield f"{count} nodes are called {name} ({view.owner(name)}, among others): rename all but one"
+
+
+def _rivals(cache: GraphCache) -> Iterator[str]:
+    """Report several nodes that steer one robot: it obeys the latest message."""
+    for name, types in sorted(cache.topics().items()):
+        if not _COMMANDS.isdisjoint(types):
+            nodes = sorted({e.node_name for e in cache.endpoints(Kind.PUBLISHER, name) if not is_hidden(e.node_name)})
+            if len(nodes) > 1:
+                several = " and ".join(nodes[:SHOWN])
+                yield f"{several} all publish {name}, and the robot obeys the latest: stop all but one, or remap"
+
+
+_COMMANDS = {"geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"}
+"""Types of commands to a robot."""
 
 
 def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Iterator[str]:

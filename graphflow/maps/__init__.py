@@ -6,8 +6,8 @@ Read `grid` first: the cells of a map and their place. `files` reads and writes 
 everything below the runtime.
 """
 
-from graphflow.maps.files import MapFileError, read_map, write_map
+from graphflow.maps.files import read_map, write_map
 from graphflow.maps.grid import GridMap
 from graphflow.maps.mapper import Mapper
 
-__all__ = ["GridMap", "MapFileError", "Mapper", "read_map", "write_map"]
+__all__ = ["GridMap", "Mapper", "read_map", "write_map"]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, StrictStr, model_validator
 
-from graphflow.errors import GraphFileError, GraphflowError, Problem
+from graphflow.errors import GraphFileError, MapFileError, Problem
 from graphflow.maps.grid import CELLS_BOUND, FREE, OCCUPIED, UNKNOWN, GridMap
 from graphflow.markup import source
 from graphflow.markup.validated import validated
@@ -24,10 +24,6 @@ _FREE_GREY, _OCCUPIED_GREY, _UNKNOWN_GREY = 254, 0, 205
 """The greys of written maps. With the thresholds below, an unknown cell is read as one."""
 OCCUPIED_THRESHOLD, FREE_THRESHOLD = 0.65, 0.196
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
-
-
-class MapFileError(GraphflowError):
-    """A map's picture cannot be read, or a map cannot be written."""
 
 
 class MapDescription(BaseModel):

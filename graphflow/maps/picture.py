@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from graphflow.maps.files import MapFileError
+from graphflow.errors import MapFileError
 from graphflow.maps.grid import UNKNOWN, GridMap
 
 WALL, OPEN = 50, 25

@@ -6,14 +6,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from graphflow.errors import GraphflowError
+from graphflow.errors import NoCamera
 
 FARTHEST = 49.0
 """Metres from which a depth is that of the sky: the drawing ends at 50."""
-
-
-class NoCamera(GraphflowError):
-    """This machine cannot draw images off screen."""
 
 
 class Cameras:

@@ -16,13 +16,11 @@ from graphflow.simulator.mjcf import FLOOR, STEPS, TICK, model, mover_name
 from graphflow.simulator.robot import Camera, Lidar, Robot
 from graphflow.simulator.sensors import Charge, Odometry, noisy
 from graphflow.simulator.urdf import described
-from graphflow.simulator.world import Mover, Placed, World
+from graphflow.simulator.world import EDGE, Mover, Placed, World
 from graphflow.tf.planar import Pose2D
 
 FALLEN = 0.5
 """Cosine of the tilt beyond which a robot counts as fallen."""
-EDGE = 100.0
-"""Metres from the origin beyond which a robot has left the world."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +54,8 @@ class SimulatedRobot:
     charge: Charge | None = field(init=False)
     collisions: int = field(init=False)
     is_touching: bool = field(init=False)
+    has_timed_out: bool = field(init=False, default=False)
+    """Whether a velocity has ended in this tick because no further command came."""
     _dice: np.random.Generator = field(init=False, repr=False)
     _target: tuple[float, float] = field(init=False)
     _speed: tuple[float, float] = field(init=False)
@@ -110,6 +110,7 @@ class SimulatedRobot:
     def drive(self) -> None:
         """Let the motors follow the command over the next tick."""
         if self._data.time - self._commanded > self.robot.command_timeout:
+            self.has_timed_out = self._target != (0.0, 0.0)
             self._target = 0.0, 0.0
         wheels, most = self.robot.wheels, self.robot.max_acceleration * TICK
         linear = self._speed[0] + min(most, max(-most, self._target[0] - self._speed[0]))

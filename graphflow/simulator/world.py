@@ -11,8 +11,28 @@ from graphflow.errors import InvalidName
 from graphflow.names import check_node_name
 from graphflow.simulator.robot import Model, NotNegative, Number, Positive
 
-Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+EDGE = 100.0
+"""Metres from the origin, along x and y, at which the world ends."""
+
+
+def _within(point: list[float]) -> list[float]:
+    far = max(map(abs, point))
+    if far > EDGE:
+        hint = f": are these millimetres? {far:g} mm are {far / 1000:g} m" if far >= 10 * EDGE else ""
+        raise ValueError(f"{point} lies beyond the end of the world, {EDGE:g} m from its middle{hint}")
+    return point
+
+
+def _as_angle(yaw: float) -> float:
+    if abs(yaw) > 2 * math.tau:
+        raise ValueError(f"yaw is in radians; {yaw:g} degrees are {math.radians(yaw):.4g}")
+    return yaw
+
+
+Point = Annotated[list[Number], Field(min_length=2, max_length=2), AfterValidator(_within)]
 """x and y in metres."""
+Yaw = Annotated[Number, AfterValidator(_as_angle)]
+"""Radians."""
 Path = Annotated[list[Point], Field(min_length=2)]
 OBSTACLES_BOUND = 2_000
 """The number of obstacles of a world, at most."""
@@ -60,7 +80,7 @@ class Box(Model):
 
     at: Point
     size: Annotated[list[Positive], Field(min_length=3, max_length=3)]
-    yaw: Number = 0.0
+    yaw: Yaw = 0.0
     mass: NotNegative = 0.0
     """Kilograms; 0 for a box that nothing can push."""
 
@@ -106,8 +126,8 @@ class Placed(Model):
 
     model: StrictStr = "burger"
     name: Annotated[StrictStr, AfterValidator(_namespace)] = ""
-    at: list[Number] = Field([0.0, 0.0], min_length=2, max_length=2)
-    yaw: Number = 0.0
+    at: Point = Field([0.0, 0.0])
+    yaw: Yaw = 0.0
 
 
 class World(Model):
@@ -126,11 +146,31 @@ class World(Model):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        for robot in self.robots:
+            solid = self.solid_at(*robot.at)
+            if solid:
+                name = f"the robot {robot.name!r}" if robot.name else "the robot"
+                raise ValueError(f"{name} starts at {robot.at}, inside {solid}")
         names = [robot.name for robot in self.robots]
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"two robots are called {name!r}: give each a name of its own" if name else _UNNAMED)
         return self
+
+    def solid_at(self, x: float, y: float) -> str:
+        """Describe the box or cylinder that contains a place; "" if none does."""
+        for box in self.boxes:
+            dx, dy = x - box.at[0], y - box.at[1]
+            along, across = (
+                dx * math.cos(box.yaw) + dy * math.sin(box.yaw),
+                dy * math.cos(box.yaw) - dx * math.sin(box.yaw),
+            )
+            if abs(along) < box.size[0] / 2 and abs(across) < box.size[1] / 2:
+                return f"the box at {box.at}"
+        for cylinder in self.cylinders:
+            if math.hypot(x - cylinder.at[0], y - cylinder.at[1]) < cylinder.radius:
+                return f"the cylinder at {cylinder.at}"
+        return ""
 
 
 _UNNAMED = "two robots have no name: their topics would be the same; give each a name"

@@ -154,6 +154,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                         graph.raise_failed()
                         await asyncio.sleep(0)  # lets new tasks start
                         _raise_forgotten()
+                        _warn_of_misspelt_taps(item, graph)
                 except (Exception, pytest.fail.Exception) as error:  # any failure of the test, reported and raised
                     if graph is not None and graph.loop is loop and not _is_of_a_line(error):
                         await _report_unmet(item, graph)
@@ -202,6 +203,14 @@ async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
         found.append(str(error))
     if found:
         item.add_report_section("call", "graphflow", "\n".join(found))
+
+
+def _warn_of_misspelt_taps(item: pytest.Function, graph: Graph) -> None:
+    """Warn of a passing test that looks at a topic which no node has, by a name like another's."""
+    from graphflow.testing.unmet import misspelt_taps
+
+    for text in misspelt_taps(graph):
+        item.warn(pytest.PytestWarning(text))
 
 
 def _by_examples(item: pytest.Function, test: Test) -> Test:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from graphflow.analysis.frames import awaited, code_of
 from graphflow.deadlock.startup_waits import place_of
 from graphflow.executor import clock as executor_clock
+from graphflow.machines.near_topics import is_misspelt
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.node_core import NodeCore, core_of
@@ -123,6 +124,21 @@ def _strangers(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
         own = {e.name for e in tester.endpoints if e.kind is other}
         for name in sorted({e.name for e in tester.endpoints if e.kind is kind} - known - own - _OF_EVERY_NODE):
             yield f"no node {verb} {name}, which the test {done}{did_you_mean(name, known)}"
+
+
+def misspelt_taps(graph: Graph) -> list[str]:
+    """Return a sentence for each tap without messages whose topic no node publishes, but one of a like name."""
+    cores = [core_of(node) for node in graph.nodes if node is not graph.tester and node.is_running]
+    empty = {topic for topic, tap in graph.taps if not tap and not tap.missed}
+    found = []
+    if not empty or len(cores) < len(graph.nodes) - 1:
+        return []  # nodes with these topics may have ended
+    known = {e.name for core in cores for e in core.endpoints if e.kind is Kind.PUBLISHER}
+    for topic in sorted(empty - known):
+        meant = next((name for name in sorted(known) if is_misspelt(topic, name)), None)
+        if meant is not None:
+            found.append(f"no node publishes {topic}, which the test taps; did you mean {meant}?")
+    return found
 
 
 _OF_EVERY_NODE = {"/rosout", "/parameter_events"}

@@ -249,8 +249,11 @@ class TransformBuffer(AttributeHints):
         if isinstance(error, ExtrapolationError):
             return self._of_publisher(error)
         if isinstance(error, UnknownFrame) and not self._frames.names():
-            heard = any(subscription.matched for subscription in self._subscriptions)
-            return "" if heard else f"; no node publishes {' or '.join(s.name for s in self._subscriptions)}"
+            senders = {e.node_name for s in self._subscriptions for e in s.matched.values()} - {self._owner.full_name}
+            if not senders:
+                return f"; no node publishes {' or '.join(s.name for s in self._subscriptions)}"
+            text = f"; {', '.join(sorted(senders)[:3])} publish transforms, and have sent none since this node listens"
+            return f"{text}: a frame that never moves needs send_static (StaticTransformBroadcaster)"
         return ""
 
     def _of_publisher(self, error: ExtrapolationError) -> str:
@@ -391,6 +394,10 @@ class TransformBuffer(AttributeHints):
         if self._static_publisher is None:
             self._static_publisher = self._create(STATIC_TOPIC, STATIC_SENDER_QOS)
         checked = [self._checked(one) for one in transforms]
+        for one in checked:
+            before = self._sent.get(one.child_frame_id)
+            if before is not None and pose_of(before.transform) != pose_of(one.transform):
+                self._reports.moving(one.header.frame_id, one.child_frame_id)
         self._sent |= {one.child_frame_id: one for one in checked}
         self._static_publisher.publish(TFMessage(transforms=list(self._sent.values())))
 

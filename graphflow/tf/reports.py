@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 
+MOVES = 3
+"""Poses after the first with which a static frame counts as moving; a calibration may correct it once or twice."""
 REPORTED_BOUND = 1000
 """The number of warnings that are remembered; further ones are not given."""
 
@@ -14,6 +16,8 @@ class Reports:
     def __init__(self, log: logging.Logger) -> None:
         self._log = log
         self._reported: set[tuple[str, str]] = set()
+        self._moves: dict[str, int] = {}
+        """The number of different poses of static frames that this node sends."""
 
     def _once(self, kind: str, frame: str, text: str, *args: object) -> None:
         if (kind, frame) not in self._reported and len(self._reported) < REPORTED_BOUND:
@@ -28,6 +32,13 @@ class Reports:
         """Warn of a frame's name that begins with a slash."""
         text = "%s sends the frame %r: names of frames have no slash in front since ROS 2; it is read as %r"
         self._once("slash", frame, text, sender, frame, frame.lstrip("/"))
+
+    def moving(self, parent: str, frame: str) -> None:
+        """Warn of a frame that is sent as static and moves."""
+        text = "%s -> %s is sent as static with another pose each time: for a frame that moves, write send(...)"
+        self._moves[frame] = self._moves.get(frame, 0) + 1
+        if self._moves[frame] == MOVES:
+            self._once("moving", frame, text, parent, frame)
 
     def late(self, sender: str, frame: str) -> None:
         """Warn of a transform that is older than everything kept, or that finds no room."""

@@ -36,6 +36,7 @@ VERBS += (
     "component",
     "lifecycle",
     "tf",
+    "map",
     "waits",
     "groups",
     "doctor",

@@ -35,8 +35,10 @@ class Seen:
 _numbers = itertools.count(1)
 
 
-def entity_token(node: str, *, zid: str = "a1", kind: Kind = Kind.NODE, name: str = "") -> str:
-    number, about = next(_numbers), () if kind is Kind.NODE else (name, "std_msgs/msg/String", "RIHS01_" + "0" * 64)
+def entity_token(
+    node: str, *, zid: str = "a1", kind: Kind = Kind.NODE, name: str = "", type_: str = "std_msgs/msg/String"
+) -> str:
+    number, about = next(_numbers), () if kind is Kind.NODE else (name, type_, "RIHS01_" + "0" * 64)
     return Entity(0, zid, len(node), number, kind, "/", node[1:], *about).token
 
 
@@ -221,3 +223,13 @@ def test_strangers() -> None:
     [hint] = found(seen, [], []).hints
     assert hint.startswith("/n00, /n01,")
     assert hint.endswith("/n09 and 2 more on another machine, robot")
+
+
+def test_two_drivers_of_one_robot() -> None:
+    """Two nodes that publish velocities on one topic are told; two talkers are not."""
+    twist = "geometry_msgs/msg/Twist"
+    seen = Seen(*(entity_token(node, kind=PUB, name="/cmd_vel", type_=twist) for node in ("/right", "/left")))
+    assert found(seen, [], []).faults == [
+        "/left and /right all publish /cmd_vel, and the robot obeys the latest: stop all but one, or remap"
+    ]
+    assert found(Seen(*(entity_token(node, kind=PUB, name="/chatter") for node in ("/a", "/b"))), [], []).faults == []

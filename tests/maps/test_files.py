@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from graphflow.errors import GraphFileError
-from graphflow.maps import GridMap, MapFileError, files, read_map, write_map
+from graphflow.errors import GraphFileError, MapFileError
+from graphflow.maps import GridMap, files, read_map, write_map
 
 GRID = GridMap(np.array([[0, 100, -1, 30], [70, 10, 0, 64]], np.int8), 0.05, (-1.25, 2.0, 0.0))
 

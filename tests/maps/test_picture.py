@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from graphflow.maps import GridMap, MapFileError
+from graphflow.errors import MapFileError
+from graphflow.maps import GridMap
 from graphflow.maps.picture import described, text, write_picture
 
 GRID = GridMap(np.array([[100, 100, 100], [100, 0, -1], [100, 0, -1]], np.int8), 0.5, (1.0, 2.0, 0.0))

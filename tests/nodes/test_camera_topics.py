@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from graphflow import Node
+from graphflow.errors import NoCamera
 from graphflow.introspect.messages.images import pixels, uncompressed
 from graphflow.msgs.sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from graphflow.simulator import SimulatedRobot
-from graphflow.simulator.cameras import NoCamera
 from graphflow.testing import Graph
 from graphflow.tf import Transforms
 from nodes.robot_simulator import RobotSimulator

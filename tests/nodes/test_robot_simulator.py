@@ -153,3 +153,21 @@ async def test_without_mujoco(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.delitem(sys.modules, "graphflow.simulator.simulation", raising=False)
     with pytest.raises(GraphflowError, match=r"the simulator needs MuJoCo: pip install .*\[sim\]"):
         await graph.start(RobotSimulator())
+
+
+async def test_commands_without_effect(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Parts that a robot ignores, speeds beyond its own, and commands that end are told, once each."""
+    await graph.start(RobotSimulator(world="empty"))
+    drive = graph.publisher(Twist, "/cmd_vel")
+    for _ in range(3):
+        drive.publish(Twist(linear=Vector3(x=5.0, y=0.1), angular=Vector3(x=1.0, z=9.0)))
+        await graph.clock.advance(0.1)
+    await graph.clock.advance(1.5)
+    for text in (
+        "cmd_vel: linear.y is ignored: a burger drives by linear.x and turns by angular.z",
+        "cmd_vel: angular.x is ignored",
+        "cmd_vel asks for more than a burger can: it drives at most 0.22 m/s",
+        "cmd_vel asks for more than a burger can: it turns at most by 2.84 rad/s",
+        "no cmd_vel for 1 s: it stops; publish again and again, from a timer",
+    ):
+        assert caplog.text.count(text) == 1, text

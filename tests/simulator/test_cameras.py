@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from graphflow.errors import NoCamera
 from graphflow.simulator import Simulation, simulate
-from graphflow.simulator.cameras import NoCamera
 
 
 @pytest.fixture

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import asyncio
 
+import pytest
+
 from graphflow import ActionClient, Client, Node, Publisher, subscription, task, timer
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
-from graphflow.testing.unmet import unmet
+from graphflow.testing.unmet import misspelt_taps, unmet
 
 
 class Talker(Node):
@@ -149,3 +151,14 @@ async def test_topics_where_the_taps_are_full(graph: Graph) -> None:
     await graph.clock.advance(1.0)
     assert len(heard) == 1
     assert await unmet(graph) == []
+
+
+@pytest.mark.filterwarnings("ignore:no node publishes")
+async def test_taps_on_misspelt_topics(graph: Graph) -> None:
+    """They are told even where a test passes; a tap on a topic that simply has no publisher is not."""
+    await graph.start(Talker())
+    graph.tap(String, "/wrods")
+    graph.tap(String, "/elsewhere")
+    graph.tap(String, "/words")
+    [text] = misspelt_taps(graph)
+    assert "no node publishes /wrods, which the test taps; did you mean /words?" in text

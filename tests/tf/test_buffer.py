@@ -316,3 +316,36 @@ def test_words_of_rclpy() -> None:
     with pytest.raises(AttributeError) as caught:
         Listener().tf.lookup_transform("map", "base")  # type: ignore[attr-defined]
     assert "self.tf.lookup(target, source" in better_text(caught.value)
+
+
+class Mount(Node):
+    tf = Transforms(listen=False)
+
+
+async def test_a_sender_that_has_sent_already(graph: Graph) -> None:
+    """A fixed frame that was sent once on /tf is lost for a late listener, which says who should send it again."""
+    mount = Mount()
+    await graph.start(mount)
+    mount.tf.send(Transform.of("base_link", "laser"))
+    await graph.settle()
+    listener = Listener()
+    await graph.start(listener)
+    await graph.settle()
+    with pytest.raises(UnknownFrame) as caught:
+        listener.tf.get("base_link", "laser")
+    told = (
+        "; /mount publish transforms, and have sent none since this node listens: a frame that never moves needs send"
+    )
+    assert told in str(caught.value)
+
+
+async def test_a_moving_frame_as_static(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """After a few different poses it is told; a correction or two is none."""
+    node = Mount()
+    await graph.start(node)
+    for x in (0.0, 1.0, 2.0):
+        node.tf.send_static(Transform.of("odom", "base_link", (x, 0.0, 0.0)))
+    assert "is sent as static" not in caplog.text
+    for x in (3.0, 4.0, 5.0):
+        node.tf.send_static(Transform.of("odom", "base_link", (x, 0.0, 0.0)))
+    assert caplog.text.count("odom -> base_link is sent as static with another pose each time") == 1

@@ -16,7 +16,10 @@ def compile_condition(expression: str) -> Callable[[object], bool]:
     try:
         code = compile(expression, "--filter", "eval")
     except (SyntaxError, ValueError) as error:
-        raise UsageFault(f"--filter {expression!r} is not an expression: {error}; example: 'm.data > 3'") from None
+        words = {"&&": "and", "||": "or"}
+        meant = next((f"write {word} for {sign}" for sign, word in words.items() if sign in expression), "")
+        example = meant or "example: 'm.data > 3'"
+        raise UsageFault(f"--filter {expression!r} is not an expression: {error}; {example}") from None
 
     def holds(message: object) -> bool:
         try:

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import sys
 import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
@@ -26,7 +27,9 @@ from graphflow.msgs.rosbag2_interfaces.srv import (
     SetRate,
     TogglePaused,
 )
+from graphflow.names import is_hidden
 from graphflow.runtime.node import Node
+from graphflow.wire.liveliness import Kind
 
 R = TypeVar("R")
 
@@ -52,6 +55,15 @@ def run(path: Path, options: PlayOptions, name: str, *, keys: bool = True, burst
     return run_with_node(work, name, has_services=True)
 
 
+def rivals(node: Node, topics: Iterable[str]) -> Iterator[str]:
+    """Report other nodes that publish what is played: their messages and those of the bag would mix."""
+    for topic in sorted(set(topics) - {"/rosout", "/parameter_events", "/tf", "/tf_static"}):
+        others = {e.node_name for e in node.context.cache.endpoints(Kind.PUBLISHER, topic)} - {node.full_name}
+        named = sorted(name for name in others if not is_hidden(name))
+        if named:
+            yield f"{named[0]} publishes {topic}, too, and both will mix: stop it, or play with -m {topic}:=/other"
+
+
 async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *, keys: bool) -> int:
     player = Player(node, bag, options)
     for line in player.refused:
@@ -59,6 +71,8 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
     for line in player.absent:
         output.talk(f"note: {bag.path}: {line}")
     _serve(node, player)
+    for line in rivals(node, [*player.topics, *(["/clock"] if options.clock_hz else [])]):
+        output.talk(f"note: {line}")
 
     def handle(key: str) -> None:
         if key == " ":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import secrets
 from collections.abc import Awaitable, Callable
 from dataclasses import asdict
@@ -187,6 +188,9 @@ def static(
     given = [value for value in q if value is not None]
     if given and (len(given) < 4 or roll or pitch or yaw):
         raise UsageFault("give all of --qx --qy --qz --qw, or the angles --roll --pitch --yaw")
+    for name, angle in (("roll", roll), ("pitch", pitch), ("yaw", yaw)):
+        if abs(angle) > math.tau:
+            output.talk(f"note: --{name} is in radians: {angle:g} degrees are {math.radians(angle):.4g}")
     rotation = (given[0], given[1], given[2], given[3]) if given else None
     transform = Transform.of(parent, child, (x, y, z), rpy=(roll, pitch, yaw), rotation=rotation)
 

@@ -58,8 +58,14 @@ def declarations(cls: type) -> dict[str, Declaration]:
     for attribute, value in _members(cls):
         if isinstance(value, Declaration):
             found[attribute] = value
-        else:
-            found.pop(attribute, None)
+        elif attribute in found:
+            lost = found.pop(attribute)
+            if isinstance(value, (str, int, float, list, tuple, dict)):
+                kind = type(lost).__name__
+                way = f"{kind}({value!r})" if isinstance(lost, Param) else f"{kind}(TYPE, {value!r})"
+                name = f"{cls.__module__}.{cls.__qualname__}"
+                text = f"{attribute} = {value!r} replaces the {kind} of {lost.place}; write {attribute} = {way}"
+                raise DeclarationError(f"{name}: {text}")
     return found
 
 

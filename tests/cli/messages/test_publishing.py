@@ -49,6 +49,7 @@ async def test_without_a_number_it_goes_on(graph: Graph) -> None:
     task.cancel()
 
 
+@pytest.mark.filterwarnings("ignore:no node publishes")
 async def test_once_waits_for_a_listener(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
     """A single message is published only once there is a subscription; the wait is reported."""
     graph.tap(String, "/sad")

@@ -92,7 +92,7 @@ def test_a_timer_whose_parameter_is_gone() -> None:
         @timer(hz=rate)
         async def tick(self) -> None: ...
 
-    with pytest.raises(DeclarationError, match="tick reads its period from the parameter 'rate', which Child does not"):
+    with pytest.raises(DeclarationError, match=r"rate = 2.0 replaces the Param of .*; write rate = Param\(2.0\)"):
 
         class Child(Parent):
             rate = 2.0

@@ -60,6 +60,9 @@ class Context(AbstractContextManager["Context"]):
         """
         unrun.ran()
         words = list(sys.argv if args is None else args)
+        if args is not None and not words and "--ros-args" in sys.argv:
+            ignored = " ".join(sys.argv[sys.argv.index("--ros-args") :])
+            logger.warning("init(args=[]) ignores the words %s; write args=None, or args=sys.argv", ignored)
         # Bytes that are not UTF-8 come as lone surrogates. rclpy raises UnicodeEncodeError for them, as this does.
         for word in words:
             word.encode()

@@ -7,14 +7,17 @@ from __future__ import annotations
 
 import ast
 
+from graphflow.analysis.rclpy_futures import early_questions
 from graphflow.analysis.uncalled import misspelt_main, uncalled_methods
 from graphflow.runtime.mistakes.source.called_early import results_passed, spins_called
 from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.contrary_names import contrary_names
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.literal_units import literal_units
 from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
+from graphflow.runtime.mistakes.source.misplaced import replaced_methods
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 from graphflow.runtime.mistakes.source.never_equal import never_exact
@@ -25,7 +28,7 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     found = [*uncalled_methods(module), *misgiven(module, "executor.create_task({})"), *ineffective(module)]
     found += [*results_passed(module, is_of_threads=True), *compared_nanoseconds(module), *mixed_angles(module)]
     found += [*constant_conditions(module), *defined_twice(module), *lost_values(module), *never_exact(module)]
-    found += contrary_names(module)
+    found += [*contrary_names(module), *literal_units(module), *replaced_methods(module), *early_questions(module)]
     return found
 
 

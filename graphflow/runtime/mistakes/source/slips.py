@@ -32,9 +32,11 @@ from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.contrary_names import contrary_names
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
+from graphflow.runtime.mistakes.source.literal_units import literal_units
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
+from graphflow.runtime.mistakes.source.misplaced import misplaced, without_super
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 from graphflow.runtime.mistakes.source.never_equal import never_equal, never_exact
@@ -95,6 +97,7 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
         found = (*found, *ineffective(definition), *overridden(parent, definition), *defined_twice(definition))
         found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
+        found = (*found, *literal_units(definition), *misplaced(definition), *without_super(parent, definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
         of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))

@@ -11,7 +11,8 @@ from pathlib import Path
 from nav_msgs.msg import OccupancyGrid
 
 import rclpy
-from graphflow.maps import GridMap, MapFileError, write_map
+from graphflow.errors import MapFileError
+from graphflow.maps import GridMap, write_map
 from graphflow.maps.files import FORMATS, FREE_THRESHOLD, OCCUPIED_THRESHOLD
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile

@@ -90,6 +90,8 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
             parser.add_argument(f"--{name}", type=_number, metavar=unit)
     parser.add_argument("--frame-id", help="the parent frame; required")
     parser.add_argument("--child-frame-id", help="the child frame; required")
+    if len(words) in (9, 10) and not any(word.startswith("--") for word in words) and words[-1].isdigit():
+        words = words[:-1]  # ROS 1's period
     if len(words) in (8, 9) and not any(word.startswith("--") for word in words):
         get_logger("static_transform_publisher").warning(
             "Old-style arguments are deprecated; see --help for new-style arguments"
@@ -107,6 +109,10 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
         a, b, c, w = (usual if part is None else part for part, usual in zip(parts, (0.0, 0.0, 0.0, 1.0), strict=True))
     else:
         roll, pitch, yaw = (turn or 0.0 for turn in turns)
+        for name, turn in (("roll", roll), ("pitch", pitch), ("yaw", yaw)):
+            if abs(turn) > math.tau:
+                text = f"--{name} is in radians: {turn:g} degrees are {math.radians(turn):.4g}"
+                get_logger("static_transform_publisher").warning(text)
         a, b, c, w = from_rpy(roll, pitch, yaw)
     return Pose((x, y, z), (a, b, c, w)), found.frame_id, found.child_frame_id
 

@@ -76,6 +76,7 @@ class ServerGoalHandle:
         self._action_server, self._goal_request = action_server, goal_request
         self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
         self._status = Status.ACCEPTED
+        self._has_warned = False
         self._lock = threading.Lock()
         self.result_future: Future = Future()
         self.result_requests: list[Asked] = []
@@ -136,6 +137,11 @@ class ServerGoalHandle:
 
     def publish_feedback(self, feedback: object) -> None:
         """Publish feedback to the client. Raises TypeError if it is not of the action's feedback type."""
+        if self._status.is_terminal and not self._has_warned:
+            self._has_warned = True
+            word = {Status.SUCCEEDED: "succeed", Status.ABORTED: "abort"}.get(self._status, "canceled")
+            text = f"feedback after {word}(): the client has its status already; call {word}() last, before the return"
+            self.action_server.warn(text)
         internals_of(self.action_server).publish_feedback(self.goal_id, feedback)
 
     def succeed(self) -> None:
@@ -406,6 +412,10 @@ class ActionServer(Waitable):
         if not callable(execute_callback):
             raise TypeError(f"Failed to register goal execution callback: not callable: {execute_callback!r}")
         self._execute_callback = execute_callback
+
+    def warn(self, text: str) -> None:
+        """Log a warning. graphflow's own."""
+        self._logger.warning(text)
 
     def destroy(self) -> None:
         """Withdraw the server. Running goals continue, but their results are lost."""

@@ -1,0 +1,70 @@
+"""Numbers in the source that seem to be in milliseconds or degrees where seconds or radians are taken."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Iterator
+
+from graphflow.analysis.syntax import last_name
+
+_PERIODS = {"timer", "create_timer", "every", "create_rate"}
+"""Functions whose first argument is a period in seconds."""
+_LEAST_MS, _STEP_MS, _MINUTE = 100, 50, 60
+"""Whole numbers from 100 in steps of 50 count as milliseconds, unless they are whole minutes."""
+_ANGLES = ("rpy", "roll", "pitch", "yaw", "theta", "heading", "angle")
+"""Keywords of angles in radians."""
+_OF_EULER = ("quaternion_from_euler", "from_rpy", "from_euler")
+_LEAST_DEGREES = 10
+"""Whole numbers from here on count as degrees: in radians they would be more than a turn and a half."""
+
+
+def literal_units(module: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find the lines with such numbers; each comes with a sentence."""
+    for node in ast.walk(module):
+        if isinstance(node, ast.Call):
+            yield from _of_period(node)
+            yield from _of_angles(node)
+
+
+def _of_period(call: ast.Call) -> Iterator[tuple[int, str]]:
+    name = last_name(call.func)
+    if name not in _PERIODS or name == "create_rate":
+        return
+    given = [
+        *call.args[:1],
+        *(keyword.value for keyword in call.keywords if keyword.arg in ("period", "timer_period_sec")),
+    ]
+    for value in given:
+        match value:
+            case ast.Constant(value=int(ms)) if (
+                not isinstance(ms, bool) and ms >= _LEAST_MS and ms % _STEP_MS == 0 and ms % _MINUTE
+            ):
+                text = f"a period is in seconds: the first call comes after {ms} s; for {ms} ms write {ms / 1000:g}"
+                yield value.lineno, text
+
+
+def _of_angles(call: ast.Call) -> Iterator[tuple[int, str]]:
+    values = [
+        (keyword.arg, part) for keyword in call.keywords if keyword.arg in _ANGLES for part in _parts(keyword.value)
+    ]
+    if last_name(call.func) in _OF_EULER:
+        values += [("an angle", value) for value in call.args]
+    for name, value in values:
+        number = _number(value)
+        if number is not None and abs(number) >= _LEAST_DEGREES and float(number).is_integer():
+            radians = math.radians(number)
+            yield value.lineno, f"{name} is in radians: {number:g} degrees are {radians:.4g}, math.radians({number:g})"
+
+
+def _parts(value: ast.expr) -> list[ast.expr]:
+    return list(value.elts) if isinstance(value, (ast.Tuple, ast.List)) else [value]
+
+
+def _number(value: ast.expr) -> float | None:
+    match value:
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int(number) | float(number))):
+            return -number
+        case ast.Constant(value=int(number) | float(number)) if not isinstance(number, bool):
+            return number
+    return None
