@@ -49,6 +49,7 @@ ONLY_IN = {
     "mujoco": ("simulator",),
     "PIL": ("maps", "introspect"),
     "xacro": ("description",),
+    "rerun": ("viewer",),
 }
 """Libraries that one package knows."""
 

@@ -163,8 +163,19 @@ def _scan(message: LaserScan, pose: Pose, header: Header) -> PointCloud2:
     )
 
 
-def _cloud(message: PointCloud2, pose: Pose, header: Header) -> PointCloud2:
-    """Move the points of a cloud; fields other than x, y and z stay as they are."""
+def cloud_points(message: PointCloud2) -> NDArray[np.float64]:
+    """Return the points of a cloud in its own frame, of shape (n, 3).
+
+    Raises:
+        TypeError: It has no fields x, y and z of floats.
+        ValueError: It has less data than its size says.
+    """
+    points, _ = _fields(message)
+    return np.stack([points[name].astype(np.float64) for name in "xyz"], axis=-1).reshape(-1, 3)
+
+
+def _fields(message: PointCloud2) -> tuple[NDArray[np.void], NDArray[np.uint8]]:
+    """Return the coordinates of a cloud as views on a copy of its data, and that copy. Raises as `cloud_points`."""
     formats = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
     fields = {field.name: field for field in message.fields}
     wrong = [name for name in "xyz" if name not in fields or fields[name].datatype not in formats]
@@ -178,7 +189,12 @@ def _cloud(message: PointCloud2, pose: Pose, header: Header) -> PointCloud2:
     if len(data) < row * message.height or row < message.point_step * message.width:
         raise ValueError(f"a cloud of {message.height} x {message.width} points has only {len(data)} bytes")
     dtype = np.dtype({"names": list("xyz"), "formats": kinds, "offsets": offsets, "itemsize": message.point_step})
-    points = np.ndarray((message.height, message.width), dtype, data, strides=(row, message.point_step))
+    return np.ndarray((message.height, message.width), dtype, data, strides=(row, message.point_step)), data
+
+
+def _cloud(message: PointCloud2, pose: Pose, header: Header) -> PointCloud2:
+    """Move the points of a cloud; fields other than x, y and z stay as they are."""
+    points, data = _fields(message)
     stacked = np.stack([points[name].astype(np.float64) for name in "xyz"], axis=-1)
     placed = stacked @ rotation_matrix(pose).T + pose.translation
     for index, name in enumerate("xyz"):

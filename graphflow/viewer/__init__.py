@@ -1,4 +1,5 @@
-"""A running graph in viewers that speak Foxglove's WebSocket protocol: Foxglove, Lichtblick, PlotJuggler.
+"""A running graph in viewers: Foxglove, Lichtblick and PlotJuggler by Foxglove's WebSocket protocol, and Rerun.
 
-Only this package imports `websockets`, which comes with the extra `view`.
+Read `bridge` first, the server for viewers of the protocol; `rerun/` is the other one. Only this package imports
+`websockets` and `rerun`, which come with the extras `view` and `rerun`.
 """

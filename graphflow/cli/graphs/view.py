@@ -6,6 +6,7 @@ import asyncio
 import ipaddress
 import socket
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -30,12 +31,29 @@ PORT = 8765
 @click.option("--allow-commands", is_flag=True, help="Let viewers on other machines publish, call and set, too.")
 @click.option("--allow-page", "pages", multiple=True, help="Origin of a web page that may connect: https://HOST.")
 @click.option("--node-name", default=NODE, show_default=True, help="Name of the serving node.")
-def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tuple[str, ...], node_name: str) -> int:
+@click.option("--rerun", "in_rerun", is_flag=True, help="Open the viewer Rerun instead: space, images, plots, log.")
+@click.option("--save", type=click.Path(path_type=Path), help="With --rerun: write FILE.rrd instead of opening it.")
+@click.option("--bag", type=click.Path(path_type=Path), help="With --rerun: show a bag instead of the running graph.")
+def view(
+    port: int,
+    host: str,
+    read_only: bool,
+    allow_commands: bool,
+    pages: tuple[str, ...],
+    node_name: str,
+    in_rerun: bool,
+    save: Path | None,
+    bag: Path | None,
+) -> int:
     """Serve the running graph to Foxglove, Lichtblick and PlotJuggler. Ctrl-C ends it.
 
     Topics, services, parameters and connections are served over Foxglove's WebSocket protocol. --host 0.0.0.0 serves
     other machines, too; they can only watch, unless --allow-commands is given.
     """
+    if in_rerun:
+        return _show_in_rerun(save, bag)
+    if save is not None or bag is not None:
+        raise UsageFault("--save and --bag are for Rerun: graphflow view --rerun")
     if find_spec("websockets") is None:
         from graphflow.introspect.installation import requirement
 
@@ -79,3 +97,37 @@ def _is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return host == "localhost"
+
+
+def _show_in_rerun(save: Path | None, bag: Path | None) -> int:
+    """Show the running graph, or a bag, in Rerun; or write a file that it opens."""
+    if find_spec("rerun") is None:
+        from graphflow.introspect.installation import requirement
+
+        raise UsageFault(f"--rerun needs the extra `rerun`: pip install {requirement('rerun')}")
+    from graphflow.bag.reader import Bag
+    from graphflow.cli.messages.types import use_project
+    from graphflow.cli.temporary_node import run_with_node
+    from graphflow.viewer.rerun.following import Following, replay
+    from graphflow.viewer.rerun.recording import Recording
+
+    use_project()
+    source = Bag(bag) if bag is not None else None
+    recording = Recording(str(bag or "graph"))
+    recording.open(save)
+    output.talk(f"writing {save}" if save is not None else "opened Rerun")
+    if source is not None:
+        output.talk(f"{replay(source, recording):,} messages of {bag}")
+        return exits.OK
+    output.talk("Ctrl-C ends it")
+
+    async def work(node: Node) -> int:
+        following = Following(node, recording)
+        try:
+            await following.run()
+        finally:
+            recording.close()
+            output.talk(f"{following.count:,} messages")
+        return exits.OK
+
+    return run_with_node(work)
