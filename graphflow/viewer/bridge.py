@@ -10,6 +10,7 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from http import HTTPStatus
+from pathlib import Path
 from typing import TypeVar
 
 from websockets.asyncio.server import Server, ServerConnection, serve
@@ -24,6 +25,7 @@ from graphflow.names import is_hidden
 from graphflow.qos import CLOCK
 from graphflow.runtime.node import Node
 from graphflow.viewer import protocol
+from graphflow.viewer.assets import asset
 from graphflow.viewer.client import Client, Connections
 from graphflow.viewer.parameters import ParameterFields, Parameters
 from graphflow.viewer.protocol import control_message
@@ -155,7 +157,7 @@ class Bridge:
             self._publications.leave(client)
 
     def _greet(self, client: Client) -> None:
-        capabilities = ["parameters", "parametersSubscribe", "connectionGraph"]
+        capabilities = ["parameters", "parametersSubscribe", "connectionGraph", "assets"]
         capabilities += [] if self._is_read_only else ["clientPublish", "services"]
         capabilities += ["time"] if self._is_clocked else []
         client.send_control(
@@ -196,6 +198,8 @@ class Bridge:
             case protocol.FollowGraph():
                 client.graph = {} if request.op == "subscribeConnectionGraph" else None
                 self._send_graph(client, connections(self._node.context.cache))
+            case protocol.FetchAsset():
+                client.spawn(lambda: self._send_asset(client, request))
             case _:
                 return False
         return True
@@ -218,6 +222,15 @@ class Bridge:
     def _broadcast(self, text: str | bytes) -> None:
         for client in self._clients:
             client.send_control(text)
+
+    async def _send_asset(self, client: Client, request: protocol.FetchAsset) -> None:
+        async with client.one_file:  # many large files at once would take much memory
+            try:
+                data, why = await asyncio.to_thread(asset, request.uri, Path.cwd()), ""
+            except UsageFault as error:
+                data, why = b"", str(error)
+            client.send_control(protocol.asset_frame(request.request_id, data, why))
+            await client.drained()
 
     # parameters, time and graph
 

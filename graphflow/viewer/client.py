@@ -54,6 +54,9 @@ class Client:
         self._control_bytes = self._sent = self._unread = 0
         """Bytes of control messages waiting; bytes of messages sent since the last ping; unanswered pings."""
         self._is_new = asyncio.Event()
+        self._is_drained = asyncio.Event()
+        self.one_file = asyncio.Lock()
+        """Held while a file is read and sent."""
         self._work: set[asyncio.Task[None]] = set()
         self.dropped = 0
         """Messages dropped because the client reads too slowly."""
@@ -68,11 +71,16 @@ class Client:
         """Send a control message ahead of all other messages; disconnect a client that does not read."""
         self._control.append(message)
         self._control_bytes += len(message)
+        self._is_drained.clear()
         if self._control_bytes > CONTROL_BOUND:
             logger.warning("a viewer reads too slowly and is disconnected")
             self._control.clear()
             self.abort()
         self._is_new.set()
+
+    async def drained(self) -> None:
+        """Wait until all control messages are sent."""
+        await self._is_drained.wait()
 
     def abort(self) -> None:
         """Drop the connection without a closing handshake."""
@@ -119,6 +127,8 @@ class Client:
                     message = self._control.popleft()
                     self._control_bytes -= len(message)
                     await self._connection.send(message)
+                    if not self._control:
+                        self._is_drained.set()
                 elif self._waiting and self._unread < WINDOWS:
                     await self._send(self._next())
                 else:

@@ -96,6 +96,14 @@ class FollowGraph(_Part):
     op: Literal["subscribeConnectionGraph", "unsubscribeConnectionGraph"]
 
 
+class FetchAsset(_Part):
+    """A file that a client wants, such as a mesh of a robot."""
+
+    op: Literal["fetchAsset"]
+    uri: Name
+    request_id: Id
+
+
 class Message(NamedTuple):
     """A message that a client publishes on one of its channels."""
 
@@ -113,7 +121,15 @@ class Call(NamedTuple):
 
 
 ClientRequest = (
-    Subscribe | Unsubscribe | Advertise | Unadvertise | GetParameters | SetParameters | FollowParameters | FollowGraph
+    Subscribe
+    | Unsubscribe
+    | Advertise
+    | Unadvertise
+    | GetParameters
+    | SetParameters
+    | FollowParameters
+    | FollowGraph
+    | FetchAsset
 )
 _CLIENT_REQUEST: TypeAdapter[ClientRequest] = TypeAdapter(Annotated[ClientRequest, Field(discriminator="op")])
 
@@ -175,3 +191,9 @@ def response_frame(call: Call, data: bytes) -> bytes:
     """Encode the response to a call, in the encoding of the request."""
     encoding = call.encoding.encode()
     return struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding)) + encoding + data
+
+
+def asset_frame(request_id: int, data: bytes, error: str = "") -> bytes:
+    """Encode a file that a client has asked for, or the reason why it cannot have it."""
+    text = error.encode()
+    return struct.pack("<BIBI", 4, request_id, bool(error), len(text)) + text + data

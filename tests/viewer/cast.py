@@ -73,6 +73,8 @@ class Viewer:
         """Names and types of services."""
         self.messages: list[Shown] = []
         self.statuses: list[str] = []
+        self.assets: dict[int, tuple[int, str, bytes]] = {}
+        """Status, error and data of files, by request."""
         self.parameters: dict[str, Any] = {}
         self.graph: dict[str, Any] = {}
         self.answers: dict[int, bytes] = {}
@@ -97,6 +99,9 @@ class Viewer:
             _, call, length = struct.unpack_from("<III", data, 1)
             assert data[13 : 13 + length] == b"cdr"
             self.answers[call] = data[13 + length :]
+        elif data[0] == 4:
+            number, status, length = struct.unpack_from("<IBI", data, 1)
+            self.assets[number] = status, data[10 : 10 + length].decode(), data[10 + length :]
 
     def _take(self, said: dict[str, Any]) -> None:
         match said.pop("op"):
