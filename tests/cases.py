@@ -1,9 +1,13 @@
-"""How many generated cases are tried: by default a few, with `--cases full` all that CI tries, else N new ones."""
+"""How many generated cases are tried: by default a few, with `--cases full` many, else N new ones.
+
+`--cases half` is for CI: as `full`, but each commit has its turn at one half of the slow tests.
+"""
 
 from __future__ import annotations
 
 import os
 import sys
+import zlib
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -14,12 +18,15 @@ T = TypeVar("T")
 
 VARIABLE = "GRAPHFLOW_CASES"
 """How the option reaches test modules, which need it while they are imported."""
-_WANTED = os.environ.get(VARIABLE, "few")
+_GIVEN = os.environ.get(VARIABLE, "few")
+TURN = int(os.environ.get("GRAPHFLOW_TURN", "0")) % 2
+"""The half of the slow tests that are run with `--cases half`."""
+_WANTED = "full" if _GIVEN == "half" else _GIVEN
 
 
 def count(few: int, full: int) -> int:
     """The number of cases to try."""
-    return {"few": few, "full": max(few, full // 2)}.get(_WANTED) or int(_WANTED)
+    return {"few": few, "full": max(few, full // 4)}.get(_WANTED) or int(_WANTED)
 
 
 def cases(number: int) -> settings:
@@ -34,11 +41,11 @@ def cases(number: int) -> settings:
 
 
 def sample(names: Sequence[T], step: int = 4) -> Sequence[T]:
-    """One in `step` of many alike, beginning with the first; all of them with `--cases full`, as in CI."""
+    """One in `step` of many alike, beginning with the first; all of them with `--cases full`."""
     return names[::step] if _WANTED == "few" else names
 
 
-MANY, MANY_REAL = {"few": (2, 1), "full": (40, 2)}.get(_WANTED, (sys.maxsize, sys.maxsize))
+MANY, MANY_REAL = {"few": (2, 1), "full": (10, 2)}.get(_WANTED, (sys.maxsize, sys.maxsize))
 """Cases of one test that are run, where there are more; of one that starts processes."""
 
 
@@ -67,10 +74,22 @@ def limit(number: int) -> pytest.MarkDecorator:
     return pytest.mark.timeout(120 + number // 5)
 
 
-slow = pytest.mark.skipif(_WANTED == "few", reason="one of several slow ones; CI tries all: --cases full")
-"""For a test that takes seconds and guards what seldom changes: it runs with `--cases full`, as in CI."""
+slow = pytest.mark.slow
+"""For a test that takes seconds and guards what seldom changes: it runs with `--cases full`."""
+NOT_NOW = pytest.mark.skip(
+    reason="one of several slow ones; --cases full tries all, and CI half of them with each commit"
+)
+
+
+def skip_slow(items: Sequence[pytest.Item]) -> None:
+    """Skip slow tests, all or the half that has no turn."""
+    for item in items:
+        if item.get_closest_marker("slow") is None or (_WANTED != "few" and _GIVEN != "half"):
+            continue
+        if _GIVEN != "half" or zlib.crc32(item.nodeid.encode()) % 2 != TURN:
+            item.add_marker(NOT_NOW)
 
 
 def some(names: Iterable[Any], *always: Any) -> list[Any]:
-    """Parameters of a slow test: `always` these, the others with `--cases full`, as in CI."""
+    """Parameters of a slow test: `always` these, the others with `--cases full`."""
     return [pytest.param(name, marks=() if name in always else slow) for name in names]

@@ -42,7 +42,9 @@ PROGRAMS = PROJECT / "tests" / "programs"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """`--cases`: see `tests.cases`."""
-    parser.addoption("--cases", metavar="few|full|N", help="how many generated cases are tried; N: so many new ones")
+    parser.addoption(
+        "--cases", metavar="few|half|full|N", help="how many generated cases are tried; N: so many new ones"
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -70,8 +72,9 @@ def pytest_collection_finish() -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave most cases of tests with many to CI, unless single tests are asked for by name."""
-    from tests.cases import few_of_many
+    from tests.cases import few_of_many, skip_slow
 
+    skip_slow(items)
     if any("::" in word for word in config.args) or config.option.keyword:
         return
     items[:], left = few_of_many(items)

@@ -59,7 +59,8 @@ async def test_driven_by_hand(graph: Graph) -> None:
     assert robot.pose.x == pytest.approx(stopped.x, abs=1e-3)
 
 
-@pytest.mark.parametrize("world", [pytest.param("house", marks=slow), "maze"])
+@slow
+@pytest.mark.parametrize("world", ["house", "maze"])
 async def test_along_the_wall(graph: Graph, world: str) -> None:
     """It finds a wall, follows it at about the distance that was asked for, and touches nothing."""
     nodes = await graph.up(PROJECT / "graphs" / "tb_wall.yaml", world=world, distance=0.35)
