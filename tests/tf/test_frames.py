@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 import numpy as np
@@ -188,3 +189,58 @@ def test_random_trees() -> None:
         found, _ = frames.find(target, source, dice.choice([0, S]))
         expected = np.linalg.inv(matrices[target]) @ matrices[source]
         assert np.allclose(matrix(found), expected, rtol=0, atol=1e-9)
+
+
+def tree(parents: dict[str, tuple[str, Pose]]) -> Frames:
+    """Frames with one pose at 1 s, each below its parent."""
+    out = Frames(kept=10 * S)
+    for frame, (parent, pose) in parents.items():
+        out.put(frame, parent, S, pose, is_static=False)
+    return out
+
+
+RIGHT, UP = Pose((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)), Pose((0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+TREES = {
+    "i": {"b": ("a", RIGHT), "c": ("b", RIGHT)},
+    "y": {"b": ("a", RIGHT), "c": ("b", RIGHT), "d": ("b", UP), "e": ("d", UP)},
+    "v": {"b": ("a", RIGHT), "c": ("b", RIGHT), "f": ("a", UP), "g": ("f", UP)},
+}
+
+
+@pytest.mark.parametrize(
+    ("shape", "target", "source", "place"),
+    [
+        *(("i", "a", "b", (1, 0)), ("i", "b", "a", (-1, 0)), ("i", "a", "c", (2, 0)), ("i", "c", "a", (-2, 0))),
+        *(("v", "a", "g", (0, 2)), ("v", "b", "f", (-1, 1)), ("v", "c", "f", (-2, 1)), ("v", "g", "c", (2, -2))),
+        *(("v", "b", "g", (-1, 2)), ("v", "f", "c", (2, -1)), ("v", "c", "g", (-2, 2)), ("v", "g", "a", (0, -2))),
+        *(("y", "a", "d", (1, 1)), ("y", "c", "d", (-1, 1)), ("y", "a", "e", (1, 2)), ("y", "e", "c", (1, -2))),
+        *(("y", "b", "e", (0, 2)), ("y", "c", "e", (-1, 2)), ("y", "d", "c", (1, -1)), ("y", "e", "a", (-1, -2))),
+    ],
+)
+@pytest.mark.parametrize("stamp", [0, S])
+def test_the_trees_of_tf2s_own_tests(shape: str, target: str, source: str, place: tuple[int, int], stamp: int) -> None:
+    """The places are those that tf2 tests for. Source: geometry2, test_tf2/test/buffer_core_test.cpp."""
+    pose, found = tree(TREES[shape]).find(target, source, stamp)
+    assert pose.translation == pytest.approx((*place, 0.0), abs=1e-9)
+    assert pose.rotation == pytest.approx((0, 0, 0, 1), abs=1e-9)
+    assert found == S
+
+
+HALF = math.sqrt(2) / 2
+RING = [(HALF - 1, HALF), (-1, 1), (-1 - HALF, HALF), (-2, 0), (-1 - HALF, -HALF), (-1, -1), (HALF - 1, -HALF), (0, 0)]
+"""Places of b to i in a: a circle of radius 1, in steps of 45 degrees."""
+
+
+@pytest.mark.parametrize("step", range(1, 9))
+def test_the_ring_of_tf2s_own_tests(step: int) -> None:
+    """Eight frames, each turned by 45 degrees in the one before, lead around a circle. Source: as above, `ring_45`."""
+    link = Pose((HALF - 1, HALF, 0.0), from_rpy(0.0, 0.0, math.pi / 4))
+    names = "abcdefghi"
+    frames = tree({names[i + 1]: (names[i], link) for i in range(8)})
+    pose, _ = frames.find("a", names[step], S)
+    assert pose.translation == pytest.approx((*RING[step - 1], 0.0), abs=1e-9)
+    angle = step * math.pi / 8
+    sign = math.copysign(1.0, pose.rotation[3] * math.cos(angle) + pose.rotation[2] * math.sin(angle))
+    assert [sign * part for part in pose.rotation] == pytest.approx([0, 0, math.sin(angle), math.cos(angle)], abs=1e-9)
+    back, _ = frames.find(names[step], "a", S)
+    assert back.of(pose).translation == pytest.approx((0, 0, 0), abs=1e-9)
