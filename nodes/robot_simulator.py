@@ -38,7 +38,7 @@ class RobotSimulator(SimulationServices):
     model = Param("", read_only=True, doc="A robot in place of those of the world: burger, waffle, rover, or a file.")
     seed = Param(0, ge=0, read_only=True, doc="Of all noise; the same seed gives the same run.")
     rate = Param(1.0, gt=0.0, le=100.0, doc="How fast simulated time runs; 2.0 is twice as fast.")
-    stamped = Param(False, read_only=True, doc="Whether cmd_vel is of type TwistStamped instead of Twist.")
+    stamped = Param(False, read_only=True, doc="Whether cmd_vel is announced as TwistStamped; both are taken.")
     clock_topic = Publisher(Clock, "/clock", CLOCK)
     tf = Transforms(listen=False)
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:  # it imports mujoco, which may not be there
     from graphflow.simulator import SimulatedRobot
 
 JOINTS = ["wheel_left_joint", "wheel_right_joint"]
+TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 STATE_HZ = 1.0
 """Messages a second of the battery and the bumper; the bumper's come with each change, too."""
 COVARIANCE = [0.001, 0.001, 1e6, 1e6, 1e6, 0.03]
@@ -61,12 +62,9 @@ class RobotTopics:
         self.scan = node.create_publisher(LaserScan, f"{made}scan", SENSOR_DATA) if model.lidar else None
         self.imu = node.create_publisher(Imu, f"{made}imu", SENSOR_DATA) if model.imu else None
         self.battery = node.create_publisher(BatteryState, f"{made}battery_state", 10) if model.battery else None
-        if stamped:
-            self.commands: TopicSubscription[Any] = node.create_subscription(
-                TwistStamped, f"{made}cmd_vel", self.command_stamped, 10
-            )
-        else:
-            self.commands = node.create_subscription(Twist, f"{made}cmd_vel", self.command, 10)
+        self.commands: list[TopicSubscription[Any]] = []
+        self._takes: set[str] = set()
+        self._take(TWIST_STAMPED if stamped else TWIST)
         self.dues = {
             "odom": Due(model.odom_rate),
             "scan": Due(model.lidar.rate if model.lidar else 1.0),
@@ -79,6 +77,21 @@ class RobotTopics:
         self.camera = CameraTopics(node, robot, made) if model.camera else None
         self.description = node.create_publisher(String, f"{made}robot_description", LATCHED)
         self.description.publish(String(data=robot.description(made)))
+
+    def _take(self, type_name: str) -> None:
+        """Take commands of a type."""
+        self._takes.add(type_name)
+        topic = f"{self._before}cmd_vel"
+        if type_name == TWIST:
+            self.commands.append(self._node.create_subscription(Twist, topic, self.command, 10))
+        else:
+            self.commands.append(self._node.create_subscription(TwistStamped, topic, self.command_stamped, 10))
+
+    def _take_others(self) -> None:
+        """Take commands of the other type, too, once somebody sends them: programs for Jazzy stamp them."""
+        found = self._node.context.cache.topics().get(self.commands[0].name, [])
+        for type_name in {TWIST, TWIST_STAMPED}.intersection(found) - self._takes:
+            self._take(type_name)
 
     @property
     def title(self) -> str:
@@ -93,7 +106,8 @@ class RobotTopics:
 
     def close(self) -> None:
         """Withdraw the topics."""
-        self.commands.close()
+        for commands in self.commands:
+            commands.close()
         if self.camera is not None:
             self.camera.close()
         publishers: list[TopicPublisher[Any] | None] = [self.odom, self.joints, self.bumper, self.scan, self.imu]
@@ -169,6 +183,7 @@ class RobotTopics:
             self.bumper.publish(Bool(data=self._was_touching))
         if is_due:
             self._publish_battery(stamp)
+            self._take_others()
 
     def _publish_odom(self, stamp: Time) -> None:
         odometry, model = self.robot.odometry, self.robot.robot

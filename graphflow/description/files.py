@@ -21,7 +21,7 @@ def read_robot(file: Path | str, arguments: Mapping[str, str] | None = None) -> 
     """Read a robot description; returns it, and its text in URDF.
 
     Args:
-        file: A URDF file, or one that ends in `.xacro`, which is expanded.
+        file: A URDF file; one that uses xacro is expanded, whatever its ending.
         arguments: Arguments of the xacro file.
 
     Raises:
@@ -29,14 +29,14 @@ def read_robot(file: Path | str, arguments: Mapping[str, str] | None = None) -> 
         GraphflowError: xacro is not installed.
     """
     file = Path(file)
-    if file.suffix == ".xacro":
-        text = expanded(file, arguments or {})
-        return parse(text, f"{file} (as xacro expands it)"), text
     try:
         text = found_text(file)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8"
         raise GraphFileError([Problem(Place(str(file)), f"cannot be read: {reason}")]) from None
+    if file.suffix == ".xacro" or "<xacro:" in text:
+        text = expanded(file, arguments or {})
+        return parse(text, f"{file} (as xacro expands it)"), text
     return parse(text, str(file)), text
 
 
@@ -44,11 +44,9 @@ def expanded(file: Path, arguments: Mapping[str, str]) -> str:
     """Expand a xacro file to URDF.
 
     Raises:
-        GraphFileError: The file is missing, or xacro refuses it; the text has its reason.
+        GraphFileError: xacro refuses it; the text has its reason.
         GraphflowError: xacro is not installed.
     """
-    if not file.is_file():
-        raise GraphFileError([Problem(Place(str(file)), "cannot be read: there is no such file")])
     try:
         import xacro
     except ImportError:

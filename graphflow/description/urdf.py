@@ -101,7 +101,9 @@ class _Reader:
             if meant is not None:
                 self._fault(child, f"unknown element <{child.tag}>; did you mean <{meant}>?")
             elif child.tag.startswith("xacro:"):
-                self._fault(child, f"<{child.tag}> is of xacro: give the file an ending .xacro, so that it is expanded")
+                self._fault(
+                    child, f"<{child.tag}> is of xacro, which expands files, not texts: graphflow run ... -p file:=PATH"
+                )
         for material in top.all("material"):
             colour = self._colour(material)
             if colour is not None:
@@ -297,7 +299,7 @@ class _Reader:
         try:
             number = float(text)
         except ValueError:
-            hint = "; $(...) and ${...} are of xacro: give the file an ending .xacro" if "$" in text else ""
+            hint = "; $(...) and ${...} are of xacro: give the file the ending .xacro" if "$" in text else ""
             self._fault(element, f"{text!r} is not a number{hint}")
             return 0.0
         if not math.isfinite(number):

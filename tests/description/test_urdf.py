@@ -67,7 +67,7 @@ MISTAKES = {
     "": "r.urdf:1:1: the robot has no link",
     "<link/>": "r.urdf:2:1: a <link> has no name",
     "<lnk name='a'/>": "r.urdf:2:1: unknown element <lnk>; did you mean <link>?",
-    "<xacro:include filename='x'/>" + LINKS + joint(): "r.urdf:2:1: <xacro:include> is of xacro: give the file an end",
+    "<xacro:include filename='x'/>" + LINKS + joint(): "r.urdf:2:1: <xacro:include> is of xacro, which expands files",
     LINKS: "r.urdf:1:1: the links are not one tree: base, arm have no parent; a joint must join them",
     LINKS + LINKS: "there are two links 'base'",
     LINKS + joint(child="amr"): "the child of the joint 'j' is 'amr', which is no link; did you mean 'arm'?",

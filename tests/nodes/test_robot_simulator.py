@@ -171,3 +171,21 @@ async def test_commands_without_effect(graph: Graph, caplog: pytest.LogCaptureFi
         "no cmd_vel for 1 s: it stops; publish again and again, from a timer",
     ):
         assert caplog.text.count(text) == 1, text
+
+
+async def test_commands_of_the_other_type(graph: Graph) -> None:
+    """A program that stamps its commands drives the robot, and so does one that does not."""
+    node = RobotSimulator(world="empty")
+    await graph.start(node)
+    plain, stamped = graph.publisher(Twist, "/cmd_vel"), graph.publisher(TwistStamped, "/cmd_vel")
+    await graph.clock.advance(1.1)
+    start = node.simulation.robots[""].pose.x
+    for _ in range(10):
+        stamped.publish(TwistStamped(twist=FORWARD))
+        await graph.clock.advance(0.1)
+    halfway = node.simulation.robots[""].pose.x
+    assert halfway - start > 0.1
+    for _ in range(10):
+        plain.publish(FORWARD)
+        await graph.clock.advance(0.1)
+    assert node.simulation.robots[""].pose.x - halfway > 0.1
