@@ -9,6 +9,8 @@ from graphflow.analysis.syntax import is_nested, last_name, walk
 
 SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
 """Functions that spin a node until a future is done, or for a while."""
+BLOCKS = ast.Module | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.With | ast.Try
+"""Statements with a body."""
 _LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "print")
 """Functions that read a future, and do not end it."""
 
@@ -62,8 +64,8 @@ def dotted(expression: ast.expr) -> str:
 def early_questions(module: ast.AST) -> Iterator[tuple[int, str]]:
     """Find lines that ask whether a future is done right after the call that made it: nothing has spun in between."""
     for node in ast.walk(module):
-        body = getattr(node, "body", None)
-        for first, second in zip(body, body[1:], strict=False) if isinstance(body, list) else ():
+        body = node.body if isinstance(node, BLOCKS) else []
+        for first, second in zip(body, body[1:], strict=False):
             match first, second:
                 case (
                     ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(attr=verb))),

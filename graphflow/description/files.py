@@ -31,9 +31,10 @@ def read_robot(file: Path | str, arguments: Mapping[str, str] | None = None) -> 
     file = Path(file)
     try:
         text = found_text(file)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8"
-        raise GraphFileError([Problem(Place(str(file)), f"cannot be read: {reason}")]) from None
+    except OSError as error:
+        raise GraphFileError([Problem(Place(str(file)), f"cannot be read: {error.strerror}")]) from None
+    except UnicodeDecodeError:
+        raise GraphFileError([Problem(Place(str(file)), "cannot be read: it is not UTF-8")]) from None
     if file.suffix == ".xacro" or "<xacro:" in text:
         text = expanded(file, arguments or {})
         return parse(text, f"{file} (as xacro expands it)"), text

@@ -97,17 +97,27 @@ class _Reader:
             self._fault(top, f"the root element is <{top.tag}>, not <robot>")
             raise GraphFileError(self._problems)
         for child in top.children:
-            meant = nearest(child.tag, TOP) if child.tag not in TOP and ":" not in child.tag else None
-            if meant is not None:
-                self._fault(child, f"unknown element <{child.tag}>; did you mean <{meant}>?")
-            elif child.tag.startswith("xacro:"):
-                self._fault(
-                    child, f"<{child.tag}> is of xacro, which expands files, not texts: graphflow run ... -p file:=PATH"
-                )
+            self._check_tag(child)
         for material in top.all("material"):
             colour = self._colour(material)
             if colour is not None:
                 self._materials[self._name(material)] = colour
+        links = self._links(top)
+        joints, places = self._joints(top, links)
+        if not self._problems:
+            self._check_tree(top, links, joints, places)
+        if self._problems:
+            raise GraphFileError(self._problems)
+        return Robot(top.attributes.get("name", ""), links, joints)
+
+    def _check_tag(self, child: _Element) -> None:
+        meant = nearest(child.tag, TOP) if child.tag not in TOP and ":" not in child.tag else None
+        if meant is not None:
+            self._fault(child, f"unknown element <{child.tag}>; did you mean <{meant}>?")
+        elif child.tag.startswith("xacro:"):
+            self._fault(child, f"<{child.tag}> is of xacro, which expands files: -p file:=PATH")
+
+    def _links(self, top: _Element) -> dict[str, Link]:
         links: dict[str, Link] = {}
         for element in top.all("link"):
             link = Link(self._name(element), [self._shape(visual) for visual in element.all("visual")])
@@ -116,6 +126,10 @@ class _Reader:
             links[link.name] = link
         if not links:
             self._fault(top, "the robot has no link")
+        return links
+
+    def _joints(self, top: _Element, links: dict[str, Link]) -> tuple[dict[str, Joint], dict[str, _Element]]:
+        """Return the joints and their elements, by name."""
         joints: dict[str, Joint] = {}
         places: dict[str, _Element] = {}
         for element in top.all("joint"):
@@ -126,14 +140,9 @@ class _Reader:
         for joint in joints.values():
             if joint.mimic is not None and joint.mimic.joint not in joints:
                 near = did_you_mean(joint.mimic.joint, joints)
-                self._fault(
-                    places[joint.name], f"the joint {joint.name!r} mimics {joint.mimic.joint!r}, which is none{near}"
-                )
-        if not self._problems:
-            self._check_tree(top, links, joints, places)
-        if self._problems:
-            raise GraphFileError(self._problems)
-        return Robot(top.attributes.get("name", ""), links, joints)
+                text = f"the joint {joint.name!r} mimics {joint.mimic.joint!r}, which is none{near}"
+                self._fault(places[joint.name], text)
+        return joints, places
 
     def _check_tree(
         self, top: _Element, links: dict[str, Link], joints: dict[str, Joint], places: dict[str, _Element]

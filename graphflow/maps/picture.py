@@ -70,5 +70,7 @@ def write_picture(grid: GridMap, file: Path) -> None:
     grey = np.where(values < 0, 205.0, 254.0 * (1.0 - values.clip(0, 100) / 100.0)).astype(np.uint8)
     try:
         Image.fromarray(grey).save(file)
-    except (OSError, ValueError) as error:
-        raise MapFileError(f"cannot write {file}: {getattr(error, 'strerror', None) or error}") from None
+    except OSError as error:
+        raise MapFileError(f"cannot write {file}: {error.strerror or error}") from None
+    except ValueError as error:  # the name has no ending of a picture
+        raise MapFileError(f"cannot write {file}: {error}") from None

@@ -6,11 +6,11 @@ import asyncio
 import logging
 import time
 from dataclasses import replace
-from typing import Any
 
 from graphflow.bag.reader import Bag
 from graphflow.errors import DecodeError, GraphflowError
 from graphflow.msgs import registry
+from graphflow.msgs.base import Message
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.node import Node
@@ -31,7 +31,7 @@ class Following:
 
     def __init__(self, node: Node, recording: Recording) -> None:
         self._node, self._recording = node, recording
-        self._subscriptions: dict[str, TopicSubscription[Any]] = {}
+        self._subscriptions: dict[str, TopicSubscription[Message]] = {}
         self.count = 0
         """The number of messages logged."""
 
@@ -55,8 +55,8 @@ class Following:
             except GraphflowError as error:
                 logger.warning("%s is not shown: %s", topic, error)
 
-    def _follow(self, topic: str, type_name: str) -> TopicSubscription[Any]:
-        def take(message: Any) -> None:
+    def _follow(self, topic: str, type_name: str) -> TopicSubscription[Message]:
+        def take(message: Message) -> None:
             self.count += 1
             self._recording.add(topic, type_name, message, time.time_ns())
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import rerun as rr
 
+from graphflow.msgs.std_msgs.msg import ColorRGBA
 from graphflow.msgs.visualization_msgs.msg import Marker, MarkerArray
 from graphflow.viewer.rerun.shapes import Logged
 
@@ -14,7 +14,7 @@ POINTS_BOUND = 1_000_000
 """Points of one marker that are shown, at most."""
 
 
-def marker_shapes(path: str, message: Any) -> Iterator[Logged]:
+def marker_shapes(path: str, message: Marker | MarkerArray) -> Iterator[Logged]:
     """Yield the shapes of a marker, or of several; one that is deleted is cleared."""
     markers = message.markers if isinstance(message, MarkerArray) else [message]
     for marker in markers:
@@ -40,7 +40,7 @@ def marker_shapes(path: str, message: Any) -> Iterator[Logged]:
             )
 
 
-def _archetype(marker: Marker) -> Any:
+def _archetype(marker: Marker) -> rr.AsComponents | None:
     scale, points = marker.scale, [(p.x, p.y, p.z) for p in marker.points[:POINTS_BOUND]]
     colours = [_colour(c) for c in marker.colors[:POINTS_BOUND]] or [_colour(marker.color)]
     match marker.type:
@@ -70,5 +70,5 @@ def _archetype(marker: Marker) -> Any:
     return None
 
 
-def _colour(colour: Any) -> list[int]:
+def _colour(colour: ColorRGBA) -> list[int]:
     return [min(255, max(0, round(255 * part))) for part in (colour.r, colour.g, colour.b, colour.a)]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import rerun as rr
 import rerun.blueprint as rrb
 
 from graphflow.errors import UsageFault
+from graphflow.msgs.base import Message
+from graphflow.msgs.std_msgs.msg import Header
+from graphflow.msgs.tf2_msgs.msg import TFMessage
 from graphflow.viewer.rerun.archetypes import shown
 
 FIXED = ("map", "odom", "world")
@@ -52,13 +54,14 @@ class Recording:
         """Write what is left."""
         self.stream.flush()
 
-    def add(self, topic: str, type_name: str, message: Any, received_ns: int) -> None:
+    def add(self, topic: str, type_name: str, message: Message, received_ns: int) -> None:
         """Log a message that was received at some time, nanoseconds since 1970."""
         stream = self.stream
         stream.set_time(RECEIVED, timestamp=received_ns / 1e9)
-        stamp = getattr(getattr(message, "header", None), "stamp", None)
-        if stamp is not None and (stamp.sec or stamp.nanosec):
-            stream.set_time(STAMPED, duration=stamp.sec + stamp.nanosec / 1e9)
+        header = getattr(message, "header", None)  # most types have one
+        seconds = header.stamp.sec + header.stamp.nanosec / 1e9 if isinstance(header, Header) else 0.0
+        if seconds:
+            stream.set_time(STAMPED, duration=seconds)
         else:
             stream.disable_timeline(STAMPED)
         for path, frame, archetype in shown(topic, type_name, message):
@@ -66,10 +69,10 @@ class Recording:
                 self._frames[path] = frame
                 stream.log(path, rr.CoordinateFrame(frame), static=True)
             stream.log(path, archetype)
-        if type_name == "tf2_msgs/msg/TFMessage":
+        if isinstance(message, TFMessage):
             self._look_for_fixed(message)
 
-    def _look_for_fixed(self, message: Any) -> None:
+    def _look_for_fixed(self, message: TFMessage) -> None:
         """Show everything in the best fixed frame that is known."""
         parents = {one.header.frame_id.lstrip("/") for one in message.transforms}
         known = FIXED[: FIXED.index(self._fixed)] if self._fixed else FIXED

@@ -11,7 +11,7 @@ import rerun as rr
 from graphflow.description import Robot, mesh_file
 from graphflow.description.robot import Shape
 
-Logged: TypeAlias = tuple[str, str, Any]
+Logged: TypeAlias = tuple[str, str, rr.AsComponents]
 """The path of an entity, the frame that it is in ("" for none), and what is logged there, an archetype of Rerun."""
 
 
@@ -38,7 +38,7 @@ def robot_shapes(robot: Robot, beside: Path) -> Iterator[Logged]:
                     )
 
 
-def _archetype(shape: Shape, beside: Path) -> Any:
+def _archetype(shape: Shape, beside: Path) -> rr.AsComponents | None:
     place: dict[str, Any] = {"centers": [shape.origin.translation], "quaternions": [shape.origin.rotation]}
     place |= {"colors": [[round(255 * part) for part in shape.colour]]} if shape.colour is not None else {}
     place["fill_mode"] = "solid"

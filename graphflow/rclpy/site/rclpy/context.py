@@ -60,9 +60,7 @@ class Context(AbstractContextManager["Context"]):
         """
         unrun.ran()
         words = list(sys.argv if args is None else args)
-        if args is not None and not words and "--ros-args" in sys.argv:
-            ignored = " ".join(sys.argv[sys.argv.index("--ros-args") :])
-            logger.warning("init(args=[]) ignores the words %s; write args=None, or args=sys.argv", ignored)
+        _warn_of_ignored(args)
         # Bytes that are not UTF-8 come as lone surrogates. rclpy raises UnicodeEncodeError for them, as this does.
         for word in words:
             word.encode()
@@ -167,3 +165,10 @@ class Context(AbstractContextManager["Context"]):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.try_shutdown()
+
+
+def _warn_of_ignored(args: Sequence[str] | None) -> None:
+    """Warn of words on the command line that an empty list of arguments hides."""
+    if args is not None and not args and "--ros-args" in sys.argv:
+        ignored = " ".join(sys.argv[sys.argv.index("--ros-args") :])
+        logger.warning("init(args=[]) ignores the words %s; write args=None, or args=sys.argv", ignored)

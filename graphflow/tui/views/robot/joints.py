@@ -23,8 +23,10 @@ from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
     from graphflow.description import Joint, Robot
+    from graphflow.msgs.sensor_msgs.msg import JointState
+    from graphflow.msgs.std_msgs.msg import String
 
-DESCRIPTION, STATES = "/robot_description", "sensor_msgs/msg/JointState"
+DESCRIPTION, TEXT, STATES = "/robot_description", "std_msgs/msg/String", "sensor_msgs/msg/JointState"
 SETTER = "/set"
 """The end of the topic on which `joint_state_publisher` takes positions."""
 TURN = math.pi
@@ -89,9 +91,11 @@ class Joints(View):
         if self._description is None:
             self._description = TopicMonitor(live, self.about or DESCRIPTION)
         self._description.look()
-        if self._description.count != self._seen:
+        if self._description.type_name not in ("", TEXT):
+            self._trouble = f"{self._description.topic} is no description: it is of type {self._description.type_name}"
+        elif self._description.count != self._seen:
             self._seen = self._description.count
-            self._take(str(getattr(self._description.message, "data", "")))
+            self._take(self._description.message)
         if self._robot is None:
             told = self._trouble or self._description.trouble or "waiting for a robot's description"
             self._text.update(Text(told, self.colours.bad if self._trouble else self.colours.dim))
@@ -101,11 +105,11 @@ class Joints(View):
             self._publish("/joint_states")  # without a publisher of joint states, this view is one
         self._draw()
 
-    def _take(self, text: str) -> None:
+    def _take(self, message: String) -> None:
         from graphflow.description import parse
 
         try:
-            self._robot, self._trouble = parse(text), ""
+            self._robot, self._trouble = parse(message.data), ""
         except GraphFileError as error:
             self._trouble = str(error)
             return
@@ -123,11 +127,10 @@ class Joints(View):
             self._states.on_message = self._heard
         self._states.look()
 
-    def _heard(self, state: object, _: float) -> None:
+    def _heard(self, state: JointState, _: float) -> None:
         if not self._is_set or self._setter():
-            names, positions = getattr(state, "name", []), getattr(state, "position", [])
             known = {joint.name for joint in self._joints}
-            self._positions |= {n: float(p) for n, p in zip(names, positions, strict=False) if n in known}
+            self._positions |= {n: float(p) for n, p in zip(state.name, state.position, strict=False) if n in known}
 
     def _setter(self) -> str:
         """Return the topic on which a node takes positions; "" if none does."""
