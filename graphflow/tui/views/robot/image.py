@@ -119,7 +119,7 @@ class ImageView(View):
         if live is None or live.node is None:
             return
         if not self._topic:
-            self._topic = next(iter(topics_of(live, IMAGE, COMPRESSED)), "")
+            self._topic = min(topics_of(live, IMAGE, COMPRESSED), key=_last, default="")
         if not self._topic:
             return
         if self._monitor is None:
@@ -160,6 +160,11 @@ class ImageView(View):
         if self._monitor is not None:
             self._monitor.close()
             self._monitor = None
+
+
+def _last(topic: str) -> tuple[bool, str]:
+    """Order topics: depths come last."""
+    return "depth" in topic, topic
 
 
 VIEW = ImageView
