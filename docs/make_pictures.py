@@ -153,6 +153,20 @@ def deadlock() -> None:
         film.save("deadlock")
 
 
+def mapping() -> None:
+    """A robot that maps a house."""
+    with stage() as s:
+        t = s.open("up graphs/tb_map.yaml rate:=2.0", (110, 34))
+        t.until("● running", 60)
+        time.sleep(32)
+        t.press("Tab")
+        open_window(t, "map")
+        time.sleep(3)
+        t.press("minus", "minus", "minus")
+        time.sleep(3)
+        take(t, "mapping")
+
+
 def gallery() -> None:
     """Each graph that comes with graphflow, as the view `graph` draws it; for `docs/gallery.md`."""
     for file in sorted(Path("graphs").glob("*.yaml")):
@@ -171,6 +185,7 @@ SCENES: dict[str, Callable[[], None]] = {
     "turtlesim": turtlesim,
     "goals": goals,
     "deadlock": deadlock,
+    "mapping": mapping,
     "gallery": gallery,
 }
 
