@@ -53,14 +53,14 @@ class Joint:
     """A joint: it moves the frame `child` in the frame `parent`.
 
     Attributes:
-        type: `revolute`, `continuous`, `prismatic`, `fixed`, `floating` or `planar`.
+        kind: `revolute`, `continuous`, `prismatic`, `fixed`, `floating` or `planar`.
         origin: The pose of the child where the joint's position is 0.
         axis: The direction, of length 1, along which or around which it moves.
         limits: The least and greatest position, in radians or metres; None if it has none.
     """
 
     name: str
-    type: str
+    kind: str
     parent: str
     child: str
     origin: Pose
@@ -71,7 +71,7 @@ class Joint:
     @property
     def moves(self) -> bool:
         """Whether its position is a number that changes."""
-        return self.type in MOVES
+        return self.kind in MOVES
 
     @property
     def home(self) -> float:
@@ -82,7 +82,7 @@ class Joint:
 
     def pose(self, position: float) -> Pose:
         """Return the pose of the child in the parent; the position is in radians or metres."""
-        if self.type == "prismatic":
+        if self.kind == "prismatic":
             x, y, z = self.axis
             return self.origin.of(Pose((x * position, y * position, z * position), IDENTITY.rotation))
         if self.moves:

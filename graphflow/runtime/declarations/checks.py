@@ -28,7 +28,7 @@ SHORTEST_NS = 10_000
 def check_node(node: object) -> None:
     """Check that an object passed to `run` is a node."""
     if isinstance(node, type):
-        raise DeclarationError(f"{node.__name__} is a class; create a node:{node.__name__}()")
+        raise DeclarationError(f"{node.__name__} is a class; create a node: {node.__name__}()")
     if isinstance(node, (list, tuple)):
         raise DeclarationError("pass nodes as separate arguments, as in running(talker, listener) or running(*nodes)")
     if not hasattr(type(node), "_core_class"):

@@ -9,6 +9,8 @@ import ast
 
 from graphflow.analysis.rclpy_futures import early_questions
 from graphflow.analysis.uncalled import misspelt_main, uncalled_methods
+from graphflow.runtime.mistakes.source.after_spin import after_spin
+from graphflow.runtime.mistakes.source.busy_loops import busy_loops
 from graphflow.runtime.mistakes.source.called_early import results_passed, spins_called
 from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.contrary_names import contrary_names
@@ -21,6 +23,8 @@ from graphflow.runtime.mistakes.source.misplaced import replaced_methods
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 from graphflow.runtime.mistakes.source.never_equal import never_exact
+from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
+from graphflow.runtime.mistakes.source.reused_objects import reused_objects
 
 
 def slips(module: ast.Module) -> list[tuple[int, str]]:
@@ -29,6 +33,7 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     found += [*results_passed(module, is_of_threads=True), *compared_nanoseconds(module), *mixed_angles(module)]
     found += [*constant_conditions(module), *defined_twice(module), *lost_values(module), *never_exact(module)]
     found += [*contrary_names(module), *literal_units(module), *replaced_methods(module), *early_questions(module)]
+    found += [*reused_objects(module), *angles_as_quaternions(module), *busy_loops(module), *after_spin(module)]
     return found
 
 

@@ -27,6 +27,7 @@ from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.busy_loops import busy_loops
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.conditions import constant_conditions
 from graphflow.runtime.mistakes.source.contrary_names import contrary_names
@@ -41,6 +42,8 @@ from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 from graphflow.runtime.mistakes.source.never_equal import never_equal, never_exact
 from graphflow.runtime.mistakes.source.overridden import overridden
+from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
+from graphflow.runtime.mistakes.source.reused_objects import reused_objects
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
@@ -98,6 +101,7 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*found, *ineffective(definition), *overridden(parent, definition), *defined_twice(definition))
         found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
         found = (*found, *literal_units(definition), *misplaced(definition), *without_super(parent, definition))
+        found = (*found, *reused_objects(definition), *angles_as_quaternions(definition), *busy_loops(definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
         of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))

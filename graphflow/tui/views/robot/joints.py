@@ -145,7 +145,7 @@ class Joints(View):
         for index, joint in enumerate(self._joints):
             low, high = limits(joint)
             position = self._positions.get(joint.name)
-            if position is not None and joint.limits is None and joint.type == "continuous":
+            if position is not None and joint.limits is None and joint.kind == "continuous":
                 position = math.remainder(position, math.tau)
             share = 0.5 if position is None else (min(high, max(low, position)) - low) / (high - low)
             at = round(share * (width - 1))
@@ -235,7 +235,7 @@ def limits(joint: Joint) -> tuple[float, float]:
 
 def described(joint: Joint, position: float) -> str:
     """Format a position: in radians and degrees, or in metres."""
-    if joint.type == "prismatic":
+    if joint.kind == "prismatic":
         return f"{position:.3f} m"
     return f"{position:.2f} rad {round(math.degrees(position)):4d}°"
 

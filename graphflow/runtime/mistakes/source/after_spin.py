@@ -1,0 +1,50 @@
+"""Statements after `rclpy.spin(node)` that are meant to run while the node does."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+
+from graphflow.analysis.syntax import FunctionNode, last_name
+
+_SENDS = {"publish", "call_async", "call", "send_goal", "send_goal_async", "create_timer", "create_subscription"}
+_IS_LAST = re.compile(r"stop|halt|brake|shut|close|clean|destroy|finish|exit|quit|save|on_|end|reset|land|disarm")
+"""Methods that a program calls on purpose when it ends."""
+
+
+def after_spin(module: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find the lines after `rclpy.spin` that send or create something; each comes with a sentence."""
+    sending = {
+        method.name
+        for method in ast.walk(module)
+        if isinstance(method, FunctionNode) and any(_sends(node) for node in ast.walk(method))
+    }
+    for node in ast.walk(module):
+        for body in (getattr(node, "body", None), getattr(node, "finalbody", None)):
+            if isinstance(body, list):
+                yield from _after(body, sending)
+
+
+def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]:
+    spun = next((i for i, s in enumerate(body) if _spins(s)), None)
+    if spun is None:
+        return
+    for statement in body[spun + 1 :]:
+        match statement:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=name) as function) as call):
+                is_sent = _sends(call) or (isinstance(owner, ast.Name) and name in sending)
+                if is_sent and not _IS_LAST.match(name):
+                    text = f"{ast.unparse(function)} runs only after Ctrl-C, since spin (line {body[spun].lineno})"
+                    yield statement.lineno, f"{text} returns then; call it before spin, or in a callback of a timer"
+
+
+def _spins(statement: ast.stmt) -> bool:
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id="rclpy"), attr="spin"))):
+            return True
+    return False
+
+
+def _sends(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and last_name(node.func) in _SENDS

@@ -1,0 +1,52 @@
+"""Angles that are written into a part of a quaternion."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+
+_PARTS = ("x", "y", "z", "w")
+_OWNERS = ("orientation", "rotation")
+_IS_ANGLE = re.compile(r"(?!.*(sin|cos|half|quat))(.*_)?(yaw|theta|heading|angle|pitch|roll|rad|radians|pi)")
+
+
+def angles_as_quaternions(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find the lines that set a part of an orientation to an angle; each comes with a sentence."""
+    for node in ast.walk(code):
+        match node:
+            case ast.Assign(
+                targets=[ast.Attribute(value=ast.Attribute(attr=owner), attr=part) as target], value=value
+            ) if owner in _OWNERS and part in _PARTS and _is_angle(value):
+                yield node.lineno, _text(ast.unparse(target), part, value)
+            case ast.Call(func=ast.Name(id="Quaternion") | ast.Attribute(attr="Quaternion"), keywords=given):
+                for keyword in given:
+                    if keyword.arg in _PARTS and _is_angle(keyword.value):
+                        yield keyword.value.lineno, _text(keyword.arg, keyword.arg, keyword.value)
+
+
+def _text(target: str, part: str, value: ast.expr) -> str:
+    angle = ast.unparse(value)
+    text = f"{target} is a part of a quaternion, not an angle"
+    if part == "w":
+        return f"{text}: it is math.cos(angle / 2)"
+    half = f"{angle} / 2" if isinstance(value, (ast.Name, ast.Attribute, ast.Constant)) else f"({angle}) / 2"
+    return f"{text}: write math.sin({half}), and math.cos({half}) into w"
+
+
+def _is_angle(value: ast.expr) -> bool:
+    """Whether an expression is larger than a part of a unit quaternion, or has the name of an angle and no sine."""
+    parts = list(ast.walk(value))
+    if any(isinstance(part, (ast.Call, ast.Subscript)) for part in parts):
+        return any(isinstance(part, ast.Attribute) and part.attr == "radians" for part in parts) and _calls(parts) == 1
+    match value:
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int(number) | float(number))):
+            return abs(number) > 1
+        case ast.Constant(value=int(number) | float(number)):
+            return abs(number) > 1
+    names = [p.id if isinstance(p, ast.Name) else p.attr for p in parts if isinstance(p, (ast.Name, ast.Attribute))]
+    return any(_IS_ANGLE.fullmatch(name) for name in names)
+
+
+def _calls(parts: list[ast.AST]) -> int:
+    return sum(isinstance(part, ast.Call) for part in parts)
