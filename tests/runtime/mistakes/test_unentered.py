@@ -46,7 +46,7 @@ def test_other_ways_to_enter(caplog: pytest.LogCaptureFixture) -> None:
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (Asker, r"Asker is a class; create a node:Asker\(\)"),
+        (Asker, r"Asker is a class; create a node: Asker\(\)"),
         ([], r"pass nodes as separate arguments, as in running\(talker, listener\)"),
         ("asker", "'asker' is not a node"),
     ],
