@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, overload
@@ -135,6 +136,23 @@ def _time(value: Time | TimeFields) -> Time:
     return Time.from_msg(value) if isinstance(value, TimeFields) else value
 
 
+def warn_of_two_clocks(first_ns: int, second_ns: int) -> None:
+    """Warn, once per line of user code, of two times that are so far apart that they are of two clocks."""
+    if first_ns and second_ns and abs(first_ns - second_ns) > _TWO_CLOCKS:
+        import warnings
+
+        frame, depth = sys._getframe(1), 2
+        while frame.f_back is not None and frame.f_globals.get("__name__") in _ARITHMETIC:
+            frame, depth = frame.f_back, depth + 1
+        text = "one of these two times is simulated, and the other is not: set use_sim_time for the node"
+        warnings.warn(text, RuntimeWarning, stacklevel=depth)
+
+
+_TWO_CLOCKS = 10**9 * NANOSECONDS
+"""About 32 years."""
+_ARITHMETIC = (__name__, "rclpy.time")
+
+
 def _duration(value: Duration | DurationFields) -> Duration:
     return Duration.from_msg(value) if isinstance(value, DurationFields) else value
 
@@ -240,7 +258,9 @@ class Time:
     def __sub__(self, other: Duration | DurationFields) -> Time: ...
     def __sub__(self, other: Any) -> Any:
         if isinstance(other, (Time, TimeFields)):
-            return Duration(self.nanoseconds - _time(other).nanoseconds)
+            since = _time(other).nanoseconds
+            warn_of_two_clocks(self.nanoseconds, since)
+            return Duration(self.nanoseconds - since)
         if isinstance(other, (Duration, DurationFields)):
             return Time(self.nanoseconds - _duration(other).nanoseconds)
         return NotImplemented

@@ -82,6 +82,9 @@ class GoalDriver(Node):
             poses.append(PoseStamped(header=header, pose=PoseMessage(position=Point(x=x, y=y), orientation=turn)))
         self.plan.publish(Path(header=header, poses=poses))
 
+    async def on_shutdown(self) -> None:
+        self.cmd_vel.publish(Twist())  # else a real robot drives on
+
     @timer(hz=10.0)
     async def drive(self) -> None:
         if not self.ways:

@@ -48,6 +48,9 @@ class ReactiveControl(Node):
     states = Publisher(String, "~/state")
     state = State.STOP
 
+    async def on_shutdown(self) -> None:
+        self.become(State.STOP)  # else a real robot drives on
+
     def decide(self, scan: LaserScan) -> State:
         """Return the next state: a turn goes on until the way is free with a margin."""
         ahead = nearest(scan, 0.0, math.radians(60))

@@ -59,9 +59,11 @@ class RobotTeleop(Node):
             print(PROMPT, flush=True)
             while (key := await keys.get()) not in ("q", "Q", HANGUP):
                 self.press(key)
-        self.linear = self.angular = 0.0
-        self.send()
         self.shutdown()
+
+    async def on_shutdown(self) -> None:
+        self.linear = self.angular = 0.0
+        self.send()  # else a real robot drives on
 
     def press(self, key: str) -> None:
         """Change the speeds by one key."""

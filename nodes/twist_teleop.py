@@ -23,6 +23,7 @@ q/z : increase/decrease max speeds by 10%
 w/x : increase/decrease only linear speed by 10%
 e/c : increase/decrease only angular speed by 10%
 anything else : stop
+Hold a key to drive on: a robot may stop 1 s after the last message.
 
 CTRL-C to quit"""
 MOVES = {"i": (1, 0), "o": (1, -1), "j": (0, 1), "l": (0, -1), "u": (1, 1), ",": (-1, 0), ".": (-1, 1), "m": (-1, -1)}
@@ -56,8 +57,10 @@ class TwistTeleop(Node):
             print(PROMPT, flush=True)
             while (key := await keys.get()) != HANGUP:
                 self.press(key)
-        self.send(0.0, 0.0)
         self.shutdown()
+
+    async def on_shutdown(self) -> None:
+        self.send(0.0, 0.0)  # else a real robot drives on
 
     def press(self, key: str) -> None:
         """Drive in a direction, change the speeds, or stop."""

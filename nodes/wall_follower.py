@@ -33,6 +33,9 @@ class WallFollower(Node):
     states = Publisher(String, "~/state")
     state = State.FIND
 
+    async def on_shutdown(self) -> None:
+        self.cmd_vel.publish(Twist())  # else a real robot drives on
+
     @subscription(LaserScan, "scan", SENSOR_DATA)
     async def scanned(self, scan: LaserScan) -> None:
         ahead, right = nearest(scan, 0.0, math.radians(50)), nearest(scan, math.radians(-90), math.radians(60))

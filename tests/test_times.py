@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from typing import cast
 
 import numpy as np
@@ -100,6 +101,7 @@ def test_spans_for_people(seconds: float, text: str) -> None:
     assert ago(seconds) == text
 
 
+@pytest.mark.filterwarnings("ignore:one of these two times is simulated")
 @settings(derandomize=True, deadline=None)
 @given(st.integers(0, 2**60), st.integers(0, 2**60))
 def test_messages_stand_in_place_of_times(one: int, other: int) -> None:
@@ -168,3 +170,18 @@ def test_fractions_of_a_nanosecond_are_refused(kind: type[Time | Duration], way:
 def test_durations_with_a_unit(text: str, seconds: str) -> None:
     """They are converted to the number to write; other texts are not."""
     assert seconds_in(text) == seconds
+
+
+@pytest.mark.parametrize("stamp", [Time(3 * NANOSECONDS), TimeMessage(sec=3)])
+def test_times_of_two_clocks(stamp: Time | TimeMessage) -> None:
+    """The line of user code gets a warning; a time of 0 stands for none."""
+    with pytest.warns(RuntimeWarning, match="one of these two times is simulated, and the other is not") as caught:
+        age = Time(1_800_000_000 * NANOSECONDS) - stamp
+    assert caught[0].filename == __file__
+    assert age.sec == 1_799_999_997
+    with pytest.warns(RuntimeWarning, match="set use_sim_time") as caught:
+        assert (stamp - Time(1_800_000_000 * NANOSECONDS)).sec == -1_799_999_997
+    assert caught[0].filename == __file__
+    with warnings.catch_warnings(action="error"):
+        assert (Time(1_800_000_000 * NANOSECONDS) - Time(0)).sec == 1_800_000_000
+        assert (Time(1_800_000_000 * NANOSECONDS) - Time(1_300_000_000 * NANOSECONDS)).sec == 500_000_000

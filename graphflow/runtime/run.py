@@ -16,6 +16,7 @@ from graphflow.errors import GraphflowError, TooManyErrors, UsageFault
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.call_site import here
 from graphflow.runtime.context import Context
+from graphflow.runtime.declarations.declared import handlers
 from graphflow.runtime.ending import StopRequest, catch_signals
 from graphflow.runtime.failures import log_with_traceback
 from graphflow.runtime.importing import refuse_to_run
@@ -55,15 +56,26 @@ class _Running(Unentered[Context]):
         for node in nodes:
             core_of(node)
         super().__init__(f"async with graphflow.running({_names(nodes)}): ...")
+        self._nodes = nodes
         self._block: AbstractAsyncContextManager[Context] = _block(nodes, context)
+        self._has_waited = False
 
     async def __aenter__(self) -> Context:
         self._is_known = True
-        return await self._block.__aenter__()
+        entered = await self._block.__aenter__()
+        entered.loop.call_soon(self._note_wait)
+        return entered
+
+    def _note_wait(self) -> None:
+        self._has_waited = True
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool | None:
+        idle = [node.name for node in self._nodes if handlers(type(node))]
+        if idle and kind is None and not self._has_waited:
+            text = "awaits nothing, so that no handler of %s runs; end it with await asyncio.Event().wait()"
+            logger.warning(f"%s: this block {text}, or write graphflow.run(...)", self._place, ", ".join(idle))
         return await self._block.__aexit__(kind, error, trace)
 
 

@@ -17,7 +17,7 @@ from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints
 from graphflow.tf.faults import fault_of
-from graphflow.tf.frames import Frames, seconds
+from graphflow.tf.frames import BACK, Frames, seconds
 from graphflow.tf.info import FrameInfo, Sender
 from graphflow.tf.reports import Reports
 from graphflow.tf.transform import Transform, pose_of, stamped
@@ -34,8 +34,6 @@ STOPPED_AFTER = 1.0
 """Seconds without a transform of a frame after which its publisher counts as stopped."""
 TWO_CLOCKS = 10**6 * NANOSECONDS
 """A distance between two stamps that only two different clocks explain."""
-BACK = NANOSECONDS
-"""A jump of the node's time into the past, by which a simulation, or a bag, has begun again."""
 
 Stamp: TypeAlias = Time | HasFields | None
 """A time: a `Time`, a message's stamp, or None for the latest."""
@@ -222,13 +220,16 @@ class TransformBuffer(AttributeHints):
 
         Raises:
             TypeError: Messages of its type cannot be converted.
-            TransformError: As for `lookup`.
+            TransformError: Its header has no frame, or as for `lookup`.
         """
         try:
             header: Header = message.header
         except AttributeError:
             text = f"a {type(message).__name__} has no header, so that its frame is not known; use lookup()"
             raise TypeError(text) from None
+        if not header.frame_id:
+            text = f"the {type(message).__name__} does not say in which frame it is: set its header.frame_id"
+            raise TransformError(text, to, "")
         found = await self.lookup(to, header.frame_id, header.stamp, timeout=timeout, fixed=fixed, target_at=at)
         return found.apply(message)
 
@@ -252,7 +253,9 @@ class TransformBuffer(AttributeHints):
             senders = {e.node_name for s in self._subscriptions for e in s.matched.values()} - {self._owner.full_name}
             if not senders:
                 return f"; no node publishes {' or '.join(s.name for s in self._subscriptions)}"
-            text = f"; {', '.join(sorted(senders)[:3])} publish transforms, and have sent none since this node listens"
+            one = len(senders) == 1
+            sends = "publishes transforms, and has sent none" if one else "publish transforms, and have sent none"
+            text = f"; {', '.join(sorted(senders)[:3])} {sends} since this node listens"
             return f"{text}: a frame that never moves needs send_static (StaticTransformBroadcaster)"
         return ""
 
@@ -296,6 +299,8 @@ class TransformBuffer(AttributeHints):
         clock = self._owner.clock
         now, time_ns = clock.monotonic_ns(), clock.time_ns()
         if time_ns < self._latest_ns - BACK:
+            back = seconds(self._latest_ns - time_ns)
+            self._owner.log.info("the time has jumped back by %s s; only static transforms are kept", back)
             self._frames.clear()
         self._latest_ns = time_ns
         for transform in message.transforms:

@@ -15,6 +15,8 @@ SAMPLES_BOUND = 20_000
 """The number of poses kept per frame, at most, whatever their times."""
 TOTAL_BOUND = 1_000_000
 """The number of poses kept in total, at most."""
+BACK = 10**9
+"""A jump of a node's time into the past, in nanoseconds, by which a simulation, or a bag, has begun again."""
 SHOWN = 5
 """The number of frames that an error names."""
 
@@ -106,10 +108,10 @@ class Frames:
         return is_kept
 
     def clear(self) -> None:
-        """Forget all frames."""
-        self.histories.clear()
-        self._parents.clear()
-        self._count = 0
+        """Forget all frames but the static ones, as tf2 does: their publishers do not send them again."""
+        self.histories = {frame: history for frame, history in self.histories.items() if history.is_static}
+        self._parents = {parent for history in self.histories.values() for parent in history.parents}
+        self._count = len(self.histories)
 
     def has(self, frame: str) -> bool:
         """Whether a frame is known, if only as a parent."""

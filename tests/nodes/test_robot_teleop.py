@@ -42,3 +42,15 @@ async def test_without_a_terminal(graph: Graph, caplog: pytest.LogCaptureFixture
         await graph.start(node)
         await graph.clock.advance(0.1)
         await node.wait_ended()
+
+
+async def test_the_end(graph: Graph) -> None:
+    """The last message stops the robot, also at Ctrl-C."""
+    node = Silent()
+    sent = graph.tap(Twist, "/cmd_vel")
+    await graph.start(node)
+    node.press("w")
+    await graph.clock.advance(0.1)
+    assert sent.latest.linear.x == 0.01
+    await graph.stop(node)
+    assert sent.latest.linear.x == 0.0

@@ -40,3 +40,13 @@ async def test_stamped(graph: Graph) -> None:
     node.press("up")
     await graph.settle()
     assert (heard.latest.twist.linear.x, heard.latest.header.frame_id) == (0.5, "base")
+
+
+async def test_the_end(graph: Graph) -> None:
+    """The last message stops the robot, also at Ctrl-C."""
+    node = Silent()
+    heard = graph.tap(Twist, "/cmd_vel")
+    await graph.start(node)
+    node.press("i")
+    await graph.stop(node)
+    assert [twist.linear.x for twist in heard] == [0.5, 0.0]

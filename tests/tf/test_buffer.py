@@ -262,11 +262,12 @@ async def test_a_node_that_does_not_listen(graph: Graph) -> None:
 
 
 async def test_time_that_begins_again(graph: Graph) -> None:
-    """A simulation's transforms of before are forgotten when its time jumps back."""
+    """A simulation's transforms of before are forgotten when its time jumps back, except for static ones."""
     from graphflow.msgs.rosgraph_msgs.msg import Clock
 
     clock, listener, sender = graph.publisher(Clock, "/clock"), Listener(use_sim_time=True), Listener("sender")
     await graph.start(listener, sender)
+    sender.tf.send_static(Transform.of("base_link", "laser", (0.0, 0.0, 1.0)))
     message = Clock()
     for second in (100, 101, 5):
         message.clock.sec = second
@@ -275,6 +276,7 @@ async def test_time_that_begins_again(graph: Graph) -> None:
         sender.tf.send(Transform.of("odom", "base_link", (float(second), 0.0, 0.0), stamp=Time(second * 10**9)))
         await graph.settle()
     assert listener.tf.get("odom", "base_link").translation == (5.0, 0.0, 0.0)
+    assert listener.tf.get("odom", "laser").translation == (5.0, 0.0, 1.0)
 
 
 async def test_frames_of_other_nodes_are_bounded(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -334,7 +336,7 @@ async def test_a_sender_that_has_sent_already(graph: Graph) -> None:
     with pytest.raises(UnknownFrame) as caught:
         listener.tf.get("base_link", "laser")
     told = (
-        "; /mount publish transforms, and have sent none since this node listens: a frame that never moves needs send"
+        "; /mount publishes transforms, and has sent none since this node listens: a frame that never moves needs send"
     )
     assert told in str(caught.value)
 

@@ -53,6 +53,8 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     if (option := option_after_verb(words)) is not None and not _mentions(what, option):
         placed = before_the_verb(option, ["run", what, *words])
         output.talk(f"note: {option} after the node is passed to its program; graphflow's {placed}")
+    if what.endswith(".py") and _is_launch_file(Path(what)):
+        raise UsageFault(f"{what} is a launch file; run it with: graphflow launch {what}")
     verb = _VERBS.get((what, words[0] if words else ""))
     command = [verb, *words[1:]] if verb else ["run", what, *words]
     if prefix or verb:
@@ -82,6 +84,12 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     names = Resolver(cls.interface().node_name, "/", ros.remaps)
     refuse_taken_names([names.full_name], domain_id(), hint="give this one another name with -r __node:=NAME")
     run_node(cls, args=rest)
+
+
+def _is_launch_file(file: Path) -> bool:
+    """Whether running a file would only define a launch description."""
+    source = found_text(file) if file.is_file() else ""
+    return "def generate_launch_description" in source and "__main__" not in source
 
 
 def _mentions(what: str, option: str) -> bool:

@@ -17,6 +17,8 @@ from graphflow.names import nearest
 _ARITHMETIC = re.compile(r"[-+*/%().\w\s]*[\w)]\s*[-+*/%]\s*[-+*/%().\w\s]*\w[-+*/%().\w\s]*")
 """A text of numbers and names with an operator between two of them."""
 _WRITTEN = re.compile(r"""(?P<quote>['"]?)(?P<text>(?:\$\(var \w+\)|[-+*/%.\w ()])+)(?P=quote)""")
+_FOREIGN = re.compile(r"\$\{(\w+)\}|\$(\w+)")
+"""A variable as shells write it."""
 _VALUE = re.compile(r"\$\(var (\w+)\)")
 
 
@@ -25,6 +27,8 @@ def value_correction(declared: Parameter, setting: Setting) -> str:
     value = setting.value
     if not isinstance(value, str):
         return ""
+    if found := _FOREIGN.fullmatch(value):
+        return f"write {declared.name}: $(var {found[1] or found[2]})"
     if declared.type.startswith("list[") and (way := yaml_slips.as_list(value)):
         return way
     if declared.unit and (number := value.removesuffix(declared.unit).strip()) != value and _fits(declared, number):
@@ -83,13 +87,15 @@ def _line_at(setting: Setting) -> str:
 
 
 def misplaced_key(name: str, known: Collection[str]) -> tuple[str, str]:
-    """Return the key of a node that an unknown parameter is, and the correction; both empty for others.
+    """Return the key of nodes or of parameter files that an unknown parameter is, and the correction; both may be "".
 
     Args:
         name: Such as `remap.chatter`, for `remap:` below `params:`.
         known: The parameters of the node.
     """
     key = name.partition(".")[0]
+    if key == "ros__parameters":
+        return key, "; ros__parameters: is for parameter files: write the parameters directly below params:"
     if key not in keys_of(NodeSpec) or nearest(name, known, cutoff=0.8) is not None:
         return "", ""
     return key, f"; {key} is a key of the node: indent it as params: is"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import dis
 import pkgutil
 import re
@@ -11,6 +12,7 @@ from enum import EnumType
 from importlib import import_module
 from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
 
+from graphflow.analysis.syntax import last_name, syntax_of
 from graphflow.analysis.user_code import is_users, short_place
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
@@ -73,12 +75,24 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
     if isinstance(error.obj, ModuleType):
         return _where(error.name, error.obj.__name__)
     if isinstance(error.obj, tuple) and (path := _path_of(error.name, line_of(frames))):
-        return f"{path} is a tuple because of the comma after its value: remove the comma"
+        return _of_tuple(path, users[-1])
     if isinstance(error.obj, (FunctionType, MethodType)) and (path := _path_of(error.name, line_of(frames))):
         if error.name in ("cancel", "reset", "destroy"):
             return _of_callback(path, error.name, users[-1])
         return f"{path} is a function: call it, as in {path}().{error.name}"
     return _inside_method(error.name, type(error.obj))
+
+
+def _of_tuple(path: str, frame: FrameType) -> str:
+    """Explain why a name stands for a tuple, if the source shows that."""
+    for node in ast.walk(syntax_of(frame.f_code.co_filename).module):
+        match node:
+            case ast.Assign(targets=[target], value=value) if ast.unparse(target) == path:
+                if isinstance(value, ast.Tuple) and len(value.elts) == 1:
+                    return f"{path} is a tuple because of the comma after its value: remove the comma"
+                if isinstance(value, ast.Call) and last_name(value.func) == "wait_for_message":
+                    return f"wait_for_message returns whether a message came, too: write ok, {path} = ..."
+    return ""
 
 
 def _inside_method(name: str, cls: type) -> str:

@@ -202,6 +202,13 @@ def test_a_remap_that_cannot_be(machine: Machine, words: list[str], told: str) -
     assert told in machine.run("run", "talker", "--ros-args", *words, code=2)
 
 
+def test_a_launch_file(machine: Machine, tmp_path: Path) -> None:
+    """Running it would only define a function: the error names the verb that starts it."""
+    file = tmp_path / "robot.launch.py"
+    file.write_text("def generate_launch_description():\n    pass\n")
+    assert f"is a launch file; run it with: graphflow launch {file}" in machine.run("run", str(file), code=2)
+
+
 def test_a_prefix_that_is_none(machine: Machine) -> None:
     """An invalid prefix is an error with the reason."""
     assert "No closing quotation" in machine.look("run", "--prefix", "a'b", "demo_nodes_cpp", "talker", code=2)

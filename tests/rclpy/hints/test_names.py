@@ -72,6 +72,11 @@ LAMPS = [
         "def tick(self):\n    self.pub = self.create_rate(1.0),\n    self.pub.publish(1)",
         "self.pub is a tuple because of the comma after its value: remove the comma",
     ),
+    (
+        "def tick(self):\n    from rclpy.wait_for_message import wait_for_message\n"
+        "    pose = wait_for_message(Int32, self, '/count', time_to_wait=0.01)\n    pose.x",
+        "wait_for_message returns whether a message came, too: write ok, pose = ...",
+    ),
     ("def tick(self):\n    r = self.hear\n    r.sum", "r is a function: call it, as in r().sum"),
     (
         "def tick(self):\n    self.t = self.create_timer(9.0, self.hear)\n    self.hear.cancel()",

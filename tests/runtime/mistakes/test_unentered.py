@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import inspect
 
 import pytest
 
-from graphflow import ActionClient, Node, running
+from graphflow import ActionClient, Node, running, timer
 from graphflow.errors import DeclarationError
 from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.runtime.context import Context
 from graphflow.testing import Graph
+from graphflow.testing.clock import ManualClock
+from graphflow.transport.memory import Network
 
 
 class Asker(Node):
@@ -55,3 +59,24 @@ def test_what_is_no_node(given: Node, told: str) -> None:
     """Is refused at the call."""
     with pytest.raises(DeclarationError, match=told):
         running(given)
+
+
+class Ticking(Node):
+    @timer(1.0)
+    async def tick(self) -> None: ...
+
+
+async def test_a_block_that_ends_at_once(graphflow_runner: asyncio.Runner, caplog: pytest.LogCaptureFixture) -> None:
+    """Its nodes have handlers, which cannot run meanwhile."""
+    context = Context(Network().session(asyncio.get_running_loop()), clock=ManualClock())
+    async with running(Ticking(), context=context):
+        line = inspect.currentframe().f_lineno - 1  # type: ignore[union-attr]
+    async with running(Ticking(), context=context):
+        await asyncio.sleep(0)
+    async with running(Asker(), context=context):
+        pass
+    with pytest.raises(ValueError, match="an own error"):
+        async with running(Ticking(), context=context):
+            raise ValueError("an own error")
+    [text] = caplog.messages
+    assert text.startswith(f"{__file__}:{line}: this block awaits nothing, so that no handler of ticking runs; end it")

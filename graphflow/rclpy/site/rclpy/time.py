@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, overload
 
+from graphflow.times import warn_of_two_clocks
 from rclpy.clock_type import ClockType
 from rclpy.constants import S_TO_NS
 from rclpy.duration import Duration
@@ -70,6 +71,7 @@ class Time:
     def __sub__(self, other: Time | Duration) -> Time | Duration:
         if isinstance(other, Time):
             self._refuse_other_clock(other, "Can't subtract times with different clock types")
+            warn_of_two_clocks(self._nanoseconds, other.nanoseconds)
             return Duration(nanoseconds=self._nanoseconds - other.nanoseconds)
         if not isinstance(other, Duration):
             return NotImplemented
@@ -80,7 +82,11 @@ class Time:
 
     def _refuse_other_clock(self, other: Time, text: str = "Can't compare times with different clock types") -> None:
         if self._clock_type != other.clock_type:
-            raise TypeError(text)
+            error = TypeError(text)
+            if ClockType.SYSTEM_TIME in (self._clock_type, other.clock_type):
+                way = "self.get_clock().now(), or Time(..., clock_type=self.get_clock().clock_type)"
+                error.add_note(f"note: Time() is of the system's clock, and a node has one of its own: write {way}")
+            raise error
 
     # Equality raises for another clock type, too, as in rclpy: False would hide the mistake.
     def __eq__(self, other: object) -> bool:

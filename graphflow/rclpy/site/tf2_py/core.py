@@ -20,6 +20,9 @@ from rclpy.logging import get_logger
 from rclpy.time import Time
 from tf2_py.exceptions import InvalidArgumentException, TransformException, in_words_of_tf2
 
+DEFAULT_AUTHORITY = "default_authority"
+"""The name that tf2 gives an unknown sender."""
+
 
 def nanoseconds(time: Any) -> int:
     """Convert an rclpy time, or a message's, to nanoseconds."""
@@ -52,11 +55,11 @@ class BufferCore:
         self._graphflow_authorities: dict[str, str] = {}
         self._graphflow_lock = threading.Lock()
 
-    def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+    def set_transform(self, transform: TransformStamped, authority: str = DEFAULT_AUTHORITY) -> None:
         """Add a transform; an invalid one is dropped and logged."""
         self._graphflow_put(transform, authority, is_static=False)
 
-    def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+    def set_transform_static(self, transform: TransformStamped, authority: str = DEFAULT_AUTHORITY) -> None:
         """Add a transform that holds for all times."""
         self._graphflow_put(transform, authority, is_static=True)
 
@@ -74,8 +77,10 @@ class BufferCore:
             if is_kept:
                 self._graphflow_authorities[frame] = authority
         if not is_kept:
-            text = f"transform of {frame!r} from {authority!r} is dropped: it is too old, or the buffer is full"
-            _logger(frame).warning(text, throttle_duration_sec=1.0)
+            sender = "" if authority == DEFAULT_AUTHORITY else f" from {authority!r}"
+            text = f"transform of {frame!r}{sender} is dropped: it is too old, or the buffer is full"
+            way = "if a simulation began again, set use_sim_time, or restart this node"
+            _logger(frame).warning(f"{text}; {way}", throttle_duration_sec=1.0)
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: object) -> TransformStamped:
         """Return the transform that takes coordinates in `source_frame` to those in `target_frame`.
@@ -131,10 +136,9 @@ class BufferCore:
             raise in_words_of_tf2(error) from None
 
     def clear(self) -> None:
-        """Forget all transforms."""
+        """Forget all transforms but the static ones."""
         with self._graphflow_lock:
             self._graphflow_frames.clear()
-            self._graphflow_authorities.clear()
 
     def all_frames_as_string(self) -> str:
         """Return a line for each frame that has a parent."""

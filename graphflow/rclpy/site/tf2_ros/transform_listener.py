@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tf2_msgs.msg import TFMessage
 from tf2_py import BufferCore
 
+from graphflow.tf.frames import BACK, seconds
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
 from rclpy.impl.nodes import internals_of
@@ -45,6 +46,7 @@ class TransformListener:
         tf_static_topic: str = DEFAULT_STATIC_TF_TOPIC,
     ) -> None:
         self.buffer, self.node = buffer, node
+        self._latest_ns = 0
         if isinstance(buffer, Buffer):
             internals_of(buffer).is_filled = True
         self.group = ReentrantCallbackGroup()
@@ -75,8 +77,18 @@ class TransformListener:
 
     def callback(self, data: TFMessage) -> None:
         """Add the transforms of a `/tf` message."""
+        self._clear_after_jump()
         for transform in data.transforms:
             self.buffer.set_transform(transform)
+
+    def _clear_after_jump(self) -> None:
+        """Clear the buffer if the node's time has jumped back, as when a simulation or a bag begins again."""
+        now, before = self.node.get_clock().now().nanoseconds, self._latest_ns
+        self._latest_ns = now
+        if now < before - BACK:
+            back = seconds(before - now)
+            self.node.get_logger().info(f"the time has jumped back by {back} s; only static transforms are kept")
+            self.buffer.clear()
 
     def static_callback(self, data: TFMessage) -> None:
         """Add the transforms of a `/tf_static` message."""

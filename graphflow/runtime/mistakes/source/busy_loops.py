@@ -32,7 +32,10 @@ def _without_pause(loop: ast.While) -> Iterator[tuple[int, str]]:
                 text = "this loop turns without a pause and takes a whole core"
                 yield loop.lineno, f"{text}; leave out timeout_sec, so that spin_once waits for a callback"
         case [ast.Pass()] if isinstance(loop.test, (ast.Compare, ast.UnaryOp)):
-            yield loop.lineno, "this loop turns without a pause, and nothing else runs in its thread; wait with an event"
+            yield (
+                loop.lineno,
+                "this loop turns without a pause, and nothing else runs in its thread; wait with an event",
+            )
 
 
 def _between_spins(loop: ast.While) -> Iterator[tuple[int, str]]:

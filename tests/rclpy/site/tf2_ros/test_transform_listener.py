@@ -6,13 +6,16 @@ import threading
 import time
 
 import pytest
+from tf2_msgs.msg import TFMessage
 from tf2_py.core import message
 from tf2_ros import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformException, TransformListener
 
 import rclpy
 from graphflow.tf.poses import Pose
+from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.time import Time
 from tests.until import until
 
@@ -59,3 +62,19 @@ def test_only_what_does_not_move(node: Node) -> None:
     assert node.count_subscribers("/tf") == 0
     with pytest.raises(TransformException):
         listener.buffer.lookup_transform_core("a", "b", Time())
+
+
+def test_time_that_jumps_back(node: Node) -> None:
+    """The buffer is cleared, except for the static transforms."""
+    node.set_parameters([Parameter("use_sim_time", value=True)])
+    buffer = Buffer()
+    listener = TransformListener(buffer, node)
+    clock = node.get_clock()
+    listener.static_callback(TFMessage(transforms=[at("base", "laser", 0.5)]))
+    for second in (100, 5):
+        clock.set_ros_time_override(Time(seconds=second, clock_type=ClockType.ROS_TIME))
+        moved = message(Pose((float(second), 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)), "odom", "base", second * S)
+        listener.callback(TFMessage(transforms=[moved]))
+    found = buffer.lookup_transform("odom", "laser", Time())
+    assert found.transform.translation.x == 5.5
+    assert found.header.stamp.sec == 5

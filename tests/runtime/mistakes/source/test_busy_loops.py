@@ -12,7 +12,10 @@ from graphflow.runtime.mistakes.source.busy_loops import busy_loops
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        ("while self.pose is None:\n    await asyncio.sleep(0)", "write await asyncio.sleep(0.05), or await an asyncio"),
+        (
+            "while self.pose is None:\n    await asyncio.sleep(0)",
+            "write await asyncio.sleep(0.05), or",
+        ),
         ("while not done():\n    rclpy.spin_once(node, timeout_sec=0)", "leave out timeout_sec"),
         ("while rclpy.ok():\n    rclpy.spin_once(node, timeout_sec=0.0)", "takes a whole core"),
         ("while self.pose is None:\n    pass", "nothing else runs in its thread"),
