@@ -31,11 +31,9 @@ def _without_pause(loop: ast.While) -> Iterator[tuple[int, str]]:
             if any(_number(time) == 0 for time in given):
                 text = "this loop turns without a pause and takes a whole core"
                 yield loop.lineno, f"{text}; leave out timeout_sec, so that spin_once waits for a callback"
-        case [ast.Pass()] if isinstance(loop.test, (ast.Compare, ast.UnaryOp)):
-            yield (
-                loop.lineno,
-                "this loop turns without a pause, and nothing else runs in its thread; wait with an event",
-            )
+        case [ast.Pass()] if _only_reads(loop.test):
+            text = "this loop turns without a pause, and nothing else runs in its thread"
+            yield loop.lineno, f"{text}; wait with an event"
 
 
 def _between_spins(loop: ast.While) -> Iterator[tuple[int, str]]:
@@ -49,6 +47,11 @@ def _between_spins(loop: ast.While) -> Iterator[tuple[int, str]]:
                 text = f"spin_once runs one callback, and this sleep keeps the next one waiting {pause:g} s"
                 way = f"write rclpy.spin(node), and a timer for the work of each {pause:g} s"
                 yield call.lineno, f"{text}: messages grow old and are lost; {way}"
+
+
+def _only_reads(test: ast.expr) -> bool:
+    """Whether a condition has no effect and can change."""
+    return not isinstance(test, ast.Constant) and not any(isinstance(part, ast.Call) for part in ast.walk(test))
 
 
 def _number(value: ast.expr) -> float | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import FunctionNode, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, walk
 
 _SETUP = ("__init__", "on_start", "on_configure")
 
@@ -17,7 +17,7 @@ def reused_objects(code: ast.AST) -> Iterator[tuple[int, str]]:
     """
     found: dict[int, str] = {}
     for node in ast.walk(code):
-        if isinstance(node, ast.ClassDef):
+        if isinstance(node, ast.ClassDef) and any(last_name(base).endswith("Node") for base in node.bases):
             handlers = [m for m in node.body if isinstance(m, FunctionNode) and m.name not in _SETUP]
             for handler in handlers:
                 found |= _appended(handler, handlers, of_node=True)
@@ -64,6 +64,8 @@ def _made_by(node: ast.AST) -> Iterator[str]:
     match node:
         case ast.Name(ctx=ast.Store()) | ast.Attribute(ctx=ast.Store()):
             yield ast.unparse(node)
+        case ast.ExceptHandler(name=str(name)):
+            yield name
         case ast.Call(func=ast.Attribute(value=emptied, attr="clear" | "pop" | "popleft")):
             yield ast.unparse(emptied)
         case ast.Compare(left=one, ops=[ast.In() | ast.NotIn()]):

@@ -18,7 +18,7 @@ from graphflow.runtime.mistakes.source.busy_loops import busy_loops
         ),
         ("while not done():\n    rclpy.spin_once(node, timeout_sec=0)", "leave out timeout_sec"),
         ("while rclpy.ok():\n    rclpy.spin_once(node, timeout_sec=0.0)", "takes a whole core"),
-        ("while self.pose is None:\n    pass", "nothing else runs in its thread"),
+        ("while not self.is_done:\n    pass", "nothing else runs in its thread"),
         ("while rclpy.ok():\n    rclpy.spin_once(node)\n    time.sleep(1.0)", "keeps the next one waiting 1 s"),
     ],
 )
@@ -37,7 +37,8 @@ def test_loops_that_cost_too_much(code: str, told: str) -> None:
         "while rclpy.ok():\n    rclpy.spin_once(node, timeout_sec=0.1)\n    time.sleep(0.05)",
         "while rclpy.ok():\n    step()\n    rclpy.spin_once(node, timeout_sec=0)",
         "while True:\n    node.step()\n    time.sleep(1.0)",
-        "while read():\n    pass",
+        "while read() != b'':\n    pass",
+        "while True:\n    pass",
     ],
 )
 def test_loops_with_work(code: str) -> None:

@@ -47,6 +47,7 @@ def test_the_same_object_each_time(code: str, told: str) -> None:
         "for x in xs:\n    found.append(point)",
         "for x in xs:\n    if near(x):\n        best.x = x\n        found.append(best)\n        break",
         "for x in xs:\n    if point not in found:\n        point.x = x\n        found.append(point)",
+        "for x in xs:\n    try:\n        x()\n    except E as e:\n        e.x = x\n        found.append(e)",
         "while ok():\n    node.parent = last\n    found.append(node)\n    node = node.next",
         _HANDLER.format("self.path.poses.clear(); self.here.x = pose.x; self.path.poses.append(self.here)"),
         _HANDLER.format("self.here.x = pose.x; self.path.append(self.here)\n    def more(self): self.here = Pose()"),
