@@ -12,7 +12,7 @@ import asyncio
 import math
 from pathlib import Path
 
-from graphflow import GraphFileError, Node, Param, service
+from graphflow import GraphFileError, InvalidName, Node, Param, service
 from graphflow.msgs.geometry_msgs.msg import Point, Pose, Quaternion
 from graphflow.msgs.simulation_interfaces.msg import Result, SimulationState, SimulatorFeatures
 from graphflow.msgs.simulation_interfaces.srv import (
@@ -28,7 +28,7 @@ from graphflow.msgs.simulation_interfaces.srv import (
     StepSimulation,
 )
 from graphflow.msgs.std_msgs.msg import Header
-from graphflow.simulator import SimulatedRobot, Simulation, robot_model, spawned
+from graphflow.simulator import EDGE, SimulatedRobot, Simulation, robot_model, spawned
 
 from .robot_topics import RobotTopics
 
@@ -50,6 +50,8 @@ FEATURES = [
     SimulatorFeatures.STEP_SIMULATION_SINGLE,
     SimulatorFeatures.STEP_SIMULATION_MULTIPLE,
 ]
+FLAT = 0.1
+"""Height in metres, and x and y of a rotation, that count as those of a robot that stands."""
 OK = Result(result=Result.RESULT_OK)
 
 
@@ -95,11 +97,9 @@ class SimulationServices(Node):
     @service(SpawnEntity, "~/spawn_entity")
     async def spawn_entity(self, request: SpawnEntity.Request) -> SpawnEntity.Response:
         """Add a robot: `uri` is a model such as burger, or a robot file."""
-        pose = request.initial_pose.pose
-        place = planar(pose)
-        if place is None:
-            text = "the initial pose has a number that is not finite"
-            return SpawnEntity.Response(result=failed(SpawnEntity.Response.INVALID_POSE, text))
+        place = planar(request.initial_pose.pose)
+        if isinstance(place, str):
+            return SpawnEntity.Response(result=failed(SpawnEntity.Response.INVALID_POSE, place))
         name = request.name or (Path(request.uri).stem if request.allow_renaming else "")
         taken = bool(name) and name in self.simulation.robots
         if taken and request.allow_renaming:
@@ -115,8 +115,10 @@ class SimulationServices(Node):
             return SpawnEntity.Response(result=failed(SpawnEntity.Response.RESOURCE_PARSE_ERROR, str(error)))
         except FileNotFoundError as error:
             return SpawnEntity.Response(result=failed(SpawnEntity.Response.NO_RESOURCE, str(error)))
-        except ValueError as error:
+        except InvalidName as error:
             return SpawnEntity.Response(result=failed(SpawnEntity.Response.NAME_INVALID, str(error)))
+        except ValueError as error:
+            return SpawnEntity.Response(result=failed(SpawnEntity.Response.INVALID_POSE, str(error)))
         self.announce(name)
         return SpawnEntity.Response(result=OK, entity_name=name)
 
@@ -152,10 +154,12 @@ class SimulationServices(Node):
         robot, place = self.entity(request.entity), planar(request.state.pose)
         if robot is None:
             return SetEntityState.Response(result=self.missing(request.entity))
-        if place is None:
-            text = "the pose has a number that is not finite"
-            return SetEntityState.Response(result=failed(SetEntityState.Response.INVALID_POSE, text))
-        robot.place(*place)
+        if isinstance(place, str):
+            return SetEntityState.Response(result=failed(SetEntityState.Response.INVALID_POSE, place))
+        try:
+            self.simulation.teleport(robot.placed.name, *place)
+        except ValueError as error:
+            return SetEntityState.Response(result=failed(SetEntityState.Response.INVALID_POSE, str(error)))
         return SetEntityState.Response(result=OK)
 
     @service(ResetSimulation, "~/reset_simulation")
@@ -202,8 +206,14 @@ class SimulationServices(Node):
         return GetSimulatorFeatures.Response(features=features)
 
 
-def planar(pose: Pose) -> tuple[float, float, float] | None:
-    """Return x, y and yaw of a pose; None if a number is not finite. A rotation of zeros is none."""
+def planar(pose: Pose) -> tuple[float, float, float] | str:
+    """Return x, y and yaw of a pose, or the reason why no robot can have it. A rotation of zeros is none."""
     at, turn = pose.position, pose.orientation
     yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
-    return (at.x, at.y, yaw) if math.isfinite(at.x + at.y + yaw) else None
+    if not math.isfinite(at.x + at.y + at.z + yaw):
+        return "the pose has a number that is not finite"
+    if max(abs(at.x), abs(at.y)) > EDGE:
+        return f"({at.x:g}, {at.y:g}) lies beyond the end of the world, {EDGE:g} m from its middle"
+    if abs(at.z) > FLAT or max(abs(turn.x), abs(turn.y)) > FLAT:
+        return "a robot stands upright on the floor: give z: 0, and a rotation about z only"
+    return at.x, at.y, yaw

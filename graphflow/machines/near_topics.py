@@ -16,6 +16,8 @@ CUTOFF = 0.75
 COMPARED = 500
 """Names that one is compared with, at most: other processes announce any number, and each takes up to 0.1 ms."""
 
+_OF_SENSORS = ("sensor_msgs/", "nav_msgs/")
+
 ByType = Mapping[tuple[Kind, str], list[Entity]]
 """Endpoints by kind and type."""
 
@@ -52,7 +54,7 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
     near = [name for name in islice(names, COMPARED) if is_near(own.name, name)]
     best = nearest(own.name, sorted(near), cutoff=0.0)
     if best is None:
-        return ""
+        return _only_one_of_type(own, names)
     first, *more = sorted({e.node_name for e in others if e.name == best and not is_hidden(e.node_name)})
     who = f"{first} and {len(more)} more" if more else first
     if own.kind is Kind.PUBLISHER:
@@ -60,6 +62,22 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
     else:
         verbs, end = "publishes", f"which {who} publish{'' if more else 'es'}"
     return f"nobody {verbs} {own.name} [{own.type}]; did you mean {best!r}, {end}?"
+
+
+def _only_one_of_type(own: Entity, names: Iterable[str]) -> str:
+    """Return a message that a subscription's topic has no publisher, while one with an added word has: the only one.
+
+    Words are added on purpose, too, as in `cmd_vel_nav`; for the only sensor of its type, it is more likely a slip.
+    """
+    only = list(islice(names, 2))
+    if own.kind is not Kind.SUBSCRIPTION or len(only) != 1 or not own.type.startswith(_OF_SENSORS):
+        return ""
+    *place, last = own.name.split("/")
+    *other_place, other_last = only[0].split("/")
+    ours, theirs = {*last.split("_")}, {*other_last.split("_")}
+    if place != other_place or not (ours > theirs or theirs > ours):
+        return ""
+    return f"nobody publishes {own.name} [{own.type}]; the only topic of this type is {only[0]!r}"
 
 
 def _is_of_one_node(entity: Entity, other: Entity) -> bool:

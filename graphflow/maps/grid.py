@@ -85,6 +85,11 @@ class GridMap:
         found: NDArray[np.float64] = inside @ np.array([[cosine, sine], [-sine, cosine]]) + np.array([x, y])
         return found
 
+    def covers(self, x: float, y: float) -> bool:
+        """Whether a place is on the map."""
+        [[row, column]] = self.indices(np.array([[x, y]]))
+        return 0 <= row < self.cells.shape[0] and 0 <= column < self.cells.shape[1]
+
     def at(self, x: float, y: float) -> int:
         """Return the value of the cell at a place in metres; `UNKNOWN` outside the map."""
         row, column = self.indices(np.array([x, y], dtype=np.float64))

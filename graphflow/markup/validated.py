@@ -45,7 +45,22 @@ def _problem(src: Source, fault: Fault, kind: type[BaseModel]) -> Problem:
         return Problem(src.place(path[:-1]), f"the key {path[-1]!r} is missing")
     if fault["type"] == "value_error" and "ctx" in fault:
         return Problem(src.place(path), str(fault["ctx"]["error"]))
-    return Problem(src.place(path), f"{fault['input']!r}: {fault['msg'].lower()}")
+    return Problem(src.place(path), f"{fault['input']!r}: {_reason(fault)}")
+
+
+def _reason(fault: Fault) -> str:
+    """Return what is wrong with a value, in a user's words."""
+    ctx = fault.get("ctx", {})
+    match fault["type"]:
+        case "too_short":
+            return f"has {ctx['actual_length']} of at least {ctx['min_length']} items"
+        case "too_long":
+            return f"has {ctx['actual_length']} of at most {ctx['max_length']} items"
+        case "list_type":
+            return "a list belongs here: write each item in a line of its own, after a dash"
+        case "model_type" | "dict_type":
+            return "keys with values belong here, in lines of their own or in braces"
+    return fault["msg"].lower()
 
 
 def _model_at(kind: type[BaseModel], path: tuple[int | str, ...]) -> type[BaseModel]:

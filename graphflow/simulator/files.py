@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from graphflow.errors import GraphFileError, Problem
+from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.markup import source
 from graphflow.markup.validated import validated
 from graphflow.names import nearest
@@ -67,6 +68,13 @@ def read_world(file: Path) -> tuple[World, dict[str, Robot]]:
     if problems:
         raise GraphFileError(problems)
     return world, robots
+
+
+def misplaced(file: Path, faults: Sequence[str]) -> list[Problem]:
+    """Return the faults of the places of a world's robots, "" for none, as problems with their places in its file."""
+    src = None if file.suffix in SCENES else source.read_file(file, str(file))
+    places = [Place(str(file)) if src is None else src.place(("robots", i, "at")) for i in range(len(faults))]
+    return [Problem(place, fault) for place, fault in zip(places, faults, strict=True) if fault]
 
 
 def _with_a_robot(**parts: object) -> World:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pydantic import ValidationError
-
-from graphflow.errors import GraphflowError
+from graphflow.errors import GraphFileError, GraphflowError
 from graphflow.introspect.installation import requirement
-from graphflow.simulator.files import find, read_robot, read_world
+from graphflow.maps import read_map
+from graphflow.simulator.files import find, misplaced, read_robot, read_world
+from graphflow.names import check_node_name
 from graphflow.simulator.robot import Robot
-from graphflow.simulator.world import Placed
+from graphflow.simulator.world import Placed, World
 
 if TYPE_CHECKING:
     from graphflow.simulator.simulation import Simulation
@@ -36,12 +36,31 @@ def simulate(world: str, seed: int = 0, model: str = "") -> Simulation:
             raise
         raise GraphflowError(f"the simulator needs MuJoCo: pip install {requirement('sim')}") from None
     try:
-        described, robots = read_world(find(world, "worlds", Path.cwd()))
+        file = find(world, "worlds", Path.cwd())
+        described, robots = read_world(file)
         if model:
             robots = dict.fromkeys(robots, read_robot(find(model, "robots", Path.cwd())))
-        return Simulation(described, robots, seed)
+        made = Simulation(described, robots, seed)
     except (FileNotFoundError, ValueError) as error:
         raise GraphflowError(str(error)) from None
+    faults = [_fault_of(made, placed, described) for placed in described.robots]
+    if any(faults):
+        raise GraphFileError(misplaced(file, faults))
+    return made
+
+
+def _fault_of(made: Simulation, placed: Placed, world: World) -> str:
+    """Return the reason why a robot cannot start where it is placed; "" if it can."""
+    x, y = placed.at
+    if found := made.obstruction(placed.name):
+        return f"the robot starts at ({x:g}, {y:g}), inside {found}"
+    if world.map is not None:
+        grid = read_map(world.map.file)
+        if not grid.covers(x, y):
+            (left, bottom, _), (width, height) = grid.origin, grid.size
+            reach = f"from ({left:g}, {bottom:g}) to ({left + width:g}, {bottom + height:g})"
+            return f"the robot starts at ({x:g}, {y:g}), outside the map, which reaches {reach}"
+    return ""
 
 
 def robot_model(name: str) -> Robot:
@@ -55,8 +74,6 @@ def robot_model(name: str) -> Robot:
 
 
 def spawned(name: str, x: float, y: float, yaw: float) -> Placed:
-    """Return a place for a robot of a name. Raises ValueError if that is not a node's name."""
-    try:
-        return Placed(name=name, at=[x, y], yaw=yaw)
-    except ValidationError as error:
-        raise ValueError("; ".join(str(fault["msg"]) for fault in error.errors())) from None
+    """Return a place for a robot of a name. Raises InvalidName if that is not a node's name."""
+    check_node_name(name)
+    return Placed(name=name, at=[x, y], yaw=yaw)

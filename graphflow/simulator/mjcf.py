@@ -71,17 +71,17 @@ def _obstacles(parent: Element, world: World) -> None:
     if world.map is not None:
         grid = read_map(world.map.file)
         turn, up = _text([0, 0, grid.origin[2]]), world.map.height / 2
-        for part in rectangles(grid):
+        for index, part in enumerate(rectangles(grid)):
             half, place = [part.width / 2, part.height / 2, up], [part.x, part.y, up]
-            SubElement(parent, "geom", type="box", size=_text(half), pos=_text(place), euler=turn, rgba=WALL)
-    for wall in world.walls:
-        for (x, y), (u, v) in _segments(wall):
+            box = {"name": f"map{index}", "type": "box", "rgba": WALL}
+            SubElement(parent, "geom", box, size=_text(half), pos=_text(place), euler=turn)
+    for number, wall in enumerate(world.walls):
+        for index, ((x, y), (u, v)) in enumerate(_segments(wall)):
             length, yaw = math.hypot(u - x, v - y), math.atan2(v - y, u - x)
             half = [length / 2 + wall.thickness / 2, wall.thickness / 2, wall.height / 2]
             place = [(x + u) / 2, (y + v) / 2, wall.height / 2]
-            SubElement(
-                parent, "geom", type="box", size=_text(half), pos=_text(place), euler=_text([0, 0, yaw]), rgba=WALL
-            )
+            box = {"name": f"wall{number}.{index}", "type": "box", "rgba": WALL}
+            SubElement(parent, "geom", box, size=_text(half), pos=_text(place), euler=_text([0, 0, yaw]))
     for index, box in enumerate(world.boxes):
         length, width, height = box.size
         solid = {"type": "box", "size": _text([length / 2, width / 2, height / 2])}
@@ -92,7 +92,16 @@ def _obstacles(parent: Element, world: World) -> None:
     for index, mover in enumerate(world.moving):
         body = SubElement(parent, "body", name=mover_name(index), mocap="true", pos=_text([*mover.path[0], 0.0]))
         size = _text([mover.radius, mover.height / 2])
-        SubElement(body, "geom", type="cylinder", size=size, pos=_text([0, 0, mover.height / 2]), rgba=MOVING)
+        upright = {"name": mover_name(index), "type": "cylinder", "rgba": MOVING}
+        SubElement(body, "geom", upright, size=size, pos=_text([0, 0, mover.height / 2]))
+
+
+KINDS = {"map": "a wall of the map", "wall": "a wall", "box": "a box", "cylinder": "a cylinder", "mover": "an obstacle"}
+
+
+def obstacle(name: str) -> str:
+    """Describe an obstacle by the name of its geometry, such as `box3`."""
+    return KINDS.get(name.rstrip("0123456789."), "a part of the scene")
 
 
 def mover_name(index: int) -> str:
@@ -109,9 +118,9 @@ def _solid(parent: Element, name: str, place: Sequence[float], yaw: float, mass:
     if mass:  # it can be pushed
         body = SubElement(parent, "body", name=name, pos=_text(place), euler=_text([0, 0, yaw]))
         SubElement(body, "freejoint")
-        SubElement(body, "geom", {**solid, "mass": f"{mass}", "friction": "0.6 0.005 0.0001", "rgba": LOOSE})
+        SubElement(body, "geom", {**solid, "name": name, "mass": f"{mass}", "friction": "0.6 0.005 0.0001", "rgba": LOOSE})
     else:
-        SubElement(parent, "geom", {**solid, "rgba": OBSTACLE, "pos": _text(place), "euler": _text([0, 0, yaw])})
+        SubElement(parent, "geom", {**solid, "name": name, "rgba": OBSTACLE, "pos": _text(place), "euler": _text([0, 0, yaw])})
 
 
 def _robot(

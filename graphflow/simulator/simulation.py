@@ -12,13 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from graphflow.simulator.cameras import Cameras
-from graphflow.simulator.mjcf import FLOOR, STEPS, TICK, model, mover_name
+from graphflow.simulator.mjcf import FLOOR, STEPS, TICK, model, mover_name, obstacle
 from graphflow.simulator.robot import Camera, Lidar, Robot
 from graphflow.simulator.sensors import Charge, Odometry, noisy
 from graphflow.simulator.urdf import described
 from graphflow.simulator.world import EDGE, Mover, Placed, World
 from graphflow.tf.planar import Pose2D
 
+INSIDE = 0.01
+"""Metres by which two bodies may overlap, since contacts are a little soft."""
 FALLEN = 0.5
 """Cosine of the tilt beyond which a robot counts as fallen."""
 
@@ -94,6 +96,10 @@ class SimulatedRobot:
         self._motors = model.actuator(f"{own}/left").id, model.actuator(f"{own}/right").id
         self._geoms = frozenset(i for i in range(model.ngeom) if model.body_rootid[model.geom_bodyid[i]] == self._body)
         self._beams = None if self.robot.lidar is None else _beams(self.robot.lidar)
+
+    def has(self, geom: int) -> bool:
+        """Whether a geometry of the model is part of it."""
+        return geom in self._geoms
 
     def command(self, linear: float, angular: float) -> None:
         """Set the wanted velocity in m/s and rad/s, within the robot's limits, until its commands time out.
@@ -309,16 +315,44 @@ class Simulation:
         pairs = contacts.geom
         return frozenset(pairs[(pairs != self._floor).all(axis=1)].ravel().tolist())
 
+    def obstruction(self, name: str) -> str:
+        """Describe what the body of a robot is inside of; "" if nothing."""
+        own, contacts = self.robots[name], self._data.contact
+        for pair, distance in zip(contacts.geom.tolist(), contacts.dist.tolist(), strict=True):
+            others = [geom for geom in pair if not own.has(geom)]
+            if distance < -INSIDE and len(others) == 1 and others[0] != self._floor:
+                robots = [r.placed.name or r.robot.name for r in self.robots.values() if r.has(others[0])]
+                return f"the robot {robots[0]!r}" if robots else obstacle(self._model.geom(others[0]).name)
+        return ""
+
+    def teleport(self, name: str, x: float, y: float, yaw: float) -> None:
+        """Put a robot at a place, at rest; its odometry does not know.
+
+        Raises:
+            ValueError: Something else is there; the robot stays where it is.
+        """
+        robot, before = self.robots[name], self._data.qpos.copy()
+        moving = self._data.qvel.copy()
+        robot.place(x, y, yaw)
+        mujoco.mj_forward(self._model, self._data)
+        if found := self.obstruction(name):
+            self._data.qpos[:], self._data.qvel[:] = before, moving
+            mujoco.mj_forward(self._model, self._data)
+            raise ValueError(f"({x:g}, {y:g}) is inside {found}")
+
     def spawn(self, placed: Placed, robot: Robot) -> None:
         """Add a robot.
 
         Raises:
-            ValueError: There is one of that name.
+            ValueError: There is one of that name, or something else is at its place.
         """
         if placed.name in self.robots:
             raise ValueError(f"there is a robot {placed.name!r} already")
         self._add(placed, robot)
         self._compile()
+        if found := self.obstruction(placed.name):
+            self.delete(placed.name)
+            raise ValueError(f"({placed.at[0]:g}, {placed.at[1]:g}) is inside {found}")
 
     def delete(self, name: str) -> None:
         """Take a robot out of the world. Raises KeyError if there is none of that name."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Self
 
-from pydantic import AfterValidator, Field, StrictStr, model_validator
+from pydantic import AfterValidator, Field, StrictStr, field_validator, model_validator
 
 from graphflow.errors import InvalidName
 from graphflow.names import check_node_name
@@ -144,33 +144,14 @@ class World(Model):
     friction: Positive = 1.0
     """Of the floor; on ice, below 0.1, wheels slip."""
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        for robot in self.robots:
-            solid = self.solid_at(*robot.at)
-            if solid:
-                name = f"the robot {robot.name!r}" if robot.name else "the robot"
-                raise ValueError(f"{name} starts at {robot.at}, inside {solid}")
-        names = [robot.name for robot in self.robots]
+    @field_validator("robots")
+    @classmethod
+    def _check_names(cls, robots: list[Placed]) -> list[Placed]:
+        names = [robot.name for robot in robots]
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"two robots are called {name!r}: give each a name of its own" if name else _UNNAMED)
-        return self
-
-    def solid_at(self, x: float, y: float) -> str:
-        """Describe the box or cylinder that contains a place; "" if none does."""
-        for box in self.boxes:
-            dx, dy = x - box.at[0], y - box.at[1]
-            along, across = (
-                dx * math.cos(box.yaw) + dy * math.sin(box.yaw),
-                dy * math.cos(box.yaw) - dx * math.sin(box.yaw),
-            )
-            if abs(along) < box.size[0] / 2 and abs(across) < box.size[1] / 2:
-                return f"the box at {box.at}"
-        for cylinder in self.cylinders:
-            if math.hypot(x - cylinder.at[0], y - cylinder.at[1]) < cylinder.radius:
-                return f"the cylinder at {cylinder.at}"
-        return ""
+        return robots
 
 
 _UNNAMED = "two robots have no name: their topics would be the same; give each a name"

@@ -95,3 +95,25 @@ def test_a_crowd_of_names() -> None:
     assert did_you_mean_topic(own, by_type([own, meant, *crowd], {TWIST}))
     assert did_you_mean_topic(own, by_type([own, *crowd, meant], {TWIST})) == ""
     assert did_you_mean_topic(own, by_type([own, long], {TWIST})) == ""
+
+
+SCAN = "sensor_msgs/msg/LaserScan"
+
+
+@pytest.mark.parametrize(
+    ("asked", "published", "type_", "is_told"),
+    [
+        ("/laser_scan", ["/scan"], SCAN, True),
+        ("/scan", ["/base_scan"], SCAN, True),
+        ("/laser_scan", ["/scan", "/rear"], SCAN, False),
+        ("/robot2/scan", ["/robot1/scan"], SCAN, False),
+        ("/left_scan", ["/right_scan"], SCAN, False),
+        ("/cmd_vel_nav", ["/cmd_vel"], TWIST, False),
+    ],
+)
+def test_the_only_sensor_of_its_type(asked: str, published: list[str], type_: str, is_told: bool) -> None:
+    """A subscription whose name has a word more or less than that of the only such topic is likely meant for it."""
+    own = endpoint(Kind.SUBSCRIPTION, "me", asked, type_)
+    there = by_type([own, *(endpoint(Kind.PUBLISHER, "robot", name, type_) for name in published)], {type_})
+    text = did_you_mean_topic(own, there)
+    assert text == (f"nobody publishes {asked} [{SCAN}]; the only topic of this type is {published[0]!r}" * is_told)

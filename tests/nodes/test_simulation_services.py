@@ -68,8 +68,9 @@ async def test_robots_come_and_go(graph: Graph) -> None:
         (
             {"name": "x", "initial_pose": PoseStamped(pose=at(math.nan, 0.0))},
             SpawnEntity.Response.INVALID_POSE,
-            "the initial pose has a number that is not finite",
+            "the pose has a number that is not finite",
         ),
+        ({"name": "x"}, SpawnEntity.Response.INVALID_POSE, "(0, 0) is inside the robot 'burger'"),
     ],
 )
 async def test_robots_that_are_refused(graph: Graph, request_: dict[str, Any], code: int, text: str) -> None:
@@ -84,10 +85,11 @@ async def test_robots_that_are_refused(graph: Graph, request_: dict[str, Any], c
 async def test_names_that_are_taken(graph: Graph) -> None:
     """They are refused, or changed where that is allowed."""
     await simulator(graph)
-    answers = [
-        await graph.call(SpawnEntity, "/simulator/spawn_entity", SpawnEntity.Request(name="a", allow_renaming=renaming))
-        for renaming in (False, False, True)
-    ]
+    answers = []
+    for x, renaming in ((1.0, False), (2.0, False), (3.0, True)):
+        pose = PoseStamped(pose=at(x, 0.0))
+        request = SpawnEntity.Request(name="a", allow_renaming=renaming, initial_pose=pose)
+        answers.append(await graph.call(SpawnEntity, "/simulator/spawn_entity", request))
     assert [answer.result.result for answer in answers] == [OK, SpawnEntity.Response.NAME_NOT_UNIQUE, OK]
     assert [answer.entity_name for answer in answers] == ["a", "", "a2"]
 
@@ -102,9 +104,28 @@ async def test_teleporting(graph: Graph) -> None:
     robot = node.simulation.robots[""]
     assert (robot.pose.x, robot.pose.y, robot.pose.yaw) == pytest.approx((2.0, -1.0, 0.7), abs=0.01)
     assert robot.odometry.x == pytest.approx(0.0, abs=0.01)
-    request = SetEntityState.Request(entity="burger", state=EntityState(pose=at(math.inf, 0.0)))
+
+
+@pytest.mark.parametrize(
+    ("pose", "text"),
+    [
+        (at(math.inf, 0.0), "a number that is not finite"),
+        (at(1e30, 0.0), "(1e+30, 0) lies beyond the end of the world, 100 m from its middle"),
+        (Pose(position=Point(z=0.3)), "a robot stands upright on the floor: give z: 0, and a rotation about z only"),
+        (Pose(orientation=Quaternion(x=1.0, w=0.0)), "a robot stands upright on the floor"),
+        (at(1.0, 0.0), "(1, 0) is inside the robot 'second'"),
+    ],
+)
+async def test_places_of_no_robot(graph: Graph, pose: Pose, text: str) -> None:
+    """The robot stays where it is."""
+    node = await simulator(graph)
+    spawn = SpawnEntity.Request(name="second", initial_pose=PoseStamped(pose=at(1.0, 0.0)))
+    await graph.call(SpawnEntity, "/simulator/spawn_entity", spawn)
+    request = SetEntityState.Request(entity="burger", state=EntityState(pose=pose))
     answer = await graph.call(SetEntityState, "/simulator/set_entity_state", request)
     assert answer.result.result == SetEntityState.Response.INVALID_POSE
+    assert text in answer.result.error_message
+    assert node.simulation.robots[""].pose.x == pytest.approx(0.0, abs=0.01)
 
 
 @pytest.mark.parametrize(

@@ -25,25 +25,9 @@ def test_worlds_have_bounds() -> None:
         ({"walls": [{"points": [[-2000, 0], [2000, 0]]}]}, "are these millimetres\\? 2000 mm are 2 m"),
         ({"robots": [{"at": [0, 101]}]}, r"\[0.0, 101.0\] lies beyond the end of the world, 100 m from its middle"),
         ({"robots": [{"yaw": 90}]}, "yaw is in radians; 90 degrees are 1.571"),
-        (
-            {"boxes": [{"at": [0, 0], "size": [1, 1, 1], "yaw": 0.5}], "robots": [{"at": [0.1, 0]}]},
-            r"the robot starts at \[0.1, 0.0\], inside the box at \[0.0, 0.0\]",
-        ),
-        (
-            {"cylinders": [{"at": [1, 1], "radius": 0.5}], "robots": [{"name": "a", "at": [1, 1.4]}]},
-            "the robot 'a' starts",
-        ),
     ],
 )
 def test_what_no_world_has(parts: dict[str, object], said: str) -> None:
-    """Other units than metres and radians, and robots inside obstacles."""
+    """Other units than metres and radians."""
     with pytest.raises(ValidationError, match=said):
         World.model_validate(parts)
-
-
-def test_robots_beside_obstacles() -> None:
-    """A place near a turned box is free."""
-    box = {"at": [0, 0], "size": [4, 0.2, 1], "yaw": 1.5708}
-    world = World.model_validate({"boxes": [box], "robots": [{"at": [1.0, 0.0]}]})
-    assert world.solid_at(0.0, 1.5) == "the box at [0.0, 0.0]"
-    assert world.solid_at(1.5, 0.0) == ""
