@@ -30,6 +30,8 @@ class MapServer(Node):
         self.maps = self.create_publisher(OccupancyGrid, self.topic_name, LATCHED)
         if self.yaml_filename:
             self.show(self.yaml_filename)
+        else:
+            self.log.warning("there is no map yet: start with -p yaml_filename:=house.yaml, or call load_map")
 
     def show(self, file: str) -> OccupancyGrid:
         """Read a map, and publish it. Raises GraphFileError."""

@@ -48,6 +48,9 @@ class RobotSimulator(SimulationServices):
         for name in self.simulation.robots:
             self.announce(name)
         self.log.info("world %s: %s", self.world, ", ".join(t.title for t in self.robots.values()) or "no robot")
+        if not self.robots:
+            text = "the world has no robot: add `robots: [{model: burger}]`, or call spawn_entity"
+            self.log.warning("%s", text)
         self.clock_due = Due(CLOCK_HZ)
         self.owed, self.before = 0.0, self.context.clock.monotonic_ns()
         self.in_trouble: set[str] = set()

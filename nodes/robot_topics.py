@@ -13,6 +13,7 @@ from graphflow.msgs.geometry_msgs.msg import Pose as PoseMessage
 from graphflow.msgs.nav_msgs.msg import Odometry
 from graphflow.msgs.sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from graphflow.msgs.std_msgs.msg import Bool, Header, String
+from graphflow.names import is_hidden
 from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, TransformBuffer
 
@@ -92,6 +93,14 @@ class RobotTopics:
         found = self._node.context.cache.topics().get(self.commands[0].name, [])
         for type_name in {TWIST, TWIST_STAMPED}.intersection(found) - self._takes:
             self._take(type_name)
+
+    def _warn_of_rivals(self) -> None:
+        """Warn of several nodes that steer the robot."""
+        senders = {sender.node_name for commands in self.commands for sender in commands.matched.values()}
+        nodes = sorted(name for name in senders if not is_hidden(name))
+        if len(nodes) > 1:
+            topic = self.commands[0].name
+            self._once(f"{' and '.join(nodes)} all publish {topic}, and the robot obeys the latest: stop all but one")
 
     @property
     def title(self) -> str:
@@ -184,6 +193,7 @@ class RobotTopics:
         if is_due:
             self._publish_battery(stamp)
             self._take_others()
+            self._warn_of_rivals()
 
     def _publish_odom(self, stamp: Time) -> None:
         odometry, model = self.robot.odometry, self.robot.robot

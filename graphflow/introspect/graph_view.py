@@ -97,6 +97,14 @@ class View:
         text = elsewhere(self.domain, self._client.tokens(NODES), COMMANDS)
         return text and f"; {text}"
 
+    def subscribed_only(self, topic: str) -> str:
+        """Return who subscribes to a topic that no node publishes, as `; /plot subscribes to it`; "" if one does."""
+        nodes = sorted({entity.node_name for entity in self.cache.endpoints(Kind.SUBSCRIPTION, topic)})
+        if not nodes or self.cache.endpoints(Kind.PUBLISHER, topic):
+            return ""
+        verb = "subscribes" if len(nodes) == 1 else "subscribe"
+        return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{_stopped()}"
+
     def service_types(self, name: str) -> list[str]:
         """Return the types of an offered service: several, if nodes announce different ones.
 

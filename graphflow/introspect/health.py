@@ -102,17 +102,21 @@ def _twins(view: View) -> Iterator[str]:
 
 
 def _rivals(cache: GraphCache) -> Iterator[str]:
-    """Report several nodes that steer one robot: it obeys the latest message."""
+    """Report several nodes that steer one robot, which obeys the latest message, or that set one time."""
     for name, types in sorted(cache.topics().items()):
-        if not _COMMANDS.isdisjoint(types):
-            nodes = sorted({e.node_name for e in cache.endpoints(Kind.PUBLISHER, name) if not is_hidden(e.node_name)})
-            if len(nodes) > 1:
-                several = " and ".join(nodes[:SHOWN])
-                yield f"{several} all publish {name}, and the robot obeys the latest: stop all but one, or remap"
+        effects = {effect for type_, effect in _EFFECTS.items() if type_ in types}
+        nodes = sorted({e.node_name for e in cache.endpoints(Kind.PUBLISHER, name) if not is_hidden(e.node_name)})
+        if effects and len(nodes) > 1:
+            several = " and ".join(nodes[:SHOWN])
+            yield f"{several} all publish {name}, and {effects.pop()}: stop all but one, or remap"
 
 
-_COMMANDS = {"geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"}
-"""Types of commands to a robot."""
+_EFFECTS = {
+    "geometry_msgs/msg/Twist": "the robot obeys the latest",
+    "geometry_msgs/msg/TwistStamped": "the robot obeys the latest",
+    "rosgraph_msgs/msg/Clock": "the time jumps between theirs",
+}
+"""The effects of several publishers on one topic, by its type."""
 
 
 def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Iterator[str]:

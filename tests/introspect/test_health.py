@@ -233,3 +233,11 @@ def test_two_drivers_of_one_robot() -> None:
         "/left and /right all publish /cmd_vel, and the robot obeys the latest: stop all but one, or remap"
     ]
     assert found(Seen(*(entity_token(node, kind=PUB, name="/chatter") for node in ("/a", "/b"))), [], []).faults == []
+
+
+def test_two_clocks() -> None:
+    """Two simulators would let the time jump."""
+    clock = "rosgraph_msgs/msg/Clock"
+    seen = Seen(*(entity_token(node, kind=PUB, name="/clock", type_=clock) for node in ("/one", "/two")))
+    [fault] = found(seen, [], []).faults
+    assert fault.startswith("/one and /two all publish /clock, and the time jumps between theirs: stop all but one")

@@ -41,10 +41,11 @@ async def test_maps(graph: Graph, tmp_path: Path) -> None:
     assert len(maps) == 2
 
 
-async def test_without_a_map(graph: Graph) -> None:
+async def test_without_a_map(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """The service says how to load one; topic and frame are parameters."""
     server = MapServer(topic_name="plan_of_house", frame_id="world")
     await graph.start(server)
     assert server.maps.name == "/plan_of_house"
+    assert "there is no map yet: start with -p yaml_filename:=house.yaml, or call load_map" in caplog.text
     with pytest.raises(RemoteError, match="no map has been loaded yet: call load_map"):
         await graph.call(GetMap, "/map_server/map", GetMap.Request())

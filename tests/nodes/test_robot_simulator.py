@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -189,3 +190,23 @@ async def test_commands_of_the_other_type(graph: Graph) -> None:
         plain.publish(FORWARD)
         await graph.clock.advance(0.1)
     assert node.simulation.robots[""].pose.x - halfway > 0.1
+
+
+async def test_two_nodes_that_steer(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """They are named once; one alone is not."""
+    await graph.start(RobotSimulator(world="empty"))
+    for name in ("teleop", "control"):
+        assert "all publish" not in caplog.text
+        driver = Node(name)
+        await graph.start(driver)
+        driver.create_publisher(Twist, "/cmd_vel", 10)
+        await graph.clock.advance(2.5)
+    [text] = [text for text in caplog.messages if "all publish" in text]
+    assert "/control and /teleop all publish /cmd_vel, and the robot obeys the latest: stop all but one" in text
+
+
+async def test_a_world_without_a_robot(graph: Graph, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """The warning has the line to add."""
+    (tmp_path / "bare.yaml").write_text("friction: 0.5")
+    await graph.start(RobotSimulator(world=str(tmp_path / "bare.yaml")))
+    assert "the world has no robot: add `robots: [{model: burger}]`, or call spawn_entity" in caplog.text

@@ -194,6 +194,8 @@ def _echo_type(full: str, given: str | None) -> str:
             if len(types) == 1:
                 learn(view, full, types[0])
             _warn_of_profile(view, full)
+            if subscribed := view.subscribed_only(full):
+                output.talk(f"WARNING: topic [{full}] does not appear to be published yet{subscribed}")
             alone = "" if types else view.nobody_here()
     except SupervisorError:
         if given is None:

@@ -97,6 +97,15 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
     assert text.startswith("WARNING: topic [/silence] does not appear to be published yet\n")
 
 
+def test_echo_of_a_topic_that_has_only_subscribers(machine: Machine) -> None:
+    """The warning names them: they may be why one looks there."""
+    machine.start("run", "listener")
+    machine.until(lambda: "/chatter" in machine.look("topic", "list", code=None), "it listens")
+    text = machine.run("topic", "echo", "/chatter", "--timeout", "0.05", code=4)
+    published = "topic [/chatter] does not appear to be published yet"
+    assert f"WARNING: {published}; /listener subscribes to it, and nothing publishes it" in text
+
+
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [

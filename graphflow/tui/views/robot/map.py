@@ -17,6 +17,7 @@ from graphflow.tui.view import View
 from graphflow.tui.views.robot.layers import Layers
 from graphflow.tui.views.robot.topics import next_of, topics_of
 from graphflow.tui.widgets.map_canvas import MapCanvas, RobotDrawing
+from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
     from graphflow.msgs.sensor_msgs.msg import LaserScan
@@ -249,6 +250,9 @@ class RobotMap(View):
         values = f"{{position: {{x: {cursor[0]:.2f}, y: {cursor[1]:.2f}}}}}"
         values = f"{{header: {{frame_id: {self._frame}}}, pose: {values if is_goal else f'{{pose: {values}}}'}}}"
         self.did(f"graphflow topic pub --once {topic} geometry_msgs/msg/{kind} '{values}'")
+        if not live.cache.endpoints(Kind.SUBSCRIPTION, topic):
+            way = f"; graphflow run goal_driver -p frame:={self._frame}" if is_goal else ""
+            self.say(f"no node subscribes to {topic}{way}", bad=True)
 
     # driving
 

@@ -88,6 +88,19 @@ async def test_layers(graph: Graph) -> None:
         assert "two" in s.text
 
 
+async def test_a_goal_that_no_node_takes(graph: Graph) -> None:
+    """The message says which node would."""
+    robot = Robot()
+    await graph.start(robot)
+    async with stage(Content("map"), graph=graph, size=(90, 30)) as s:
+        await shown(graph, s, robot)
+        await s.press("g")
+        await s.press("up")
+        await s.press("enter")
+        await graph.settle()
+        await s.until("no node subscribes to /goal_pose; graphflow run goal_driver -p frame:=map")
+
+
 async def test_a_goal_is_set(graph: Graph) -> None:
     """By `g`, arrow keys and Enter, or a click; it is sent as rviz sends it, and drawn. Escape gives up."""
     robot = Robot()
