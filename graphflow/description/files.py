@@ -10,6 +10,7 @@ from pathlib import Path
 
 from graphflow.description.robot import Robot
 from graphflow.description.urdf import parse
+from graphflow.description.xacro_errors import problem
 from graphflow.errors import GraphFileError, GraphflowError, Place, Problem
 from graphflow.introspect.installation import requirement
 from graphflow.reading import found_text
@@ -52,12 +53,13 @@ def expanded(file: Path, arguments: Mapping[str, str]) -> str:
         import xacro
     except ImportError:
         raise GraphflowError(f"{file.name} needs xacro: pip install {requirement('urdf')}") from None
+    xacro.all_includes.clear()  # those of the file before
     try:
         with _finding_packages():
             text: str = xacro.process_file(str(file), mappings=dict(arguments)).toprettyxml(indent="  ")
     except Exception as error:  # xacro raises whatever the file's expressions raise
-        text = str(error) or type(error).__name__
-        raise GraphFileError([Problem(Place(str(file)), f"xacro: {text}")]) from None
+        read = [*xacro.all_includes, *filter(None, xacro.filestack or ())]
+        raise GraphFileError([problem(error, read or [str(file)])]) from None
     return text
 
 

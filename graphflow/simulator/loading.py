@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from graphflow.errors import GraphFileError, GraphflowError
 from graphflow.introspect.installation import requirement
 from graphflow.maps import read_map
-from graphflow.simulator.files import find, misplaced, read_robot, read_world
 from graphflow.names import check_node_name
+from graphflow.simulator.files import find, misplaced, read_robot, read_world
 from graphflow.simulator.robot import Robot
 from graphflow.simulator.world import Placed, World
 

@@ -73,15 +73,15 @@ def _obstacles(parent: Element, world: World) -> None:
         turn, up = _text([0, 0, grid.origin[2]]), world.map.height / 2
         for index, part in enumerate(rectangles(grid)):
             half, place = [part.width / 2, part.height / 2, up], [part.x, part.y, up]
-            box = {"name": f"map{index}", "type": "box", "rgba": WALL}
-            SubElement(parent, "geom", box, size=_text(half), pos=_text(place), euler=turn)
+            solid = {"name": f"map{index}", "type": "box", "rgba": WALL}
+            SubElement(parent, "geom", solid, size=_text(half), pos=_text(place), euler=turn)
     for number, wall in enumerate(world.walls):
         for index, ((x, y), (u, v)) in enumerate(_segments(wall)):
             length, yaw = math.hypot(u - x, v - y), math.atan2(v - y, u - x)
             half = [length / 2 + wall.thickness / 2, wall.thickness / 2, wall.height / 2]
             place = [(x + u) / 2, (y + v) / 2, wall.height / 2]
-            box = {"name": f"wall{number}.{index}", "type": "box", "rgba": WALL}
-            SubElement(parent, "geom", box, size=_text(half), pos=_text(place), euler=_text([0, 0, yaw]))
+            solid = {"name": f"wall{number}.{index}", "type": "box", "rgba": WALL}
+            SubElement(parent, "geom", solid, size=_text(half), pos=_text(place), euler=_text([0, 0, yaw]))
     for index, box in enumerate(world.boxes):
         length, width, height = box.size
         solid = {"type": "box", "size": _text([length / 2, width / 2, height / 2])}
@@ -118,9 +118,13 @@ def _solid(parent: Element, name: str, place: Sequence[float], yaw: float, mass:
     if mass:  # it can be pushed
         body = SubElement(parent, "body", name=name, pos=_text(place), euler=_text([0, 0, yaw]))
         SubElement(body, "freejoint")
-        SubElement(body, "geom", {**solid, "name": name, "mass": f"{mass}", "friction": "0.6 0.005 0.0001", "rgba": LOOSE})
+        SubElement(
+            body, "geom", {**solid, "name": name, "mass": f"{mass}", "friction": "0.6 0.005 0.0001", "rgba": LOOSE}
+        )
     else:
-        SubElement(parent, "geom", {**solid, "name": name, "rgba": OBSTACLE, "pos": _text(place), "euler": _text([0, 0, yaw])})
+        SubElement(
+            parent, "geom", {**solid, "name": name, "rgba": OBSTACLE, "pos": _text(place), "euler": _text([0, 0, yaw])}
+        )
 
 
 def _robot(
