@@ -6,6 +6,8 @@ import re
 import shlex
 from collections.abc import Sequence
 
+from graphflow.cli.substitutes import ROBOT_VIEWS
+
 _INIT = "graphflow init NAME creates a project, and graphflow pkg create NAME a package"
 _LINES = {
     "action call": "action send_goal",
@@ -102,9 +104,6 @@ _LINES = {
     "version": "--version",
 }
 """Our verb, which the remaining words follow; or a whole command, in which `{0}` is the first of them."""
-ROBOT_VIEWS = (
-    "in its place: graphflow attach, then :map, :tf, :scan, :image and :joints; in 3-D, graphflow view for Foxglove"
-)
 _NO_CORE = "none is needed: nodes find each other, and each machine starts its own rendezvous"
 _TOPICS = "a topic exists as soon as a node publishes or subscribes to it"
 _RENAMED = "names are changed when a node is started: graphflow run NODE -r OLD:=NEW"

@@ -100,6 +100,8 @@ class View(Widget):
     """The actions of the view's keys while it is focused; `do_<name>` carries each out."""
     LEAST_WIDTH: ClassVar[int] = 30
     """The narrowest useful width in columns; where a split would leave less, the view opens elsewhere."""
+    LEAST_HEIGHT: ClassVar[int] = 8
+    """The same in rows."""
     EVERY: ClassVar[float] = 0.5
     """Minimum seconds between two updates."""
     SHOWS_STATES: ClassVar[bool] = False

@@ -19,6 +19,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
     ("class_path", "views", "focused"),
     [
         ("nodes.turtlesim:TurtleSim", ["nodes", "detail", "turtle"], "turtle"),
+        ("nodes.robot_simulator:RobotSimulator", ["nodes", "detail", "map"], "map"),
         ("nodes.talker:Talker", ["nodes", "detail"], "nodes"),
     ],
 )

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graphflow.cli import output
-from graphflow.cli.other_words import ROBOT_VIEWS
+from graphflow.cli.substitutes import no_package
 from graphflow.errors import GraphflowError, NoModule, RunsWhenImported, UsageFault
 from graphflow.graph.model import class_meant
 from graphflow.names import did_you_mean, nearest
@@ -34,16 +34,6 @@ FOLDERS = 1000
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
-
-IN_PLACE = {
-    **dict.fromkeys(("rviz2", "rviz"), ROBOT_VIEWS),
-    **dict.fromkeys(("rqt_gui", "rqt_console"), "in its place: graphflow attach"),
-    **dict.fromkeys(("rqt_image_view", "image_view"), "in its place: graphflow attach, then :image"),
-    "rqt_plot": "in its place: graphflow topic plot TOPIC.FIELD",
-    **dict.fromkeys(("ros_gz_sim", "gazebo_ros"), "in its place there is a simulator on MuJoCo: graphflow up tb_sim"),
-}
-"""Packages of ROS that draw on a screen, and what does that here."""
-
 
 def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
     """Return the class that is meant, and the remaining words, which are the node's.
@@ -190,8 +180,8 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
         near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
         meant = f"; did you mean {near!r}?" if near is not None else ""
-        if what in IN_PLACE:
-            return f"there is no package {what!r}; {IN_PLACE[what]}"
+        if substitute := no_package(what):
+            return substitute
         known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
         return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here}"
     known |= {*(package for package, _ in with_graphflow()), *packages, *installed()}

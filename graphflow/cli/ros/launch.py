@@ -88,6 +88,7 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     Raises:
         UsageFault: The package does not exist or has no such file.
     """
+    from graphflow.cli.substitutes import no_package
     from graphflow.workspace.executables import of_ros, package_share
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import demos_root, project_root
@@ -101,6 +102,8 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     if folder is None:
         if first.endswith(_ENDINGS) and package_share(rest[0], project_root(Path.cwd()), os.environ) is not None:
             raise UsageFault(f"the package comes first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}")
+        if substitute := no_package(first):
+            raise UsageFault(substitute)
         why = why_no_package(first, find_workspace(Path.cwd()))
         if why is None and first in of_ros():
             graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()

@@ -16,8 +16,6 @@ from graphflow.tui.registry import view_class
 from graphflow.tui.widgets.dialogs import AskLine, Item, Pick
 from graphflow.tui.widgets.line_view import LineView
 
-LEAST_HEIGHT = 8
-"""Minimum rows of each pane when one is opened below another."""
 STEP = {"left": 4, "right": 4, "up": 2, "down": 2}
 """Cells by which a key moves a border."""
 
@@ -62,10 +60,10 @@ class PaneCommands:
                 app.workspace.frames[same[0].number].view.reopened(content)
             return
         room = app.workspace.room(app.window.focused)
-        least = view_class(content.view).LEAST_WIDTH
+        least, lowest = view_class(content.view).LEAST_WIDTH, view_class(content.view).LEAST_HEIGHT
         ways: list[tuple[Axis, bool]] = [
             ("columns", room.width >= 2 * least + 1 and room.width > 2.5 * room.height),
-            ("rows", room.width >= least and room.height >= 2 * LEAST_HEIGHT),
+            ("rows", room.width >= least and room.height >= 2 * lowest),
             ("columns", room.width >= 2 * least + 1),
         ]
         if any(fits and self._split(axis, content) for axis, fits in ways):

@@ -55,6 +55,7 @@ class Turtles(View):
     NAME = "turtle"
     DOC = "turtlesim live: trails, and arrow keys that drive"
     EVERY = 0.05
+    LEAST_HEIGHT = 14
     ACTIONS = (
         Action("forward", "drive", keys=("up",), hint=True, label="↑↓←→ drive"),
         Action("backward", "drive backwards", keys=("down",)),

@@ -75,6 +75,7 @@ class ImageView(View):
     NAME = "image"
     DOC = "the images of a camera"
     EVERY = 0.1
+    LEAST_HEIGHT = 14
     ACTIONS = (
         Action("next_topic", "next camera", keys=("n",), hint=True),
         Action("pause", "pause", keys=("space",), hint=True),

@@ -46,6 +46,7 @@ class RobotMap(View):
     NAME = "map"
     DOC = "a robot from above: map, scan, trail, path; arrow keys drive, g sets a goal"
     EVERY = 0.2
+    LEAST_HEIGHT = 14
     ACTIONS = (
         Action("forward", "drive", keys=("up",), hint=True, label="↑↓←→ drive"),
         Action("backward", "drive backwards", keys=("down",)),

@@ -103,6 +103,7 @@ class Scan(View):
     NAME = "scan"
     DOC = "a laser scan around its scanner: rings, points, the nearest one"
     EVERY = 0.2
+    LEAST_HEIGHT = 14
     ACTIONS = (
         Action("closer", "zoom in", keys=("plus", "equals_sign"), hint=True, label="+- zoom"),
         Action("farther", "zoom out", keys=("minus",)),

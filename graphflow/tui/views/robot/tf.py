@@ -37,7 +37,7 @@ class FrameTree(View):
     LEAST_WIDTH = 40
     ACTIONS = (Action("clear", "forget all", keys=("C",), hint=True),)
     DEFAULT_CSS = """
-    FrameTree Static { padding: 0 1; }
+    FrameTree Static { padding: 0 1; text-wrap: nowrap; text-overflow: ellipsis; }
     """
     can_focus = True
 
