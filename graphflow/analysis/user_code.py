@@ -13,7 +13,7 @@ from types import FrameType, TracebackType
 from typing import NamedTuple
 
 from graphflow.analysis.frames import Frame
-from graphflow.errors import Place
+from graphflow.errors import GraphFileError, Place
 
 _OURS = str(Path(__file__).parents[1])
 _DEMOS = str(Path(_OURS, "demos"))
@@ -178,8 +178,11 @@ def is_refusal(part: TracebackType, *statements: str) -> bool:
 def place_in(error: BaseException) -> str:
     """Return the last line of the user's own code that an error passed through, as `file:line`; empty if none.
 
-    Lines of installed packages count only if there is no other: the user's nodes may be installed.
+    Lines of installed packages count only if there is no other: the user's nodes may be installed. An error about a
+    file has places there, which say more than that of the line that read it.
     """
+    if isinstance(error, GraphFileError):
+        return ""
     place, is_theirs, trace = "", False, error.__traceback__
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename

@@ -165,6 +165,8 @@ def write_map(
         f"image: {picture.name}\nmode: {mode}\nresolution: {_number(grid.resolution)}\norigin: [{x}, {y}, {yaw}]\n"
         f"negate: 0\noccupied_thresh: {_number(occupied)}\nfree_thresh: {_number(free)}\n"
     )
+    if not described.parent.is_dir():
+        raise MapFileError(f"there is no folder {described.parent}")
     parts = [described.with_name(f".{described.name}.part"), picture.with_name(f".{picture.name}.part")]
     try:
         Image.fromarray(grey).save(parts[1], format={"pgm": "PPM", "png": "PNG"}[picture_format])

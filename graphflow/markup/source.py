@@ -11,18 +11,22 @@ import pathlib
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 from typing import NamedTuple, NoReturn, TypeAlias
 
 import yaml
 
 from graphflow.errors import GraphFileError, GraphflowError, Place, Problem
 from graphflow.markup import yaml_slips
+from graphflow.names import nearest
 from graphflow.reading import found_bytes
 from graphflow.typographic import is_quoted, plain
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 40
 MAX_VALUES = 50_000
+SEARCHED = 1_000
+"""Files of a folder that are searched for a name similar to that of a missing one, at most."""
 
 Scalar: TypeAlias = bool | int | float | str | None
 Data: TypeAlias = "Scalar | list[Data] | dict[str, Data]"
@@ -119,12 +123,23 @@ def read_file(
     try:
         data = found_bytes(path, MAX_BYTES)
     except OSError as error:
-        raise _error(Place(name), f"cannot be read: {error.strerror}") from None
+        hint = _similar_file(path) if isinstance(error, FileNotFoundError) else ""
+        raise _error(Place(name), f"cannot be read: {error.strerror}{hint}") from None
     try:
         return read(data.decode("utf-8-sig"), name, is_params=is_params, complain=complain, remark=remark)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
+
+
+def _similar_file(path: pathlib.Path) -> str:
+    """Suggest a file of a similar name in the same folder."""
+    try:
+        beside = [entry.name for entry in islice(path.parent.iterdir(), SEARCHED)]
+    except OSError:
+        return ""
+    near = nearest(path.name, [name for name in beside if name.endswith((".yaml", ".yml"))])
+    return f"; did you mean {near!r}?" if near is not None else ""
 
 
 def read(

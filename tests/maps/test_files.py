@@ -79,7 +79,7 @@ def test_colours_and_transparency(tmp_path: Path) -> None:
 MISTAKES = {
     "image: p.png\nresolution: 0.1\n": "m.yaml:1:1: the key 'origin' is missing",
     "image: p.png\nresolution: 0\norigin: [0, 0, 0]\n": "m.yaml:2:13: 0: input should be greater than 0",
-    "image: p.png\nresolution: 0.1\norigin: [0, 0]\n": "m.yaml:3:9: [0, 0]: list should have at least 3 items",
+    "image: p.png\nresolution: 0.1\norigin: [0, 0]\n": "m.yaml:3:9: [0, 0]: has 2 of at least 3 items",
     "image: p.png\nresolution: 0.1\norigin: [0, 0, .nan]\n": "m.yaml:3:16: nan: input should be a finite number",
     "image: q.png\nresolution: 0.1\norigin: [0, 0, 0]\n": "m.yaml:1:8: there is no picture ",
     "image: m.yaml\nresolution: 0.1\norigin: [0, 0, 0]\n": "m.yaml is not a picture that can be read",
@@ -120,5 +120,14 @@ def test_what_cannot_be_written(tmp_path: Path) -> None:
     with pytest.raises(MapFileError, match="cannot write"):
         write_map(GRID, tmp_path / "m")
     assert [file.name for file in tmp_path.iterdir()] == ["m.pgm"]
-    with pytest.raises(MapFileError, match="No such file or directory"):
+    with pytest.raises(MapFileError, match="there is no folder"):
         write_map(GRID, tmp_path / "nowhere" / "m")
+
+
+def test_files_that_are_not_there(tmp_path: Path) -> None:
+    """A similar name is suggested; a map is not written into a folder that does not exist."""
+    (tmp_path / "house.yaml").write_text("")
+    with pytest.raises(GraphFileError, match=r"No such file or directory; did you mean 'house.yaml'\?"):
+        read_map(tmp_path / "hous.yaml")
+    with pytest.raises(MapFileError, match=rf"^there is no folder {tmp_path}/plans$"):
+        write_map(GRID, tmp_path / "plans" / "house")

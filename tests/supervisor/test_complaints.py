@@ -124,7 +124,7 @@ def test_two_nodes_of_one_name(machine: Machine, project: Path) -> None:
     assert f"/b (process {rows(machine)['/b']['pid']}" in told
     assert "rename the node in the graph file" in told
     words = ("run", "nodes.listener:Listener", "--ros-args", "-r", "__node:=b")
-    assert "give this one another name with -r __node:=NAME" in machine.run(*words, cwd=project, code=1)
+    assert "start this one with -r __ns:=/NAME, or -r __node:=NAME" in machine.run(*words, cwd=project, code=1)
 
 
 @pytest.mark.parametrize(

@@ -63,6 +63,8 @@ def find_graph(text: str) -> Path:
     if path.is_dir() and (inside := sorted(map(str, [*path.glob("*.yaml")] or path.rglob("*.yaml")))):
         raise UsageFault(f"{text}: is a folder; name one of its files: {', '.join(inside[:_SHOWN])}")
     hint = did_you_mean(text, [*near, *bundled, *others])
+    if not hint and path.stem in {**bundled, **others}:
+        hint = f"; one of that name comes with graphflow: graphflow up {path.stem}"
     if not hint and (stem := nearest(path.stem, near.values())) is not None:  # without the suffix
         hint = f"; did you mean {next(file for file in near if near[file] == stem)!r}?"
     raise UsageFault(f"{text}: {what}{hint}")

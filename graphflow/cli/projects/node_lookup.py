@@ -35,6 +35,7 @@ FOLDERS = 1000
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
+
 def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
     """Return the class that is meant, and the remaining words, which are the node's.
 

@@ -58,7 +58,9 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
     if ended.returncode:
         raise SubstitutionError(f"{written}: exit code {ended.returncode}{last}")
     if complaint and on_stderr == "fail":
-        raise SubstitutionError(f"{written} wrote to its error output{last}; to allow that: $(command '...' warn)")
+        first = f": {lines[0]}" if len(lines) > 1 and lines[0] not in last else ""
+        ways = "$(command '...' warn), or in Python Command([...], on_stderr='warn')"
+        raise SubstitutionError(f"{written} wrote to its error output{first}{last}; to allow that: {ways}")
     if complaint and on_stderr == "warn":
         logger.warning("%s: %s", written, complaint)
     if len(text) > MAX_TEXT:
