@@ -88,7 +88,8 @@ class GridMap:
     def covers(self, x: float, y: float) -> bool:
         """Whether a place is on the map."""
         [[row, column]] = self.indices(np.array([[x, y]]))
-        return 0 <= row < self.cells.shape[0] and 0 <= column < self.cells.shape[1]
+        height, width = self.cells.shape
+        return bool(0 <= row < height and 0 <= column < width)
 
     def at(self, x: float, y: float) -> int:
         """Return the value of the cell at a place in metres; `UNKNOWN` outside the map."""

@@ -82,9 +82,8 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
         raise UsageFault(f"nothing reads {ros.rest[0]!r}{cut}" if cut else text)
     sys.argv = [getfile(cls), *ros.rest]
     names = Resolver(cls.interface().node_name, "/", ros.remaps)
-    refuse_taken_names(
-        [names.full_name], domain_id(), hint="give this one a namespace, -r __ns:=/NAME, or a name, -r __node:=NAME"
-    )
+    way = "start this one with -r __ns:=/NAME, or -r __node:=NAME"
+    refuse_taken_names([names.full_name], domain_id(), hint=way)
     run_node(cls, args=rest)
 
 

@@ -12,6 +12,7 @@ from tf2_ros import Buffer, StaticTransformBroadcaster, TransformBroadcaster, Tr
 
 import rclpy
 from graphflow.tf.poses import Pose
+from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -70,6 +71,7 @@ def test_time_that_jumps_back(node: Node) -> None:
     buffer = Buffer()
     listener = TransformListener(buffer, node)
     clock = node.get_clock()
+    assert isinstance(clock, ROSClock)
     listener.static_callback(TFMessage(transforms=[at("base", "laser", 0.5)]))
     for second in (100, 5):
         clock.set_ros_time_override(Time(seconds=second, clock_type=ClockType.ROS_TIME))
