@@ -45,6 +45,13 @@ def last_name(expression: ast.expr) -> str:
     return ""
 
 
+def blocks(node: ast.AST) -> Iterator[list[ast.stmt]]:
+    """Yield the lists of statements directly below a node: its body, and what follows `else` and `finally`."""
+    for _, value in ast.iter_fields(node):
+        if isinstance(value, list) and value and isinstance(value[0], ast.stmt):
+            yield value
+
+
 class Syntax:
     """The syntax tree of one file, with an index of its parts.
 

@@ -65,6 +65,10 @@ class Subject(Protocol):
     def hooks(self) -> AbstractSet[str]:
         """Methods called outside any handler: parameter checks, event callbacks, decisions about goals."""
 
+    @property
+    def transforms(self) -> AbstractSet[str]:
+        """Attributes with transforms, of which the node may send some; "" for one in no attribute."""
+
     def statistics(self) -> Mapping[str, Mapping[str, object]]:
         """Return counts since the start, by the name of each handler, endpoint and group."""
 

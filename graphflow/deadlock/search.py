@@ -33,11 +33,13 @@ from graphflow.interface import DeadlockPolicy
 from graphflow.machines.waits.explain import again, hopeless
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import explained
+from graphflow.machines.waits.transform_waits import resolved
 from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
     Condition,
     Opening,
+    TransformWait,
     WaitGraph,
     calls_of,
     joined,
@@ -165,15 +167,15 @@ class Search:
 
     def _search_here(self) -> None:
         """Search this process, and all others if its waits lead there."""
-        graph = self.snapshot.take()
-        mine = self._process.session.zid
+        seen = self.snapshot.take()
+        graph, mine = resolved(seen), self._process.session.zid
         dead = deadlocked(graph)
         # Ends come first: a ring that has cleared must not keep a new one of the same members from being reported.
         self._reporter.take_back(graph, dead, {mine})
         if any(report.processes != {mine} for report in self.reports.values()):
             self._ask(self._recheck)
         self._reporter.forget_foreign(graph)
-        waiting = {(a.id, a.wait) for a in graph.activities.values() if a.wait is not FREE}
+        waiting = {(a.id, a.wait) for a in seen.activities.values() if a.wait is not FREE}
         if not waiting and not any(q.waiting for q in graph.queues.values()):
             self._rest(graph)
             return
@@ -182,10 +184,10 @@ class Search:
         is_wider = _is_awaited(graph) and not all(self._reporter.is_known(frozenset(d.ring)) for d in found)
         for deadlock in () if is_wider else found:
             self._reporter.report(deadlock, graph)
-        if is_wider or any(self._leaves(a, graph) for a in graph.activities.values() if is_old(a)):
+        if is_wider or any(self._leaves(a, seen) for a in seen.activities.values() if is_old(a)):
             self._pull()
         self._adapt_period(waiting)
-        young = [a.age for a in graph.activities.values() if a.wait is not FREE and not is_old(a)]
+        young = [a.age for a in seen.activities.values() if a.wait is not FREE and not is_old(a)]
         soonest = [PROBE_AFTER - max(young)] if young else []
         soonest += [SILENT_AFTER] if self._unresponsive else []
         soonest += self._check_stalls(graph, dead | self._dead)
@@ -222,6 +224,10 @@ class Search:
         here = {a.serves for a in graph.activities.values()} | {c for q in graph.queues.values() for c in q.calls}
         opening = {service for queue in graph.queues.values() for service in queue.opens}
         wanted = [part.service for part in parts_of(activity.wait) if isinstance(part, Opening)]
+        mine = self._process.session.zid
+        transforms = [part for part in parts_of(activity.wait) if isinstance(part, TransformWait)]
+        if any(process != mine for part in transforms for process in part.processes):
+            return True
         calls = calls_of(activity.wait)
         return any(c.id not in here or c.servers > 1 for c in calls) or not opening.issuperset(wanted)
 
@@ -268,7 +274,7 @@ class Search:
             graphs.append(graph)
             answered.add(process)
             reported |= dict.fromkeys(rings, process)
-        return Round(joined([*graphs, self.snapshot.take()]), answered, reported)
+        return Round(resolved(joined([*graphs, self.snapshot.take()])), answered, reported)
 
     def _recheck(self, replies: list[bytes], is_all: bool) -> None:
         """Take back reports whose rings no longer exist in other processes."""
@@ -296,7 +302,7 @@ class Search:
         if self.policy == "off" or not self._lock.acquire(blocking=False):
             return
         try:
-            graph = self.snapshot.take()
+            graph = resolved(self.snapshot.take())
             for deadlock in explained(graph, deadlocked(graph)):
                 self._reporter.report(deadlock, graph)
                 self._process.loop.call_soon_threadsafe(self.arm)  # to report its end

@@ -26,15 +26,16 @@ def problem(error: Exception, files: Sequence[str]) -> Problem:
     Args:
         files: The files that xacro has read, the one that it was reading last at the end.
     """
-    inner = getattr(error, "exc", None)
+    from xacro import XacroException
+
+    inner, macros = (error.exc, error.macros) if isinstance(error, XacroException) else (None, [])
     for one in (error, inner):
         if isinstance(one, ExpatError):
             text = str(one).partition(": line ")[0]
             way = f": write <robot {NAMESPACE} ...>" if text == "unbound prefix" else ""
             return Problem(Place(files[-1], one.lineno, one.offset + 1), f"not valid XML: {text}{way}")
     message, texts = str(error) or type(error).__name__, {file: _text(file) for file in reversed(files)}
-    macros = [macro.body.getAttribute("name") for macro in getattr(error, "macros", ())]
-    message = f"{message} in {macros[0]}" if macros else message
+    message = f"{message} in {macros[0].body.getAttribute('name')}" if macros else message
     for pattern, explain in _MESSAGES:
         if found := re.search(pattern, message, re.DOTALL):
             line, text = explain(found, texts)

@@ -90,6 +90,17 @@ class Opening(NamedTuple):
     """Start of the wait, by the clock of the client's node."""
 
 
+class AwaitedTransform(NamedTuple):
+    """A transform that is awaited, and what it lacks."""
+
+    what: str
+    """A description: `the transform map -> base_link`."""
+    frames: tuple[str, ...] = ()
+    """Frames that no transform has named or connected yet."""
+    node: str = ""
+    """The node that has sent the transform, if the latest is too old."""
+
+
 def _nothing() -> None:
     """Do nothing: the deadlock search is off."""
 
@@ -114,6 +125,7 @@ class Ledger:
         "served",
         "thread",
         "threads",
+        "transforms",
     )
 
     def __init__(self, loop: AbstractEventLoop) -> None:
@@ -130,6 +142,8 @@ class Ledger:
         """Ids of goals of this process whose results are awaited."""
         self.openings: dict[Future[Any], Opening] = {}
         """Services that are awaited until a node offers them."""
+        self.transforms: dict[Future[Any], Callable[[], AwaitedTransform]] = {}
+        """Transforms that are awaited, each as a function that says what it lacks now."""
         self.threads: dict[Future[Any], threading.Thread] = {}
         """Threads that are awaited."""
         self.asking: dict[int, asyncio.Task[Any]] = {}
@@ -176,6 +190,16 @@ class Ledger:
             yield
         finally:
             del self.openings[future]
+
+    @contextmanager
+    def transform(self, future: Future[Any], awaited: Callable[[], AwaitedTransform]) -> Iterator[None]:
+        """Enter a wait for a transform."""
+        self.transforms[future] = awaited
+        self.alert()
+        try:
+            yield
+        finally:
+            del self.transforms[future]
 
     @contextmanager
     def thread_work(self, future: Future[Any], thread: threading.Thread) -> Iterator[None]:

@@ -11,7 +11,8 @@ from graphflow.errors import CallTimeout, RemoteError
 from graphflow.introspect.graph_view import View
 from graphflow.machines.waits.explain import group_of, offer, title
 from graphflow.machines.waits.reduction import deadlocked
-from graphflow.machines.waits.rings import explained
+from graphflow.machines.waits.rings import Deadlock, explained
+from graphflow.machines.waits.transform_waits import resolved
 from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
@@ -23,6 +24,7 @@ from graphflow.machines.waits.wait_graph import (
     Opening,
     SetBy,
     Slot,
+    TransformWait,
     WaitGraph,
     joined,
 )
@@ -164,8 +166,7 @@ def change_groups(view: View, node: str, requests: Sequence[Mapping[str, object]
 
 def stuck(waits: ConcurrencyReport) -> set[str]:
     """Return the activities that seem deadlocked in this snapshot; a deadlock is only certain in a second one."""
-    dead = deadlocked(waits.graph)
-    return {i for d in explained(waits.graph, dead) for i in (*d.ring, *d.victims)}
+    return {i for d in deadlocks(waits.graph) for i in (*d.ring, *d.victims)}
 
 
 def rows(waits: ConcurrencyReport) -> list[ActivityRow]:
@@ -210,6 +211,12 @@ def queued(waits: ConcurrencyReport) -> list[QueueRow]:
     return found
 
 
+def deadlocks(graph: WaitGraph) -> list[Deadlock]:
+    """Return the deadlocks that a snapshot of all processes shows."""
+    graph = resolved(graph)
+    return explained(graph, deadlocked(graph))
+
+
 def describe(condition: Condition, graph: WaitGraph) -> str:
     """Describe the condition for which an activity waits."""
     match condition:
@@ -226,7 +233,7 @@ def describe(condition: Condition, graph: WaitGraph) -> str:
         case Join(activity=activity):
             other: ActivityView | None = graph.activities.get(activity)
             return title(other) if other is not None else "another task"
-        case SetBy(what=what):
+        case SetBy(what=what) | TransformWait(what=what):
             return what
         case All(of=conditions):
             return " and ".join(describe(c, graph) for c in conditions)

@@ -87,6 +87,8 @@ class NodeCore:
         self._context: Context | None = None
         self._ended: asyncio.Future[None] | None = None
         self.parts: list[Part] = []
+        self.transforms: set[str] = set()
+        """Attributes with transforms, of which the node may send some; "" for one in no attribute."""
         self._late: list[Part] | None = []
         """Parts to open once `on_start` has returned; None from then on."""
         self._binding = Binding(instance, self, self.parameters)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeAlias
 
 from graphflow.errors import DeclarationError, ExtrapolationError, TransformError, UnknownFrame
+from graphflow.executor.ledger import AwaitedTransform
 from graphflow.msgs.geometry_msgs.msg import TransformStamped
 from graphflow.msgs.std_msgs.msg import Header
 from graphflow.msgs.tf2_msgs.msg import TFMessage
@@ -30,6 +32,8 @@ QOS = Qos(depth=100)
 STATIC_QOS = Qos(depth=100, durability=Durability.TRANSIENT_LOCAL)
 STATIC_SENDER_QOS = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
 """One message suffices for late subscribers, since each repeats all static transforms of its node."""
+REPORTED_AFTER = 5.0
+"""Seconds after which the log says what a lookup waits for."""
 STOPPED_AFTER = 1.0
 """Seconds without a transform of a frame after which its publisher counts as stopped."""
 TWO_CLOCKS = 10**6 * NANOSECONDS
@@ -58,10 +62,12 @@ class TransformBuffer(AttributeHints):
     Args:
         kept: Nanoseconds for which received transforms are kept.
         listen: Whether to receive transforms.
+        attribute: The node's attribute with the buffer; "" if it has none.
     """
 
-    def __init__(self, node: Creator, owner: Owner, kept: int, *, listen: bool) -> None:
+    def __init__(self, node: Creator, owner: Owner, kept: int, *, listen: bool, attribute: str = "") -> None:
         self._node, self._owner, self._listens = node, owner, listen
+        owner.transforms.add(attribute)
         self._frames = Frames(kept)
         self._reports = Reports(owner.log)
         self._senders: dict[str, Sender] = {}
@@ -186,13 +192,17 @@ class TransformBuffer(AttributeHints):
             return find()
         except TransformError as error:
             lacking = error.frame
-        wait = _Wait(find, self._owner.context.loop.create_future())
+        context = self._owner.context
+        wait = _Wait(find, context.loop.create_future())
         self._add(wait, lacking)
+        due_ns = context.clock.monotonic_ns() + to_ns(REPORTED_AFTER)
+        late = context.clock.call_at(due_ns, partial(self._report_wait, find))
         try:
-            if timeout is None:
-                return await wait.future
-            async with self._owner.clock.timeout(timeout):
-                return await wait.future
+            with context.ledger.transform(wait.future, partial(self._awaited, target, source, wait)):
+                if timeout is None:
+                    return await wait.future
+                async with self._owner.clock.timeout(timeout):
+                    return await wait.future
         except TimeoutError:
             try:
                 return find()
@@ -200,7 +210,24 @@ class TransformBuffer(AttributeHints):
                 error.args = (f"{error}{self._cause(error)} (waited {timeout:g} s)",)
                 raise error from None
         finally:
+            late.cancel()
             self._remove(wait)
+
+    def _awaited(self, target: str, source: str, wait: _Wait) -> AwaitedTransform:
+        """Describe a lookup that waits, for the search for deadlocks."""
+        what = f"the transform {target} -> {source}"
+        if sender := self._senders.get(wait.lacking):
+            return AwaitedTransform(what, node=self._name_of(sender.gid) or "")
+        unknown = tuple(frame for frame in (target, source) if not self._frames.has(frame))
+        return AwaitedTransform(what, unknown or (target, source))
+
+    def _report_wait(self, find: Callable[[], Transform]) -> None:
+        """Log what a lookup that lasts lacks."""
+        try:
+            find()
+        except TransformError as error:
+            text = f"{error}{self._cause(error)}"
+            self._owner.log.warning("a lookup waits for %g s so far: %s", REPORTED_AFTER, text)
 
     async def transform(
         self,

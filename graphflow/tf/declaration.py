@@ -40,7 +40,7 @@ class Transforms(Declaration):
         return [EndpointInfo("subscription", name, TYPE, self.attribute, self.place) for name in topics]
 
     def create(self, maker: Maker) -> TransformBuffer:
-        return TransformBuffer(maker.node, maker.owner, to_ns(self.cache), listen=self.listen)
+        return TransformBuffer(maker.node, maker.owner, to_ns(self.cache), listen=self.listen, attribute=self.attribute)
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...

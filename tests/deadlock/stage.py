@@ -33,6 +33,7 @@ class Actor:
     groups: Groups = field(default_factory=lambda: Groups({}, None, Regrouping()))
     handlers: set[str] = field(default_factory=set)
     hooks: set[str] = field(default_factory=set)
+    transforms: set[str] = field(default_factory=set)
 
     def statistics(self) -> dict[str, dict[str, Any]]:
         return {}

@@ -28,7 +28,7 @@ async def test_what_the_runtime_has(graph: Graph) -> None:
     subject: Subject = core_of(node)
     surroundings: ProcessContext = node.context
 
-    assert len(names_of(Subject)) == 11
+    assert len(names_of(Subject)) == 12
     assert len(names_of(ProcessContext)) == 10
     assert [name for name in names_of(Subject) if not hasattr(subject, name)] == []
     assert [name for name in names_of(ProcessContext) if not hasattr(surroundings, name)] == []

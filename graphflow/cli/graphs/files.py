@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Sized
+from collections.abc import Iterator, Mapping, Sequence, Sized
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -65,9 +65,17 @@ def find_graph(text: str) -> Path:
     hint = did_you_mean(text, [*near, *bundled, *others])
     if not hint and path.stem in {**bundled, **others}:
         hint = f"; one of that name comes with graphflow: graphflow up {path.stem}"
-    if not hint and (stem := nearest(path.stem, near.values())) is not None:  # without the suffix
-        hint = f"; did you mean {next(file for file in near if near[file] == stem)!r}?"
-    raise UsageFault(f"{text}: {what}{hint}")
+    raise UsageFault(f"{text}: {what}{hint or _without_suffix(path, near)}")
+
+
+def _without_suffix(path: Path, near: Mapping[str, str]) -> str:
+    """Suggest a file whose name without the suffix resembles that of a missing one.
+
+    Args:
+        near: The files to suggest, each with its name without the suffix.
+    """
+    stem = nearest(path.stem, near.values())
+    return "" if stem is None else f"; did you mean {next(file for file in near if near[file] == stem)!r}?"
 
 
 def _refuse_node(name: str) -> None:

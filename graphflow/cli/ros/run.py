@@ -48,13 +48,10 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     from graphflow.runtime.mistakes.unread import unread
     from graphflow.runtime.run import run as run_node
 
-    if what.startswith("-"):
-        raise UsageFault(f"run has no option {what!r}; the node's options come after its name")
+    _refuse(what)
     if (option := option_after_verb(words)) is not None and not _mentions(what, option):
         placed = before_the_verb(option, ["run", what, *words])
         output.talk(f"note: {option} after the node is passed to its program; graphflow's {placed}")
-    if what.endswith(".py") and _is_launch_file(Path(what)):
-        raise UsageFault(f"{what} is a launch file; run it with: graphflow launch {what}")
     verb = _VERBS.get((what, words[0] if words else ""))
     command = [verb, *words[1:]] if verb else ["run", what, *words]
     if prefix or verb:
@@ -87,10 +84,17 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     run_node(cls, args=rest)
 
 
-def _is_launch_file(file: Path) -> bool:
-    """Whether running a file would only define a launch description."""
-    source = found_text(file) if file.is_file() else ""
-    return "def generate_launch_description" in source and "__main__" not in source
+def _refuse(what: str) -> None:
+    """Refuse an option, and a launch file, whose run would only define its description.
+
+    Raises:
+        UsageFault: It is one of them; the text has what to write.
+    """
+    if what.startswith("-"):
+        raise UsageFault(f"run has no option {what!r}; the node's options come after its name")
+    source = found_text(Path(what)) if what.endswith(".py") and Path(what).is_file() else ""
+    if "def generate_launch_description" in source and "__main__" not in source:
+        raise UsageFault(f"{what} is a launch file; run it with: graphflow launch {what}")
 
 
 def _mentions(what: str, option: str) -> bool:

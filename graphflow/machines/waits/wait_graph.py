@@ -94,6 +94,23 @@ class SetBy:
 
 
 @dataclass(frozen=True, slots=True)
+class TransformWait:
+    """A wait for a transform between two frames, which a handler of any process may send.
+
+    `machines.waits.transform_waits` turns it into a `SetBy` once the waits of all these processes are known.
+    """
+
+    what: str
+    """The transform: `the transform map -> base_link`."""
+    processes: tuple[str, ...]
+    """Processes with nodes, by the ids of their sessions."""
+    frames: tuple[str, ...] = ()
+    """Frames that no transform has named or connected yet."""
+    node: str = ""
+    """The node that has sent the transform, if the latest is too old."""
+
+
+@dataclass(frozen=True, slots=True)
 class All:
     """A wait for all of several conditions (AND)."""
 
@@ -113,7 +130,7 @@ class Free:
 
 
 FREE = Free()
-Condition = Call | Slot | Opening | Join | SetBy | All | AnyOf | Free
+Condition = Call | Slot | Opening | Join | SetBy | TransformWait | All | AnyOf | Free
 
 
 def parts_of(condition: Condition) -> Iterator[Condition]:
@@ -159,6 +176,9 @@ class ActivityView:
     """Whether `await` is allowed at `place`."""
     called: str = ""
     """Line at which the node's method called the function that waits, if another does: `arm.py:12 in tick`."""
+
+    sends: tuple[str, ...] | None = None
+    """Names of frames in its code, if it may send transforms before it ends; None if it sends none."""
 
     @property
     def handler(self) -> str:
@@ -220,6 +240,8 @@ class QueueView:
     """Whether the class declares the handler, so that a graph file can move it to another group."""
     opens: tuple[str, ...] = ()
     """Services that open when the handler may run."""
+    sends: tuple[str, ...] | None = None
+    """Names of frames in the handler's code, if it may send transforms; None if it sends none."""
 
     @property
     def handler(self) -> str:

@@ -26,12 +26,13 @@ from graphflow.machines.waits.wait_graph import (
     SetBy,
     Slot,
     Sort,
+    TransformWait,
     WaitGraph,
 )
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 7
+VERSION = 8
 DEEPEST = 50
 """Greatest nesting of conditions, so that data from the network cannot exhaust the stack."""
 
@@ -50,12 +51,16 @@ def to_json(graph: WaitGraph) -> dict[str, Json]:
 
 def _queue(q: QueueView) -> Json:
     head: list[Json] = [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped]
-    return [*head, q.process, q.is_declared, list(q.opens)]
+    return [*head, q.process, q.is_declared, list(q.opens), _sent(q.sends)]
 
 
 def _activity(a: ActivityView) -> Json:
     head: list[Json] = [a.id, a.label, a.node, list(a.holds), _condition(a.wait), a.serves, list(a.place), a.function]
-    return [*head, a.age, a.left, a.process, a.is_inner, a.is_async, a.called]
+    return [*head, a.age, a.left, a.process, a.is_inner, a.is_async, a.called, _sent(a.sends)]
+
+
+def _sent(frames: tuple[str, ...] | None) -> Json:
+    return None if frames is None else list(frames)
 
 
 def _regrouping(regrouping: Regrouping) -> Json:
@@ -79,6 +84,8 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
             return ["join", activity]
         case SetBy(what=what, queues=queues, activities=activities, is_held=is_held, verb=verb, gives_up=ends):
             return ["set", what, list(queues), list(activities), is_held, verb, ends]
+        case TransformWait(what=what, processes=processes, frames=frames, node=node):
+            return ["transform", what, list(processes), list(frames), node]
         case All(of=conditions):
             return ["all", [_condition(c, depth + 1) for c in conditions]]
         case AnyOf(of=conditions):
@@ -114,13 +121,14 @@ def _read_group(row: list[object]) -> GroupView:
 
 
 def _read_queue(row: list[object]) -> QueueView:
-    id_, label, node, needs, calls, waiting, dropped, process, is_declared, opens = row
+    id_, label, node, needs, calls, waiting, dropped, process, is_declared, opens, sends = row
     head = _text(id_), _text(label), _text(node), _texts(needs), _texts(calls)
-    return QueueView(*head, _int(waiting), _int(dropped), _text(process), _bool(is_declared), _texts(opens))
+    counts, sent = (_int(waiting), _int(dropped)), None if sends is None else _texts(sends)
+    return QueueView(*head, *counts, _text(process), _bool(is_declared), _texts(opens), sent)
 
 
 def _read_activity(row: list[object]) -> ActivityView:
-    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner, is_async, called = row
+    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner, is_async, called, sends = row
     file, line, column = _list(place)
     return ActivityView(
         _text(id_),
@@ -137,6 +145,7 @@ def _read_activity(row: list[object]) -> ActivityView:
         _bool(is_inner),
         _bool(is_async),
         _text(called),
+        None if sends is None else _texts(sends),
     )
 
 
@@ -176,6 +185,15 @@ def _read_condition(data: object, depth: int) -> Condition:
     match data:
         case None:
             return FREE
+        case ["all", parts]:
+            return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+        case ["any", parts]:
+            return AnyOf(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+    return _read_leaf(data)
+
+
+def _read_leaf(data: object) -> Condition:
+    match data:
         case ["call", call, name, servers]:
             return Call(_text(call), _text(name), _int(servers))
         case ["slot", group, ticket]:
@@ -186,10 +204,8 @@ def _read_condition(data: object, depth: int) -> Condition:
             return Join(_text(activity))
         case ["set", what, queues, activities, is_held, verb, ends]:
             return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held), _text(verb), _bool(ends))
-        case ["all", parts]:
-            return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
-        case ["any", parts]:
-            return AnyOf(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+        case ["transform", what, processes, frames, node]:
+            return TransformWait(_text(what), _texts(processes), _texts(frames), _text(node))
     raise ValueError(f"{data!r} is not a condition")
 
 

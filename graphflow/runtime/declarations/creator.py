@@ -43,6 +43,7 @@ class Owner(Host, Protocol):
 
     names: Resolver
     parameters: Parameters
+    transforms: set[str]
 
     def add(self, part: P, *, late: bool = False) -> P:
         """Add a part, and open it if it is due."""

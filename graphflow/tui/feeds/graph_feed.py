@@ -21,8 +21,7 @@ from graphflow.introspect.drawing.picture import misfit
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.numbers import Numbers
 from graphflow.machines.cache import GraphCache
-from graphflow.machines.waits.reduction import deadlocked
-from graphflow.machines.waits.rings import Deadlock, explained
+from graphflow.machines.waits.rings import Deadlock
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Result
 from graphflow.msgs.rcl_interfaces.msg import Log
 from graphflow.qos import BEST_AVAILABLE
@@ -182,7 +181,7 @@ class Live:
                 # The time of the request, not of the reply: a change made in between is not in the report.
                 self.concurrency, self.requested_at = concurrency.read(answers), now
                 found = self.concurrency
-                self.deadlocks = explained(found.graph, deadlocked(found.graph)) if found.reports else []
+                self.deadlocks = concurrency.deadlocks(found.graph) if found.reports else []
             await asyncio.sleep(max(0.1, POLL_INTERVAL - (time.monotonic() - now)) if wanted else 0.1)
 
     async def _request(self, report: str) -> list[bytes]:

@@ -25,6 +25,7 @@ from graphflow.machines.waits.wait_graph import (
     QueueView,
     SetBy,
     Slot,
+    TransformWait,
     WaitGraph,
 )
 from graphflow.machines.waits.wait_graph_json import DEEPEST, VERSION, from_json, to_json
@@ -47,7 +48,8 @@ CONDITIONS: st.SearchStrategy[Condition] = st.recursive(
     | st.builds(Slot, TEXT, WHOLE)
     | st.builds(Opening, TEXT)
     | st.builds(Join, TEXT)
-    | st.builds(SetBy, TEXT, TEXTS, TEXTS, st.booleans(), TEXT, st.booleans()),
+    | st.builds(SetBy, TEXT, TEXTS, TEXTS, st.booleans(), TEXT, st.booleans())
+    | st.builds(TransformWait, TEXT, TEXTS, TEXTS, TEXT),
     joint,
     max_leaves=6,
 )
@@ -65,9 +67,10 @@ ACTIVITIES = st.builds(
     left=st.none() | FLOATS,
     process=TEXT,
     is_inner=st.booleans(),
+    sends=st.none() | TEXTS,
 )
 GROUPS = st.builds(GroupView, TEXT, TEXT, TEXT, st.none() | st.integers(1, 9))
-QUEUES = st.builds(QueueView, TEXT, TEXT, TEXT, TEXTS, TEXTS, WHOLE, WHOLE, TEXT)
+QUEUES = st.builds(QueueView, TEXT, TEXT, TEXT, TEXTS, TEXTS, WHOLE, WHOLE, TEXT, sends=st.none() | TEXTS)
 CHANGES = st.builds(
     GroupChange,
     TEXTS,
@@ -93,7 +96,7 @@ JUNK: st.SearchStrategy[Any] = st.recursive(
     | WHOLE
     | st.floats()
     | TEXT
-    | st.sampled_from(["call", "slot", "open", "join", "set", "all"]),
+    | st.sampled_from(["call", "slot", "open", "join", "set", "all", "transform"]),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXT, inner, max_size=3),
     max_leaves=8,
 )
@@ -159,7 +162,7 @@ def test_what_is_no_picture(data: Any) -> None:
         ("groups", [["g", "g", "/n", 0, True, False, True, ""]], ValueError),
         ("groups", [["g", "g", "/n", True, True, False, False, ""]], TypeError),
         ("groups", [["g", "g", "/n", 1, True, False, False, "pool"]], ValueError),
-        ("queues", [["q", "service q", "/n", ["g"], ["c", 1], 0, 0, "p", True, []]], TypeError),
+        ("queues", [["q", "service q", "/n", ["g"], ["c", 1], 0, 0, "p", True, [], None]], TypeError),
         ("blocked", ["p"], TypeError),
         ("blocked", {"p": 1}, TypeError),
     ],

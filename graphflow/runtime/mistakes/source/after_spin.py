@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, blocks, last_name
 
 _SENDS = {"publish", "call_async", "call", "send_goal", "send_goal_async", "create_timer", "create_subscription"}
 _IS_LAST = re.compile(r"stop|halt|brake|shut|close|clean|destroy|finish|exit|quit|save|on_|end|reset|land|disarm")
@@ -21,9 +21,8 @@ def after_spin(module: ast.AST) -> Iterator[tuple[int, str]]:
         if isinstance(method, FunctionNode) and any(_sends(node) for node in ast.walk(method))
     }
     for node in ast.walk(module):
-        for body in (getattr(node, "body", None), getattr(node, "finalbody", None)):
-            if isinstance(body, list):
-                yield from _after(body, sending)
+        for block in blocks(node):
+            yield from _after(block, sending)
 
 
 def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, blocks, last_name, walk
 
 _SETUP = ("__init__", "on_start", "on_configure")
 
@@ -75,9 +75,6 @@ def _made_by(node: ast.AST) -> Iterator[str]:
 def _ends(parents: Sequence[ast.AST]) -> bool:
     """Whether the loop ends after a call with these parents."""
     statement = next(p for p in reversed(parents) if isinstance(p, ast.stmt))
-    for parent in reversed(parents):
-        for body in (getattr(parent, "body", None), getattr(parent, "orelse", None)):
-            if isinstance(body, list) and statement in body:
-                after = body[body.index(statement) :]
-                return any(isinstance(s, (ast.Break, ast.Return, ast.Raise)) for s in after)
-    return False
+    block = next(block for parent in reversed(parents) for block in blocks(parent) if statement in block)
+    after = block[block.index(statement) :]
+    return any(isinstance(s, (ast.Break, ast.Return, ast.Raise)) for s in after)
