@@ -97,12 +97,14 @@ CHECKS: dict[str, tuple[tuple[str, str], ...]] = {
     "graphflow/tui/feeds/log_feed.py": (('_ESCAPES.sub("", text).expandtabs(4)', "text.expandtabs(4)"),),
     "graphflow/viewer/bridge.py": (
         ("if self._is_read_only:", "if False:"),
-        ("printable(origin[:200])", "origin"),
-        ("origin not in self._pages and not PAGES.fullmatch(origin)", "False"),
         ("if not (is_hidden(entity.name) or is_hidden(entity.node_name)):", "if not is_hidden(entity.node_name):"),
         ("is_hidden(entity.name) or is_hidden(entity.node_name)", "is_hidden(entity.name)"),
     ),
     "graphflow/viewer/parameters.py": (("cache.services()", "cache.services(hidden=True)"),),
+    "graphflow/viewer/server.py": (
+        ("printable(origin[:200])", "origin"),
+        ("origin not in self._pages and not PAGES.fullmatch(origin)", "False"),
+    ),
     "graphflow/viewer/topics.py": (("if not is_hidden(entity.name):", "if True:"),),
     "graphflow/wire/described.py": (
         ("if digest and actual != digest:", "if False:"),

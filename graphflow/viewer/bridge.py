@@ -1,35 +1,25 @@
-"""The server for viewers: keeps their picture of the graph current, and carries out their requests."""
+"""A running graph for viewers: keeps their picture of it current, and carries out their requests."""
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import errno
 import logging
-import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable
-from http import HTTPStatus
-from pathlib import Path
 from typing import TypeVar
 
-from websockets.asyncio.server import Server, ServerConnection, serve
-from websockets.exceptions import ConnectionClosed
-from websockets.http11 import Request, Response
-from websockets.typing import Subprotocol
-
-from graphflow.errors import GraphflowError, TransportError, UsageFault, printable
+from graphflow.errors import GraphflowError, UsageFault
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.names import is_hidden
 from graphflow.qos import CLOCK
 from graphflow.runtime.node import Node
 from graphflow.viewer import protocol
-from graphflow.viewer.assets import asset
 from graphflow.viewer.client import Client, Connections
 from graphflow.viewer.parameters import ParameterFields, Parameters
 from graphflow.viewer.protocol import control_message
 from graphflow.viewer.publications import ENCODINGS, Publications
+from graphflow.viewer.server import ViewerServer
 from graphflow.viewer.services import Services
 from graphflow.viewer.topics import Topics
 from graphflow.wire.liveliness import Kind
@@ -38,18 +28,8 @@ T = TypeVar("T")
 
 logger = logging.getLogger("graphflow")
 
-GRACE = 1.0
-"""Seconds to wait for viewers to close their connections."""
 UPDATE_INTERVAL = 0.2
 """Seconds between two updates while the graph changes."""
-CLIENTS_BOUND = 32
-"""Maximum number of viewers."""
-MESSAGE_BOUND = 16 << 20
-"""Maximum bytes of one message from a viewer."""
-PAGES = re.compile(r"https://([a-z0-9-]+\.)*foxglove\.dev|https?://(localhost|127\.0\.0\.1|\[::1\])(:\d+)?")
-"""Web pages allowed to connect, besides the user's own list; programs always are. The check is needed since any page
-can make a browser connect to this machine, including downloaded files (`file://`) and browser extensions.
-"""
 
 
 class Bridge:
@@ -64,16 +44,15 @@ class Bridge:
     def __init__(
         self, node: Node, name: str, *, is_read_only: bool = False, pages: frozenset[str] = frozenset()
     ) -> None:
-        self._node, self._name, self._pages = node, name, pages
+        self._node, self._name = node, name
         self._is_read_only = is_read_only
-        self._clients: set[Client] = set()
-        self._topics = Topics(node, self._broadcast)
-        self._services = Services(node, self._broadcast)
+        self._viewers = ViewerServer(self, pages)
+        self._topics = Topics(node, self._viewers.broadcast)
+        self._services = Services(node, self._viewers.broadcast)
         self._publications = Publications(node)
         self._parameters = Parameters(node, self._changed)
         self._is_clocked = False
         """Whether /clock is subscribed to."""
-        self._server: Server | None = None
         self._watching: asyncio.Task[None] | None = None
 
     async def open(self, host: str, port: int) -> int:
@@ -85,78 +64,23 @@ class Bridge:
         Raises:
             TransportError: The server cannot listen there.
         """
-        try:
-            self._server = await serve(
-                self._serve,
-                host,
-                port,
-                subprotocols=[Subprotocol(name) for name in protocol.SUBPROTOCOLS],
-                process_request=self._admit,
-                max_size=MESSAGE_BOUND,
-                compression=None,  # compression would delay all other clients, and images do not shrink
-                logger=logging.getLogger("graphflow.viewer.websockets"),
-            )
-        except (OSError, UnicodeError) as error:
-            is_taken = isinstance(error, OSError) and error.errno == errno.EADDRINUSE
-            hint = "; take another --port" if is_taken else "; --host is an address of this machine"
-            why = ("the port is taken" if is_taken else _reason(error)) + hint
-            raise TransportError(f"cannot listen for viewers on {host}:{port}: {why}") from None
+        found = await self._viewers.open(host, port)
         self._follow_clock()
         self._watching = asyncio.ensure_future(self._watch_graph())
-        found: int = next(iter(self._server.sockets)).getsockname()[1]
         return found
 
     async def close(self) -> None:
         """Stop the server and disconnect the viewers."""
         if self._watching is not None:
             self._watching.cancel()
-        if self._server is not None:
-            self._server.close()
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(GRACE):
-                    await self._server.wait_closed()
-            for client in self._clients:  # waiting for clients that do not read would never end
-                client.abort()
-            await self._server.wait_closed()
+        await self._viewers.close()
         self._topics.close()
         self._services.close()
 
     # clients
 
-    def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Reject a page of unknown origin, and clients beyond the limit."""
-        origin = request.headers.get("Origin", "")
-        if origin and origin not in self._pages and not PAGES.fullmatch(origin):  # programs send no Origin
-            logger.warning(
-                "a web page of %s was refused; if it is your viewer, allow it by --allow-page %s",
-                *[printable(origin[:200])] * 2,
-            )
-            return connection.respond(HTTPStatus.FORBIDDEN, "this page is not allowed; see graphflow view --help\n")
-        if len(self._clients) >= CLIENTS_BOUND:
-            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"there are already {CLIENTS_BOUND} viewers\n")
-        return None
-
-    async def _serve(self, connection: ServerConnection) -> None:
-        client = Client(connection)
-        self._greet(client)
-        self._clients.add(client)
-        writing = asyncio.ensure_future(client.write())
-        try:
-            async for message in connection:
-                try:
-                    self._handle(client, message)
-                except GraphflowError as error:
-                    client.warn(str(error))
-        except ConnectionClosed:
-            logger.debug("a viewer has disconnected without a closing handshake")
-        finally:
-            self._clients.discard(client)
-            writing.cancel()
-            client.close()
-            self._topics.leave(client)
-            self._publications.leave(client)
-
-    def _greet(self, client: Client) -> None:
+    def greet(self, client: Client) -> None:
+        """Tell a new client what there is."""
         capabilities = ["parameters", "parametersSubscribe", "connectionGraph", "assets"]
         capabilities += [] if self._is_read_only else ["clientPublish", "services"]
         capabilities += ["time"] if self._is_clocked else []
@@ -169,13 +93,17 @@ class Bridge:
         if not self._is_read_only:
             self._services.greet(client)
 
-    def _handle(self, client: Client, message: str | bytes) -> None:
+    def leave(self, client: Client) -> None:
+        """End all subscriptions of a client, and withdraw its channels."""
+        self._topics.leave(client)
+        self._publications.leave(client)
+
+    def handle(self, client: Client, request: protocol.ClientMessage) -> None:
         """Carry out a client's request.
 
         Raises:
             GraphflowError: The request cannot be carried out; the text is for the client.
         """
-        request = protocol.read_text(message) if isinstance(message, str) else protocol.read_bytes(message)
         if self._handle_query(client, request):
             return
         if self._is_read_only:
@@ -198,8 +126,6 @@ class Bridge:
             case protocol.FollowGraph():
                 client.graph = {} if request.op == "subscribeConnectionGraph" else None
                 self._send_graph(client, connections(self._node.context.cache))
-            case protocol.FetchAsset():
-                client.spawn(lambda: self._send_asset(client, request))
             case _:
                 return False
         return True
@@ -218,19 +144,6 @@ class Bridge:
                 self._publications.publish(client, request)
             case protocol.Call():
                 client.spawn(lambda: self._services.call(client, request))
-
-    def _broadcast(self, text: str | bytes) -> None:
-        for client in self._clients:
-            client.send_control(text)
-
-    async def _send_asset(self, client: Client, request: protocol.FetchAsset) -> None:
-        async with client.one_file:  # many large files at once would take much memory
-            try:
-                data, why = await asyncio.to_thread(asset, request.uri, Path.cwd()), ""
-            except UsageFault as error:
-                data, why = b"", str(error)
-            client.send_control(protocol.asset_frame(request.request_id, data, why))
-            await client.drained()
 
     # parameters, time and graph
 
@@ -261,14 +174,14 @@ class Bridge:
         client.followed = client.followed | names if wanted else client.followed - names
 
     def _changed(self, parameters: list[ParameterFields]) -> None:
-        for client in self._clients:
+        for client in self._viewers.clients:
             wanted = [p for p in parameters if client.follows_all or p["name"] in client.followed]
             if wanted:
                 client.send_control(control_message("parameterValues", parameters=wanted))
 
     def _clock_received(self, message: Clock) -> None:
         if message.clock.sec >= 0:
-            self._broadcast(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
+            self._viewers.broadcast(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
 
     def _follow_clock(self) -> None:
         """Follow /clock once it has a publisher. Viewers that connect later use simulated time."""
@@ -287,7 +200,7 @@ class Bridge:
                 if not self._is_read_only:
                     self._services.update()
                 graph = connections(self._node.context.cache)
-                for client in self._clients:
+                for client in self._viewers.clients:
                     self._send_graph(client, graph)
                 await is_new.wait()
                 await asyncio.sleep(UPDATE_INTERVAL)  # nodes announce their endpoints in bursts
@@ -318,11 +231,6 @@ def _each(client: Client, wanted: Iterable[T], work: Callable[[Client, T], None]
             work(client, entry)
         except GraphflowError as error:
             client.warn(str(error))
-
-
-def _reason(error: OSError | UnicodeError) -> str:
-    text = (isinstance(error, OSError) and error.strerror) or str(error)
-    return text.rpartition(": ")[2]
 
 
 PARTS = {

@@ -1,6 +1,6 @@
 """Foxglove's WebSocket protocol: validation of clients' messages, and encoding of the server's.
 
-Source: github.com/foxglove/ws-protocol, docs/spec.md.
+Source: github.com/foxglove/ws-protocol, docs/spec.md; for playback, the SDK at github.com/foxglove/foxglove-sdk.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from graphflow.errors import DecodeError
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 """The names of the protocol, newest first."""
 
+_REQUEST_ID_BOUND = 1_000
 ENTRIES_BOUND = 5_000
 """Maximum entries of one message from a client."""
 
@@ -120,6 +121,20 @@ class Call(NamedTuple):
     data: bytes
 
 
+class PlaybackControl(NamedTuple):
+    """A client's request to a server that plays a bag.
+
+    Attributes:
+        sought_ns: The time to go to, nanoseconds since 1970; None to go on from the present one.
+        request_id: To be repeated in the answer.
+    """
+
+    is_playing: bool
+    speed: float
+    sought_ns: int | None
+    request_id: str
+
+
 ClientRequest = (
     Subscribe
     | Unsubscribe
@@ -133,7 +148,11 @@ ClientRequest = (
 )
 _CLIENT_REQUEST: TypeAdapter[ClientRequest] = TypeAdapter(Annotated[ClientRequest, Field(discriminator="op")])
 
-ClientMessage = ClientRequest | Message | Call
+ClientMessage = ClientRequest | Message | Call | PlaybackControl
+_CONTROL = struct.Struct("<BfBQI")
+"""Of a request for playback: the command, 0 to play, the speed, whether there is a time, the time, a length."""
+PLAYING, PAUSED, ENDED = 0, 1, 3
+"""The states of playback."""
 
 
 def read_text(text: str) -> ClientRequest:
@@ -152,7 +171,7 @@ def read_text(text: str) -> ClientRequest:
         ) from None
 
 
-def read_bytes(data: bytes) -> Message | Call:
+def read_bytes(data: bytes) -> Message | Call | PlaybackControl:
     """Parse a client's binary message.
 
     Raises:
@@ -165,6 +184,11 @@ def read_bytes(data: bytes) -> Message | Call:
             service, call, length = struct.unpack_from("<III", data, 1)
             if length <= len(data) - 13:
                 return Call(service, call, data[13 : 13 + length].decode(), data[13 + length :])
+        if data[:1] == b"\x03":
+            command, speed, is_sought, sought_ns, length = _CONTROL.unpack_from(data, 1)
+            request_id = data[1 + _CONTROL.size :]
+            if command <= 1 and length == len(request_id) <= _REQUEST_ID_BOUND:
+                return PlaybackControl(not command, speed, sought_ns if is_sought else None, request_id.decode())
     except (struct.error, UnicodeDecodeError):
         pass
     raise DecodeError(f"these {len(data)} bytes do not follow the protocol")
@@ -191,6 +215,18 @@ def response_frame(call: Call, data: bytes) -> bytes:
     """Encode the response to a call, in the encoding of the request."""
     encoding = call.encoding.encode()
     return struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding)) + encoding + data
+
+
+def playback_frame(status: int, time_ns: int, speed: float, control: PlaybackControl | None) -> bytes:
+    """Encode the state of playback.
+
+    Args:
+        status: `PLAYING`, `PAUSED` or `ENDED`.
+        control: The request that this answers; None if it answers none.
+    """
+    request_id = control.request_id.encode() if control is not None else b""
+    has_sought = control is not None and control.sought_ns is not None
+    return struct.pack("<BBQfBI", 5, status, time_ns, speed, has_sought, len(request_id)) + request_id
 
 
 def asset_frame(request_id: int, data: bytes, error: str = "") -> bytes:

@@ -80,6 +80,8 @@ class Viewer:
         self.answers: dict[int, bytes] = {}
         self.failures: dict[int, str] = {}
         self.times: list[int] = []
+        self.states: list[tuple[int, int, float, int]] = []
+        """States of playback: the state, the time, the speed, and whether it answers a request for a time."""
         self._reading = asyncio.ensure_future(self._read())
 
     async def _read(self) -> None:
@@ -99,6 +101,8 @@ class Viewer:
             _, call, length = struct.unpack_from("<III", data, 1)
             assert data[13 : 13 + length] == b"cdr"
             self.answers[call] = data[13 + length :]
+        elif data[0] == 5:
+            self.states.append(struct.unpack_from("<BQfB", data, 1))
         elif data[0] == 4:
             number, status, length = struct.unpack_from("<IBI", data, 1)
             self.assets[number] = status, data[10 : 10 + length].decode(), data[10 + length :]

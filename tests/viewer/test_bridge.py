@@ -15,8 +15,8 @@ from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.rosgraph_msgs.msg import Clock
 from graphflow.qos import CLOCK
 from graphflow.testing import Graph
-from graphflow.viewer import bridge as bridge_module
 from graphflow.viewer import client, protocol
+from graphflow.viewer import server as server_module
 from graphflow.viewer.bridge import Bridge, connections
 from graphflow.viewer.protocol import control_message
 from tests.cases import slow
@@ -163,7 +163,7 @@ async def test_what_is_not_of_the_protocol(graph: Graph) -> None:
 async def test_too_much_at_once(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Requests beyond the limit are refused."""
     monkeypatch.setattr(client, "WORK_BOUND", 2)
-    monkeypatch.setattr(bridge_module, "CLIENTS_BOUND", 1)
+    monkeypatch.setattr(server_module, "CLIENTS_BOUND", 1)
     async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
         with pytest.raises(InvalidStatus, match="503"):
             async with viewer(lab.port):
@@ -185,19 +185,19 @@ HELLO = "\r\n".join(
 async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Viewers that exceed the limit are disconnected, and do not delay closing."""
     monkeypatch.setattr(client, "CONTROL_BOUND", 100_000)
-    monkeypatch.setattr(bridge_module, "GRACE", 0.1)
+    monkeypatch.setattr(server_module, "GRACE", 0.1)
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as good:
         reader, writer = await asyncio.open_connection("127.0.0.1", lab.port, limit=1024)
         writer.write(HELLO)
         assert b" 101 " in await reader.readuntil(b"\r\n\r\n")
-        await good.until(lambda: len(lab.bridge._clients) == 2)
+        await good.until(lambda: len(lab.bridge._viewers.clients) == 2)
         for _ in range(20_000):
-            lab.bridge._broadcast(control_message("status", level=0, message="x" * 1000))
-            if len(lab.bridge._clients) == 1:
+            lab.bridge._viewers.broadcast(control_message("status", level=0, message="x" * 1000))
+            if len(lab.bridge._viewers.clients) == 1:
                 break
             await asyncio.sleep(0)
-        await good.until(lambda: len(lab.bridge._clients) <= 1)
+        await good.until(lambda: len(lab.bridge._viewers.clients) <= 1)
         stuck, other = await asyncio.open_connection("127.0.0.1", lab.port, limit=1024)
         other.write(HELLO)
         assert b" 101 " in await stuck.readuntil(b"\r\n\r\n")
@@ -223,7 +223,7 @@ async def test_a_clock_that_comes_later(graph: Graph, caplog: pytest.LogCaptureF
 
 async def test_a_message_that_is_too_long(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its sender is disconnected."""
-    monkeypatch.setattr(bridge_module, "MESSAGE_BOUND", 1000)
+    monkeypatch.setattr(server_module, "MESSAGE_BOUND", 1000)
     async with served(graph) as lab, viewer(lab.port) as seen:
         await seen.say("x" * 1001)
         await seen.until(seen._reading.done)
@@ -259,7 +259,7 @@ async def test_the_origin_of_a_page_that_is_refused(graph: Graph, caplog: pytest
     connection: Any = SimpleNamespace(respond=lambda status, _: status)
     request: Any = SimpleNamespace(headers={"Origin": "https://\x1b[31m" + "x" * 10_000})
     async with served(graph) as lab:
-        refusal: Any = lab.bridge._admit(connection, request)
+        refusal: Any = lab.bridge._viewers._admit(connection, request)
     assert refusal == 403
     [message] = [text for text in caplog.messages if "a web page of" in text]
     assert "\\x1b[31m" in message

@@ -33,7 +33,7 @@ PORT = 8765
 @click.option("--node-name", default=NODE, show_default=True, help="Name of the serving node.")
 @click.option("--rerun", "in_rerun", is_flag=True, help="Open the viewer Rerun instead: space, images, plots, log.")
 @click.option("--save", type=click.Path(path_type=Path), help="With --rerun: write FILE.rrd instead of opening it.")
-@click.option("--bag", type=click.Path(path_type=Path), help="With --rerun: show a bag instead of the running graph.")
+@click.option("--bag", type=click.Path(path_type=Path), help="Show a bag instead of the running graph.")
 def view(
     port: int,
     host: str,
@@ -52,8 +52,8 @@ def view(
     """
     if in_rerun:
         return _show_in_rerun(save, bag)
-    if save is not None or bag is not None:
-        raise UsageFault("--save and --bag are for Rerun: graphflow view --rerun")
+    if save is not None:
+        raise UsageFault("--save is for Rerun: graphflow view --rerun --save FILE.rrd")
     if find_spec("websockets") is None:
         from graphflow.introspect.installation import requirement
 
@@ -62,6 +62,8 @@ def view(
     from graphflow.cli.temporary_node import run_with_node
 
     use_project()
+    if bag is not None:
+        return _play(bag, host, port, frozenset(pages))
     is_read_only = read_only or not (allow_commands or _is_loopback(host))
 
     async def work(node: Node) -> int:
@@ -71,14 +73,41 @@ def view(
         bridge = Bridge(node, name, is_read_only=is_read_only, pages=frozenset(pages))
         try:
             found = await bridge.open(host, port)
-            output.data(f"Serving viewers on ws://{_url_host(host)}:{found}{', read-only' if is_read_only else ''}")
-            output.talk("In Foxglove or Lichtblick: Open connection, Foxglove WebSocket. Ctrl-C ends it")
+            _tell_address(host, found, ", read-only" if is_read_only else "")
             await asyncio.get_running_loop().create_future()
         finally:
             await bridge.close()
         return exits.OK
 
     return run_with_node(work, node_name)
+
+
+def _tell_address(host: str, port: int, more: str = "") -> None:
+    output.data(f"Serving viewers on ws://{_url_host(host)}:{port}{more}")
+    output.talk("In Foxglove or Lichtblick: Open connection, Foxglove WebSocket. Ctrl-C ends it")
+
+
+def _play(path: Path, host: str, port: int, pages: frozenset[str]) -> int:
+    """Serve a bag, which viewers play, pause and seek in."""
+    from graphflow.bag.reader import Bag
+    from graphflow.transport.event_loop import loop
+    from graphflow.viewer.playback import Playback
+
+    async def work() -> None:
+        playback = Playback(Bag(path), path.name, pages)
+        if playback.left_out:
+            output.talk(f"left out, as their types are not in the bag: {', '.join(playback.left_out)}")
+        try:
+            _tell_address(host, await playback.open(host, port), f", {path}")
+            await playback.ended()
+        finally:
+            await playback.close()
+
+    try:
+        loop.run(work())
+    except KeyboardInterrupt:
+        return exits.OK
+    return exits.OK
 
 
 def _url_host(host: str) -> str:
