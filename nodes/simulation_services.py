@@ -28,7 +28,8 @@ from graphflow.msgs.simulation_interfaces.srv import (
     StepSimulation,
 )
 from graphflow.msgs.std_msgs.msg import Header
-from graphflow.simulator import EDGE, SimulatedRobot, Simulation, robot_model, spawned
+from graphflow.simulator import SimulatedRobot, Simulation, robot_model, spawned
+from graphflow.simulator.world import EDGE
 
 from .robot_topics import RobotTopics
 

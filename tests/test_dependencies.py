@@ -16,7 +16,7 @@ from tests.test_layers import imports
 PROJECT_TABLE = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 FILES = sorted(file for folder in ("graphflow", "nodes") for file in (PROJECT / folder).rglob("*.py"))
 OTHER_NAMES = {"eclipse-zenoh": "zenoh", "pillow": "PIL", "pyyaml": "yaml", "ruamel.yaml": "ruamel"}
-OTHER_NAMES |= {"rerun-sdk": "rerun", "textual-serve": "textual_serve"}
+OTHER_NAMES |= {"rerun-sdk": "rerun", "textual-image": "textual_image", "textual-serve": "textual_serve"}
 """Modules that are not called as their distributions are."""
 USERS_CHOICE = {
     "cv2": "OpenCV comes in several distributions; cv_bridge names one where it is needed",

@@ -16,7 +16,6 @@ import asyncio
 import queue
 import threading
 from collections import Counter
-from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cached_property
 from weakref import WeakKeyDictionary
@@ -27,7 +26,7 @@ from graphflow.analysis.user_code import Pause, where
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import AnyFuture, TaskLike, current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world.object_waits import setters
-from graphflow.deadlock.closed_world.transform_senders import senders
+from graphflow.deadlock.closed_world.transform_senders import TransformSenders, sending
 from graphflow.deadlock.closed_world.wakers import Setters, cancellers, entries_of, handler_in, handler_of, method_of
 from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.deadlock.startup_waits import start_of, unopened
@@ -37,7 +36,6 @@ from graphflow.deadlock.wait_times import WaitTimes
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.executor.activity import Activity
 from graphflow.executor.runner import Run, Runner
-from graphflow.machines.cache import GraphCache
 from graphflow.machines.waits.wait_graph import (
     FREE,
     ActivityView,
@@ -58,11 +56,8 @@ from graphflow.machines.waits.wait_graph import (
 from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Kind
 
-TRANSFORMS = "tf2_msgs/msg/TFMessage"
-_ATTEMPTS = 5
-"""Attempts at a snapshot while the loop changes what is read."""
-LOOP_LIMIT = 0.2
-"""Seconds for the loop to take a snapshot of itself."""
+_ATTEMPTS, LOOP_LIMIT = 5, 0.2
+"""Attempts at a snapshot while the loop changes what is read, and seconds for the loop to take one of itself."""
 
 
 class Snapshot:
@@ -83,9 +78,8 @@ class Snapshot:
             for _ in range(_ATTEMPTS):
                 try:
                     own = _Builder(self._process, self, self._watchdog).graph()
-                    publish = publishing_transforms(self._process.cache) if self._process.elsewhere else ()
-                    others = (sending(other.waits(), publish) for other in list(self._process.elsewhere))
-                    return joined([own, *others])
+                    others = [other.waits() for other in list(self._process.elsewhere)]
+                    return joined([own, *(sending(graph, self._process.cache) for graph in others)])
                 except RuntimeError:  # a container changed its size while it was copied
                     continue
         return WaitGraph()
@@ -108,20 +102,6 @@ class Snapshot:
         return self._numbers.setdefault(task, self._count)
 
 
-def publishing_transforms(cache: GraphCache) -> set[str]:
-    """Return the names of the nodes that publish transforms."""
-    return {e.node_name for e in list(cache) if e.kind is Kind.PUBLISHER and e.type == TRANSFORMS}
-
-
-def sending(graph: WaitGraph, nodes: Collection[str]) -> WaitGraph:
-    """Return a graph in which every handler and activity of some nodes may send transforms."""
-    if not nodes:
-        return graph
-    activities = {id_: replace(a, sends=() if a.node in nodes else None) for id_, a in graph.activities.items()}
-    queues = {id_: replace(q, sends=() if q.node in nodes else None) for id_, q in graph.queues.items()}
-    return replace(graph, activities=activities, queues=queues)
-
-
 class _Builder:
     """The construction of one wait-for graph."""
 
@@ -132,6 +112,7 @@ class _Builder:
         self._vertices = Vertices(self._zid, memory.number_of)
         self._now_ns = process.clock.monotonic_ns()
         self._nodes = list(process.nodes)
+        self._senders = TransformSenders(process)
         self._runners = [(node, runner) for node in self._nodes for runner in list(node.runners)]
         self._activities: dict[str, ActivityView] = {}
         self._queues: dict[str, QueueView] = {}
@@ -151,24 +132,7 @@ class _Builder:
     @cached_property
     def _processes(self) -> tuple[str, ...]:
         """The processes with nodes; those of graphflow's own tools are left out."""
-        entities = [entity for entity in list(self._process.cache) if not is_hidden(entity.node_name)]
-        return tuple(sorted({self._zid, *(entity.zid for entity in entities)}))
-
-    @cached_property
-    def _sending(self) -> dict[str, Mapping[str, tuple[str, ...]]]:
-        """By node: the methods that may send transforms, with the texts in their code."""
-        publish = publishing_transforms(self._process.cache)
-        found: dict[str, Mapping[str, tuple[str, ...]]] = {}
-        for node in self._nodes:
-            if node.transforms and not is_hidden(node.full_name):
-                found[node.full_name] = senders(node, node.transforms)
-            elif node.full_name in publish:
-                found[node.full_name] = dict.fromkeys(entries_of(node), ())
-        return found
-
-    def _sends(self, node: Subject, handler: str) -> tuple[str, ...] | None:
-        """Return the texts in a handler's code if it may send transforms."""
-        return self._sending.get(node.full_name, {}).get(handler)
+        return tuple(sorted({self._zid, *(e.zid for e in list(self._process.cache) if not is_hidden(e.node_name))}))
 
     def graph(self) -> WaitGraph:
         """Build the graph."""
@@ -187,7 +151,7 @@ class _Builder:
                 runner.spec.dropped(),
                 self._zid,
                 runner.spec.handler in node.handlers,
-                sends=None if runner.spec.is_inner else self._sends(node, handler_of(runner)),
+                sends=None if runner.spec.is_inner else self._senders.texts(node, handler_of(runner)),
             )
             for run in sorted(runner.active, key=lambda run: run.number):
                 self._add_run(node, runner, run)
@@ -217,7 +181,7 @@ class _Builder:
             start = start_of(node, self._zid)
             self._vertices.groups[start.id] = start
             for queue in unopened(node, self._zid):
-                self._queues[queue.id] = replace(queue, sends=self._sends(node, handler_in(queue.label)))
+                self._queues[queue.id] = replace(queue, sends=self._senders.texts(node, handler_in(queue.label)))
             self._add(self._vertices.task_id(task), "on_start", node, task, (start.id,), "")
 
     def _add_task(self, node: Subject, task: asyncio.Task[object]) -> None:
@@ -265,7 +229,7 @@ class _Builder:
             is_inner,
             found.is_async,
             found.called,
-            None if is_inner else self._sends(node, handler_in(label)),
+            None if is_inner else self._senders.texts(node, handler_in(label)),
         )
 
     # conditions

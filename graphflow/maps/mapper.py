@@ -14,13 +14,13 @@ from graphflow.maps.grid import CELLS_BOUND, UNKNOWN, GridMap
 from graphflow.maps.matching import Field, Placement, Window, refine, rotated, search, smoothed
 from graphflow.tf.planar import Pose2D
 
-HIT, MISS = 0.85, -0.4
+HIT, MISS = 0.85, -0.2
 """Log-odds that a beam which ends in a cell, or passes it, adds."""
-MOST = 5.0
+MOST = 8.0
 """Log-odds of a cell, at most in both directions, so that a map can still be changed."""
 GROWTH = 5.0
 """Metres by which a map grows beyond a scan that leaves it."""
-SMEAR = 0.05
+SMEAR = 0.035
 """Standard deviation in metres by which obstacles are smeared for the matching."""
 WINDOW = Window(0.20, 0.05, 0.16, 0.02)
 """The error that the odometry may have between two scans."""
@@ -28,6 +28,11 @@ ENOUGH = 0.3
 """The score from which a placement counts as found."""
 FEWEST = 20
 """Points of a scan below which it says too little."""
+SETTLING = 0.6
+"""Metres at the beginning in which the map is aligned to the odometry, which is exact to millimetres over so short a
+way. The matching alone would place the map up to half a cell beside, since obstacles are drawn as whole cells."""
+SHARE = 0.8
+"""Share of a cell by which the map may lie beside, at most."""
 MOVED, TURNED = 0.05, 0.05
 """Metres and radians after which a scan is drawn into the map; those of a standing robot would only harden it."""
 
@@ -39,7 +44,6 @@ class Mapper:
         resolution: The size of a cell in metres.
 
     Attributes:
-        correction: The pose of the odometry's frame in the map's.
         score: That of the latest matching, from 0 to 1; 0 if there was none.
         drawn: The number of scans in the map.
     """
@@ -50,7 +54,13 @@ class Mapper:
 
     def clear(self) -> None:
         """Forget the map and the correction."""
-        self.correction = Pose2D(0.0, 0.0, 0.0)
+        self._correction = Pose2D(0.0, 0.0, 0.0)
+        """The pose of the odometry's frame among the cells."""
+        self._beside = np.zeros(2)
+        """The place of the map's frame among the cells."""
+        self._settled: list[tuple[float, float]] = []
+        """Differences between the matching and the odometry at the beginning."""
+        self._way, self._before = 0.0, Pose2D(0.0, 0.0, 0.0)
         self.score, self.drawn = 0.0, 0
         self._odds = np.zeros((0, 0), np.float32)
         self._corner = 0, 0
@@ -67,18 +77,39 @@ class Mapper:
             odometry: The robot's pose by its odometry at the scan's time.
             scanner: The scanner's pose on the robot.
         """
-        robot = self.correction.of(odometry)
+        robot = self._correction.of(odometry)
         on_robot = rotated(points, scanner.yaw) + np.array([scanner.x, scanner.y])
         if self.drawn and len(points) >= FEWEST:
             found = self._match(on_robot, robot)
             self.score = found.score
             if found.score >= ENOUGH:
                 robot = Pose2D(found.x, found.y, math.remainder(found.yaw, math.tau))
-                self.correction = robot.of(odometry.inverse())
+                self._correction = robot.of(odometry.inverse())
+                self._settle(robot, odometry)
         if self._has_moved(robot):
             self._latest = robot
             self._draw(on_robot, rotated(free, scanner.yaw) + np.array([scanner.x, scanner.y]), robot, scanner)
-        return robot
+        return self._in_map(robot)
+
+    @property
+    def correction(self) -> Pose2D:
+        """The pose of the odometry's frame in the map's."""
+        return self._in_map(self._correction)
+
+    def _in_map(self, pose: Pose2D) -> Pose2D:
+        return Pose2D(pose.x - float(self._beside[0]), pose.y - float(self._beside[1]), pose.yaw)
+
+    def _settle(self, robot: Pose2D, odometry: Pose2D) -> None:
+        """Align the map's frame to the odometry while the robot is near its start."""
+        if self._settled:
+            self._way += math.hypot(odometry.x - self._before.x, odometry.y - self._before.y)
+        self._before = odometry
+        beside = robot.x - odometry.x, robot.y - odometry.y
+        # A greater difference is an error of the odometry.
+        if self._way < SETTLING and max(map(abs, beside)) < SHARE * self.resolution:
+            self._settled.append(beside)
+            # The first matches still move the cells.
+            self._beside = np.mean(self._settled[len(self._settled) // 2 :], axis=0)
 
     def _has_moved(self, robot: Pose2D) -> bool:
         last = self._latest
@@ -183,4 +214,4 @@ class Mapper:
         cells = np.where(part == 0.0, UNKNOWN, np.round(100.0 * share)).astype(np.int8)
         column, row = self._corner
         x, y = (column + int(columns[0])) * self.resolution, (row + int(rows[0])) * self.resolution
-        return GridMap(cells, self.resolution, (x, y, 0.0))
+        return GridMap(cells, self.resolution, (x - float(self._beside[0]), y - float(self._beside[1]), 0.0))

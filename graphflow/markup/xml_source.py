@@ -20,8 +20,6 @@ from graphflow.markup.tree import Item, located
 from graphflow.reading import found_bytes
 from graphflow.typographic import plain
 
-LISTS = ("param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let")
-"""Elements that are list attributes of their parent; any other child is an action."""
 _WITH_ACTIONS = ("launch", "group", "timer", "ros_timer")
 
 

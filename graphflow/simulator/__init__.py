@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING
 
 from graphflow.simulator.loading import robot_model, simulate, spawned
 from graphflow.simulator.robot import Robot
-from graphflow.simulator.world import EDGE, World
+from graphflow.simulator.world import World
 
 if TYPE_CHECKING:
     from graphflow.simulator.simulation import ImuReading, SimulatedRobot, Simulation
 
-__all__ = ["EDGE", "ImuReading", "Robot", "SimulatedRobot", "Simulation", "World", "robot_model", "simulate", "spawned"]
+__all__ = ["ImuReading", "Robot", "SimulatedRobot", "Simulation", "World", "robot_model", "simulate", "spawned"]
 
 
 if sys.platform == "linux" and not os.environ.get("DISPLAY"):

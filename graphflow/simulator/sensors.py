@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from graphflow.simulator.robot import Battery, Lidar, Wheels
 
-STANDSTILL = 1e-9
-
 
 def noisy(distances: NDArray[np.float64], lidar: Lidar, dice: np.random.Generator) -> NDArray[np.float32]:
     """Return the ranges that a scanner reports, in metres: infinite where it sees nothing.

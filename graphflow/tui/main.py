@@ -20,6 +20,7 @@ from graphflow.tui.feeds.hub import Hub, Verbs
 from graphflow.tui.feeds.supervision import Event, NodeRow, Supervision
 from graphflow.tui.layout import Layout
 from graphflow.tui.widgets.colours import DARK
+from graphflow.tui.widgets.graphics import ask_terminal
 from graphflow.tui.widgets.welcome import is_first_visit
 
 FAILED = "failed"
@@ -102,6 +103,7 @@ def _show(
         welcome=is_first_visit(),
     )
     collect_normally()
+    ask_terminal()
     how = app.run() or FAILED
     return how, hub.supervision.exit_code if hub.supervision is not None else None
 

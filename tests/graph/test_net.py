@@ -59,7 +59,7 @@ def test_every_mistake_is_told_with_its_place(folder: Path) -> None:
         (TLS, "1:1: neither `listen` nor `connect`: nothing could be reached"),
         ("listen: tls/0.0.0.0:7448\n" + TLS.replace("own.key", "her.key"), "2:46: there is no file "),
         ("listen: 7\n" + TLS, "1:9: 7: input should be a valid string"),
-        ("connect: [tls/robot:7448]\nallow: []\n" + TLS, "2:8: []: list should have at least 1 item"),
+        ("connect: [tls/robot:7448]\nallow: []\n" + TLS, "2:8: []: has 0 of at least 1 items"),
         ("7\n", "1:1: 7: "),
     ],
 )

@@ -4,16 +4,56 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 
 from graphflow.analysis.class_source import Unknown, source_of
 from graphflow.deadlock.closed_world.wakers import entries_of, handlers_above
-from graphflow.deadlock.protocols import Subject
+from graphflow.deadlock.protocols import ProcessContext, Subject
+from graphflow.machines.cache import GraphCache
+from graphflow.machines.waits.wait_graph import WaitGraph
+from graphflow.names import is_hidden
+from graphflow.wire.liveliness import Kind
+
+TYPE = "tf2_msgs/msg/TFMessage"
 
 _SENDING = {"send", "send_static"}
 """Methods of a node's transforms that send some."""
 _LOOKING_UP = {"lookup", "get", "transform", "chain", "info", "parent"}
 NAMES_BOUND = 50
 """Names of frames of one handler, at most."""
+
+
+class TransformSenders:
+    """The handlers of a process's nodes that may send transforms."""
+
+    def __init__(self, process: ProcessContext) -> None:
+        self._publish = publishing(process.cache)
+        self._found: dict[str, Mapping[str, tuple[str, ...]]] = {}
+        """By node: methods, each with the texts in its code."""
+
+    def texts(self, node: Subject, handler: str) -> tuple[str, ...] | None:
+        """Return the texts in the code of a handler that may send transforms; None for one that sends none."""
+        name = node.full_name
+        if name not in self._found:
+            is_tool = is_hidden(name)  # one of graphflow's own, which only listens
+            anything = dict.fromkeys(entries_of(node), ()) if name in self._publish else {}
+            self._found[name] = senders(node, node.transforms) if node.transforms and not is_tool else anything
+        return self._found[name].get(handler)
+
+
+def publishing(cache: GraphCache) -> set[str]:
+    """Return the names of the nodes that publish transforms."""
+    return {e.node_name for e in list(cache) if e.kind is Kind.PUBLISHER and e.type == TYPE}
+
+
+def sending(graph: WaitGraph, cache: GraphCache) -> WaitGraph:
+    """Return a graph in which all handlers and activities of the nodes that publish transforms may send any."""
+    nodes = publishing(cache)
+    if not nodes:
+        return graph
+    activities = {id_: replace(a, sends=() if a.node in nodes else None) for id_, a in graph.activities.items()}
+    queues = {id_: replace(q, sends=() if q.node in nodes else None) for id_, q in graph.queues.items()}
+    return replace(graph, activities=activities, queues=queues)
 
 
 def senders(node: Subject, attributes: Collection[str]) -> Mapping[str, tuple[str, ...]]:

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
+
     from graphflow.msgs.sensor_msgs.msg import CompressedImage, Image
 
 Pixels: TypeAlias = NDArray[np.uint8]
@@ -124,6 +126,13 @@ def _debayered(values: NDArray[np.generic], red: int, blue: int) -> Pixels:
     greens = [at for at in range(4) if at not in (red, blue)]
     green = squares[:, :, greens].astype(np.uint16).sum(axis=2) // 2
     return np.stack([squares[:, :, red], green, squares[:, :, blue]], axis=2).astype(np.uint8)
+
+
+def picture(image: Pixels) -> Picture:
+    """Return pixels as an image of Pillow."""
+    from PIL.Image import fromarray
+
+    return fromarray(image)
 
 
 def shrunk(image: Pixels, width: int, height: int) -> Pixels:

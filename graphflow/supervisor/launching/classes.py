@@ -133,8 +133,9 @@ def _bundled(wanted: str) -> str:
     near = "robot_simulator" if is_robot else nearest(wanted.rpartition(".")[2], files, cutoff=0.75)
     if near is None or near not in files:
         return ""
-    found = re.search(r"^class (\w+)\((?:Lifecycle)?Node\)", files[near].read_text("utf-8"), re.MULTILINE)
-    return f"; did you mean 'nodes.{near}:{found[1]}', which comes with graphflow?" if found is not None else ""
+    text = files[near].read_text("utf-8")
+    found = re.findall(r"^class (\w+)\((?:LifecycleNode|Node|SimulationServices)\)", text, re.MULTILINE)
+    return f"; did you mean 'nodes.{near}:{found[0]}', which comes with graphflow?" if found else ""
 
 
 def nearest_module(module: str, root: str) -> str | None:

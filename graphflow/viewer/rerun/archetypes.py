@@ -246,4 +246,4 @@ _SHOWN: dict[str, Show] = {
     "std_msgs/msg/String": _text,
     **{f"std_msgs/msg/{kind}": _field("data") for kind in ("Float32", "Float64", "Int32", "Int64", "UInt32", "Bool")},
 }
-"""How messages are shown, by type."""
+"""The functions that show messages, by type."""

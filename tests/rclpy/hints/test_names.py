@@ -74,6 +74,7 @@ LAMPS = [
     ),
     (
         "def tick(self):\n    from rclpy.wait_for_message import wait_for_message\n"
+        "    from std_msgs.msg import Int32\n"
         "    pose = wait_for_message(Int32, self, '/count', time_to_wait=0.01)\n    pose.x",
         "wait_for_message returns whether a message came, too: write ok, pose = ...",
     ),

@@ -1,4 +1,4 @@
-"""The images of a topic, in cells of two pixels."""
+"""The images of a topic: in the pixels of a terminal that draws graphics, elsewhere in cells of two pixels."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from graphflow.tui.feeds.topic_monitor import TopicMonitor
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
 from graphflow.tui.views.robot.topics import next_of, topics_of
+from graphflow.tui.widgets.graphics import Graphics, are_drawn
 
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 RECENT = 2.0
@@ -91,7 +92,7 @@ class ImageView(View):
         super().__init__(hub, content)
         self._topic = self.about
         self._monitor: TopicMonitor | None = None
-        self._picture = Picture()
+        self._picture = Graphics() if are_drawn() else Picture()
         self._legend = Static("waiting for a camera: no node publishes images yet")
         self._seen = 0
         self._paused = False
