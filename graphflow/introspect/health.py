@@ -23,7 +23,7 @@ FLOOD = 50.0
 """Log lines per second from which a flood is reported."""
 ECHO = 1.0
 """Own messages per second received by a node from which an echo is reported."""
-LOST_PART, LOST_LEAST = 0.5, 20
+LOST_PART, LOST_LEAST, EXPIRED_LEAST = 0.5, 20, 5
 """Share and number of dropped messages from which a loss is reported."""
 SHOWN = 10
 """Most nodes in a list, or texts of one node."""
@@ -146,6 +146,12 @@ def _losses(now: Counts) -> Iterator[str]:
             yield (
                 f"{part} of {node} has lost {100 * dropped / received:.0f} % of {received:.0f} messages: its handler "
                 "is too slow, or waits for a group; do less in it, or publish less"
+            )
+        expired = numbers.get("expired", 0.0)
+        if received and expired >= max(EXPIRED_LEAST, LOST_PART * received):
+            yield (
+                f"{part} of {node} drops {100 * expired / received:.0f} % of its messages, which are older than their "
+                "lifespan when they arrive: give it a longer lifespan"
             )
 
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graphflow.errors import CallError
 from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
+from graphflow.machines.lifecycle import LifecycleState
+from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 
@@ -30,6 +33,19 @@ def state(view: View, node: str, timeout: float) -> State:
 
     response: GetState.Response = view.call(f"{node}/get_state", _STATE, GetState.Request(), timeout)
     return response.current_state
+
+
+def idle(view: View, timeout: float) -> Iterator[str]:
+    """Yield a sentence for each lifecycle node that is not active, and how to activate it; silent ones are left out."""
+    for node in managed_nodes(view.cache):
+        try:
+            now = LifecycleState(state(view, node, timeout).id)
+        except (CallError, ValueError):
+            continue
+        steps = {LifecycleState.UNCONFIGURED: ("configure", "activate"), LifecycleState.INACTIVE: ("activate",)}
+        if now in steps and not is_hidden(node):
+            way = " && ".join(f"graphflow lifecycle set {node} {step}" for step in steps[now])
+            yield f"{node} is {now.label}, so that it handles and publishes nothing: {way}"
 
 
 def transitions(view: View, node: str, timeout: float, *, everything: bool = False) -> Sequence[TransitionDescription]:

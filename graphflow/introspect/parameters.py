@@ -91,7 +91,7 @@ def read_value(text: str, type_: int) -> object:
         type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter of any type.
 
     Raises:
-        UsageFault: `text` is not YAML.
+        UsageFault: `text` is not YAML, or a comment.
     """
     from graphflow.markup.source import parse_value
 
@@ -107,6 +107,8 @@ def read_value(text: str, type_: int) -> object:
         value = parse_value(text)
     except GraphflowError as error:
         raise UsageFault(str(error)) from None
+    if value is None and text.lstrip().startswith("#"):
+        raise UsageFault(f"{text!r} has no value, since # begins a comment in YAML; for the text write '\"{text}\"'")
     return as_declared(value, type_)
 
 

@@ -57,7 +57,7 @@ def _reason(fault: Fault) -> str:
         case "too_long":
             return f"has {ctx['actual_length']} of at most {ctx['max_length']} items"
         case "list_type":
-            return "a list belongs here: write each item in a line of its own, after a dash"
+            return "a list belongs here: [..., ...], or each item in a line of its own, after a dash"
         case "model_type" | "dict_type":
             return "keys with values belong here, in lines of their own or in braces"
     return fault["msg"].lower()

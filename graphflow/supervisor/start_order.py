@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 
-from graphflow.graph.plan import Plan
-from graphflow.machines.process import Need, Order
+from graphflow.graph.plan import Plan, PlannedStep
+from graphflow.machines.process import Need, Order, State
 from graphflow.supervisor.processes.process import Process
+
+SLOW_START = 5.0
+"""Seconds after which a graph that is not up says what it waits for."""
+NAMED = 3
+"""The number of these that it names."""
 
 
 def start_order(plan: Plan, processes: Iterable[Process]) -> Order:
@@ -48,3 +53,15 @@ def restarted_with(name: str, strategy: str, order: Order, processes: Iterable[s
     if strategy == "one_for_all":
         return others
     return [other for other in others if strategy == "rest_for_one" and name in order.all_before(other)]
+
+
+def waits(steps: Iterable[PlannedStep], processes: Iterable[Process]) -> str:
+    """Return what a start waits for, as in `it waits for step late, 30 s, and /camera`.
+
+    Args:
+        steps: The steps that are being carried out.
+    """
+    found = [f"step {step.name}, {step.timeout:g} s" if step.do == "delay" else f"step {step.name}" for step in steps]
+    found += [name for p in processes if p.state is State.STARTING for name in sorted(p.waiting_for)]
+    more = [f"{len(found) - NAMED} more"] if len(found) > NAMED else []
+    return f"it waits for {', and '.join([*found[:NAMED], *more])}"

@@ -28,7 +28,7 @@ from graphflow.supervisor.processes.jobs import MESH_LIMIT, environment_of, no_m
 from graphflow.supervisor.processes.process import Process
 from graphflow.supervisor.processes.starter import Starter
 from graphflow.supervisor.rundir import log_file
-from graphflow.supervisor.start_order import needs_of_up, restarted_with, start_order
+from graphflow.supervisor.start_order import SLOW_START, needs_of_up, restarted_with, start_order, waits
 from graphflow.supervisor.steps import StepRunner
 
 if TYPE_CHECKING:
@@ -172,8 +172,10 @@ class Supervisor:
             self.note(no_mesh(len(self._processes)))
         self._start_startable()
         health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
+        slow = self._context.loop.call_later(SLOW_START, self._note_waits)
         await self.ended.wait()
         health.cancel()
+        slow.cancel()
         for task in self._step_tasks.values():
             task.cancel()
         await asyncio.gather(*self._step_tasks.values(), return_exceptions=True)
@@ -181,6 +183,11 @@ class Supervisor:
         await self._steps.close()
         self.clients.broadcast({"event": "end", "exit_code": self.exit_code})
         return self.exit_code
+
+    def _note_waits(self) -> None:
+        if not (self.up.is_set() or self._stopping):
+            steps = [s for s in self.plan.steps if (task := self._step_tasks.get(f"step {s.name}")) and not task.done()]
+            self.note(f"the graph is not up after {SLOW_START:g} s: {waits(steps, self._processes.values())}")
 
     def on_event(self, event: messages.ProcessEvent) -> None:
         """Take in an event of a process."""

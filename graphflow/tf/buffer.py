@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeAlias
+from typing import Any
 
 from graphflow.errors import DeclarationError, ExtrapolationError, TransformError, UnknownFrame
 from graphflow.executor.ledger import AwaitedTransform
@@ -22,8 +22,8 @@ from graphflow.tf.faults import fault_of
 from graphflow.tf.frames import BACK, Frames, seconds
 from graphflow.tf.info import FrameInfo, Sender
 from graphflow.tf.reports import Reports
-from graphflow.tf.transform import Transform, pose_of, stamped
-from graphflow.times import NANOSECONDS, HasFields, Time, to_ns
+from graphflow.tf.transform import Stamp, Transform, pose_of, stamp_ns, stamped
+from graphflow.times import NANOSECONDS, Time, to_ns
 from graphflow.wire.attachment import MessageInfo
 
 TOPIC, STATIC_TOPIC = "/tf", "/tf_static"
@@ -38,9 +38,6 @@ STOPPED_AFTER = 1.0
 """Seconds without a transform of a frame after which its publisher counts as stopped."""
 TWO_CLOCKS = 10**6 * NANOSECONDS
 """A distance between two stamps that only two different clocks explain."""
-
-Stamp: TypeAlias = Time | HasFields | None
-"""A time: a `Time`, a message's stamp, or None for the latest."""
 
 
 @dataclass(slots=True, eq=False)
@@ -265,10 +262,10 @@ class TransformBuffer(AttributeHints):
             text = "does not listen to transforms: declare Transforms() without listen=False"
             raise DeclarationError(f"{self._owner.full_name} {text}")
         if fixed is None:
-            pose, stamp = self._frames.find(target, source, _ns(at))
+            pose, stamp = self._frames.find(target, source, stamp_ns(at))
         else:
-            first, _ = self._frames.find(fixed, source, _ns(at))
-            second, stamp = self._frames.find(target, fixed, _ns(target_at))
+            first, _ = self._frames.find(fixed, source, stamp_ns(at))
+            second, stamp = self._frames.find(target, fixed, stamp_ns(target_at))
             pose = second.of(first)
         return Transform(target, source, pose, Time(stamp))
 
@@ -444,7 +441,3 @@ class TransformBuffer(AttributeHints):
         if not (one.header.stamp.sec or one.header.stamp.nanosec):
             one = stamped(pose_of(one.transform), parent, frame, self._owner.clock.time_ns())
         return one
-
-
-def _ns(at: Stamp) -> int:
-    return 0 if at is None else Time.from_msg(at).nanoseconds if not isinstance(at, Time) else at.nanoseconds

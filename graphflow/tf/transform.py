@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,10 @@ from graphflow.msgs.std_msgs.msg import Header
 from graphflow.tf import messages
 from graphflow.tf.planar import Pose2D
 from graphflow.tf.poses import Pose, Quaternion, Vector, from_rpy, to_rpy
-from graphflow.times import Time
+from graphflow.times import HasFields, Time
+
+Stamp: TypeAlias = Time | HasFields | None
+"""A time: a `Time`, a message's stamp, or None for the latest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +134,13 @@ def pose_of(transform: TransformMessage) -> Pose:
     """Convert a `geometry_msgs/Transform` to a pose."""
     t, r = transform.translation, transform.rotation
     return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
+
+
+def stamp_ns(at: Stamp) -> int:
+    """Return a time in nanoseconds; 0 for the latest. Raises TypeError for a number."""
+    if isinstance(at, (int, float)):
+        raise TypeError(f"at= takes a Time or a message's stamp, not {at!r}; the time now is self.clock.now()")
+    return 0 if at is None else Time.from_msg(at).nanoseconds if not isinstance(at, Time) else at.nanoseconds
 
 
 def stamped(pose: Pose, parent: str, child: str, stamp_ns: int) -> TransformStamped:

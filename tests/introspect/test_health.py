@@ -94,6 +94,14 @@ def test_a_few_lost_messages_are_nothing() -> None:
     assert found(Seen(), [], look(a={"subscription /scan": {"received": 10, "dropped": 9}})).faults == []
 
 
+@pytest.mark.parametrize(("expired", "is_told"), [(8, True), (4, False)])
+def test_expired_messages(expired: int, is_told: bool) -> None:
+    """Most of them, that is."""
+    told = found(Seen(), [], look(a={"subscription /scan": {"received": 8, "expired": expired}})).faults
+    text = "subscription /scan of /a drops 100 % of its messages, which are older than their lifespan when they arrive"
+    assert told == ([f"{text}: give it a longer lifespan"] if is_told else [])
+
+
 def test_a_flood_in_a_log() -> None:
     """Lines that were gathered count, too."""
     before, now = look(a={"log": {"lines": 5, "gathered": 0}}), look(a={"log": {"lines": 25, "gathered": 300}})

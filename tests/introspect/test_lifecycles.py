@@ -5,9 +5,11 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
 from graphflow import LifecycleNode, Node
 from graphflow.introspect.graph_view import View
-from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
+from graphflow.introspect.lifecycles import change, idle, managed_nodes, state, transitions
 from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState
 from graphflow.testing import Graph
@@ -47,3 +49,24 @@ async def test_who_has_a_life_cycle(graph: Graph) -> None:
     plain.create_service(ChangeState, "/elsewhere/change_state", lambda _: ChangeState.Response())
     await graph.start(LifecycleNode("lived"), plain)
     assert managed_nodes(plain.context.cache) == ["/lived"]
+
+
+@pytest.mark.parametrize(
+    ("number", "told"),
+    [
+        (
+            1,
+            "unconfigured, so that it handles and publishes nothing: graphflow lifecycle set /lived configure && "
+            "graphflow lifecycle set /lived activate",
+        ),
+        (2, "inactive, so that it handles and publishes nothing: graphflow lifecycle set /lived activate"),
+        (3, ""),
+        (99, ""),
+    ],
+)
+async def test_nodes_that_are_not_active(graph: Graph, number: int, told: str) -> None:
+    """Each is told with the next step; an active node and an unknown state are not."""
+    await graph.start(node := LifecycleNode("lived"))
+    view = Asked(current_state=State(id=number))
+    view.cache = node.context.cache
+    assert list(idle(view, 1.0)) == ([f"/lived is {told}"] if told else [])

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from graphflow.errors import CallError, ParameterError
+from graphflow.errors import CallError, ParameterError, UsageFault
 from graphflow.introspect.graph_view import View
-from graphflow.introspect.parameters import STARTING, RemoteParameters
+from graphflow.introspect.parameters import STARTING, RemoteParameters, read_value
 from graphflow.msgs.rcl_interfaces.msg import ListParametersResult, ParameterDescriptor, ParameterValue
 from graphflow.msgs.rcl_interfaces.msg import SetParametersResult as Result
 from graphflow.msgs.rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
@@ -118,3 +118,10 @@ def test_a_node_without_parameter_services(robot: Robot) -> None:
     with pytest.raises(CallError, match="/other/list_parameters"):
         RemoteParameters(robot, "/other", 1.5).names()
     assert robot.calls == []
+
+
+def test_a_comment_as_a_value() -> None:
+    """YAML reads nothing; the error has the quotes. A parameter of text takes it as it is."""
+    with pytest.raises(UsageFault, match="'#ff0000' has no value, since # begins a comment in YAML"):
+        read_value("#ff0000", INTEGER)
+    assert read_value("#ff0000", 4) == "#ff0000"

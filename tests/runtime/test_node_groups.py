@@ -83,6 +83,18 @@ async def test_a_declared_group_holds_for_its_node(graph: Graph, limit: int | No
     gate.set()
 
 
+def test_a_default_group_that_is_none() -> None:
+    """The error has the declaration."""
+    with pytest.raises(DeclarationError, match=r"default_group is a Group: write default_group = Group\(1\)"):
+
+        class Wrong(Node):
+            default_group = Group  # type: ignore[assignment]
+
+            @subscription(String, "x")
+            async def first(self, _: String) -> None:
+                """Do nothing."""
+
+
 async def test_the_default_group_of_a_class(graph: Graph) -> None:
     """`default_group = Group(1)` is rclpy's default: no two handlers of the node overlap."""
     log, gate = Log(), asyncio.Event()

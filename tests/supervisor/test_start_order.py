@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from graphflow.graph.resolve import resolve
-from graphflow.machines.process import Need
+from graphflow.machines.process import Need, State
 from graphflow.markup import source
 from graphflow.supervisor.processes.process import Process
-from graphflow.supervisor.start_order import needs_of_up, restarted_with, start_order
+from graphflow.supervisor.start_order import needs_of_up, restarted_with, start_order, waits
 
 TEXT = """
 nodes:
@@ -51,3 +51,22 @@ def test_the_strategy_chooses_what_is_restarted(tmp_path: Path, strategy: str, o
     processes = [Process(name, nodes, "log") for name, nodes in plan.processes().items()]
     names = [process.name for process in processes]
     assert restarted_with("/a", strategy, start_order(plan, processes), names) == others
+
+
+def test_what_a_slow_start_waits_for(tmp_path: Path) -> None:
+    """Steps, with the time of a delay, and nodes that are not ready; three of them are named."""
+    text = """
+nodes:
+  /a: {class: "n:A"}
+  /b: {class: "n:A"}
+  /c: {class: "n:A"}
+steps:
+  late: {delay: 30.0}
+  reset: {call: /reset, type: std_srvs/srv/Empty}
+"""
+    plan = resolve(source.read(text, "g.yaml"), tmp_path / "g.yaml")
+    processes = [Process(name, nodes, "log") for name, nodes in plan.processes().items()]
+    for process in processes[:2]:
+        process.state = State.STARTING
+    assert waits(plan.steps[:1], processes) == "it waits for step late, 30 s, and /a, and /b"
+    assert waits(plan.steps, processes) == "it waits for step late, 30 s, and step reset, and /a, and 1 more"

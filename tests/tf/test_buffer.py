@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
+from typing import Any
 
 import pytest
 
@@ -311,6 +312,15 @@ async def test_a_wait_without_limit(graph: Graph) -> None:
     await graph.start(Odometry())
     await graph.clock.advance(0.1)
     assert waits.found.translation == pytest.approx((0.1, 0.0, 0.0))
+
+
+async def test_a_number_in_place_of_a_time(graph: Graph) -> None:
+    """Its error has the time to write."""
+    listener = Listener()
+    await graph.start(listener)
+    seconds: Any = 12.5
+    with pytest.raises(TypeError, match=r"at= takes a Time or a message's stamp, not 12.5; .* self.clock.now\(\)"):
+        await listener.tf.lookup("odom", "base", at=seconds)
 
 
 def test_words_of_rclpy() -> None:

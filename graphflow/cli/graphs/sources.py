@@ -127,9 +127,7 @@ def _report(paths: Sequence[Path], found: _Findings, *, as_json: bool) -> None:
     for problem in found.problems:
         output.talk(str(problem))
     output.lines(found.slips)
-    output.lines(
-        f"{place}: not analysed: a callback polls a value that is not set in this file" for place in found.unfollowed
-    )
+    output.lines(f"{place}: not analysed: the source does not show what ends this loop" for place in found.unfollowed)
     output.lines(str(way) for way in found.ways)
     where = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
     output.data(f"{where}: {', '.join(_counts(found))}")

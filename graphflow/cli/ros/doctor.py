@@ -17,8 +17,10 @@ from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.introspect import concurrency, installation
+from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.health import Look, examine, needs_second
+from graphflow.introspect.lifecycles import idle
 from graphflow.machines.matching import complaints
 from graphflow.names import is_hidden
 from graphflow.rclpy import enabling
@@ -141,7 +143,7 @@ def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
     )
     notes = {
         "late": late,
-        "hints": health.hints,
+        "hints": [*health.hints, *idle(view, ANSWER_LIMIT)],
         "silent": others,
         "unreadable": unread,
         "unseen": unseen,
@@ -164,7 +166,8 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
         output.data(f"not graphflow nodes{beyond}, so their handlers are unknown: {', '.join(notes['silent'])}")
     output.lines([*notes["kept_back"], *notes["unreadable"], *notes["unseen"]])
     if not any(faults.values()) and not notes["late"]:
-        output.data(f"{count} node{'s' if count != 1 else ''}, {_verdict(notes)}")
+        nodes = nothing_here("no nodes") if not count else f"{count} node{'s' if count != 1 else ''}"
+        output.data(f"{nodes}, {_verdict(notes)}" if count else nodes)
 
 
 def _verdict(notes: Findings) -> str:

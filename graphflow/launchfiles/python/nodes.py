@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import yaml
 
 from graphflow.launchfiles.attributes import output_fault
@@ -16,6 +18,8 @@ _OF_CONTAINERS = frozenset(
 )
 """Arguments of containers that only their nodes have in a graph file."""
 _SUBSTITUTIONS = frozenset(NAMES["launch.substitutions"].split())
+_RULE = re.compile(r"((?!__)[\w/.~]+):=(.*)")
+"""A parameter or remap of a command line."""
 _TYPED = {"ParameterValue": 0, "Parameter": 1}
 """Classes that give a parameter a type, with the positions of their values."""
 
@@ -72,6 +76,7 @@ def node(call: RecordedCall) -> dict[str, Data]:
         words = _list(call, key, "['--fast']")
         if words:
             found[ours] = [text(word) for word in words]
+            _check_words(call, key, words)
     remaps = _remaps(call)
     if remaps:
         found["remap"] = remaps
@@ -79,6 +84,17 @@ def node(call: RecordedCall) -> dict[str, Data]:
     if params:
         found["param"] = params
     return found
+
+
+def _check_words(call: RecordedCall, key: str, words: list[object]) -> None:
+    """Remark on `name:=value` among a program's own arguments, which only those after --ros-args may be."""
+    if key != "arguments" or "--ros-args" in words:
+        return
+    for word in words:
+        if isinstance(word, str) and (rule := _RULE.fullmatch(word)):
+            name, value = rule.groups()
+            way = f"parameters=[{{{name!r}: {value or '...'}}}], or remappings=[({name!r}, {value!r})]"
+            RECORDING.remark(call, f"arguments: nothing reads {word!r}; write {way}")
 
 
 def _remaps(call: RecordedCall) -> list[Data]:
@@ -100,7 +116,7 @@ def _params(call: RecordedCall) -> list[Data]:
         elif isinstance(given, RecordedCall) and given.kind == "Parameter":
             params.append(parameter(given.get("name", 0), given))
         elif isinstance(given, (set, int, float)):
-            hint = "; write {'name': value}, with a colon" if isinstance(given, set) else ""
+            hint = "; write {'name': value}, with a colon" if isinstance(given, set) else "; write [{'name': value}]"
             RECORDING.problem(call, f"parameters: {given!r} is neither a dictionary nor a file{hint}")
         else:
             params.append({"from": text(given), **_allow_substs(given)})

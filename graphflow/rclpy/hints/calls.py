@@ -154,7 +154,8 @@ def _of_callback(text: str, frame: FrameType, name: str) -> str:
     code = function.__code__
     given = GIVEN.get(frame.f_code.co_qualname)
     if given is None:
-        given = ", ".join(map(_argument_name, (*args, *frame.f_locals.get("args", ()))))
+        messages = frame.f_locals.get("msg", ()) if frame.f_code.co_name == "signalMessage" else ()
+        given = ", ".join(map(_argument_name, (*args, *messages, *frame.f_locals.get("args", ()))))
     is_method = "." in function.__qualname__ and not function.__qualname__.rpartition(".")[0].endswith("<locals>")
     place = short_place(code.co_filename, code.co_firstlineno)
     taken = ", ".join(word for word in ("self" if is_method else "", given) if word)

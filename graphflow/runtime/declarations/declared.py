@@ -274,6 +274,8 @@ def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerI
     function = inspect.unwrap(getattr(cls, attribute))
     code = code_of(function)
     place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)
+    if not isinstance(cls.default_group, Group | None):
+        raise DeclarationError(f"{place_of(cls)}: default_group is a Group: write default_group = Group(1)")
     group = None if handler.kind == "task" else handler.group or cls.default_group
     is_async = inspect.iscoroutinefunction(function)
     return HandlerInfo(attribute, handler.kind, place, group.name if group else "", is_async, handler.thread)

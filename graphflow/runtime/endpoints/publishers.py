@@ -27,6 +27,9 @@ from graphflow.wire.shared_memory import ring_key
 M = TypeVar("M", bound=Message)
 _pack = attachment.LAYOUT.pack
 
+WITH_CONTRADICTIONS = {"geometry_msgs", "nav_msgs", "sensor_msgs", "trajectory_msgs", "visualization_msgs"}
+"""The packages with messages whose first ones are checked."""
+
 
 class _Order:
     """Sends messages in the order of their sequence numbers, whichever thread publishes them.
@@ -111,6 +114,25 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._alive = session.open_sender(alive_key(self._announced()), DEFAULT)
             self._declared.append(self._alive)
         self._shorten()
+        if self.type_name.partition("/")[0] in WITH_CONTRADICTIONS:
+            self._check_first()
+
+    def _check_first(self) -> None:
+        """Check the first messages for contradictions, in a `publish` that gives way to the usual one after them."""
+        from graphflow.runtime.mistakes.contradictions import FirstMessages  # most processes never need it
+
+        first, usual = FirstMessages(self.host, self.type_name, self.name), self.publish
+        if not first.is_open:
+            return
+
+        def publish(message: M) -> None:
+            first.check(message)
+            if not first.is_open and self.__dict__.get("publish") is publish:
+                self._lengthen()
+                self._shorten()
+            usual(message)
+
+        vars(self)["publish"] = publish
 
     def _shorten(self) -> None:
         """Install a fast `publish` for the usual case.

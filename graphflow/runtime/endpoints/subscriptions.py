@@ -21,7 +21,7 @@ from graphflow.runtime.endpoints.events import OnEvent, SilenceTimer
 from graphflow.runtime.endpoints.intra_process import Handed
 from graphflow.runtime.endpoints.shared_memory import RingReading
 from graphflow.runtime.endpoints.sources import Leases, Source, end_lease
-from graphflow.runtime.mistakes.echoes import Echo, echo_of
+from graphflow.runtime.mistakes.echoes import Echo, check_ignored, echo_of
 from graphflow.runtime.mistakes.expiry import Expiry
 from graphflow.runtime.mistakes.losses import MANY_LOSSES, Losses
 from graphflow.runtime.mistakes.shared_reading import SharedReading
@@ -229,6 +229,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._deadline.start() if self.matched else self._deadline.stop()
         if alive:
             self.host.context.unlatched.matched(self, other, self.host.log)
+            check_ignored(self, self.host, is_ignoring=self._ignore_local)
         if alive or was_alive:
             self._leases.changed(1 if alive else -1, other.node_name)
         self._follow_echo()

@@ -34,6 +34,9 @@ from graphflow.wire.liveliness import Kind
 class ThreadedPublisher(TopicPublisher[Any]):
     """A publisher of serialized messages, for any thread."""
 
+    def _check_first(self) -> None:
+        """Check nothing: rclpy's publisher checks the messages before it serializes them."""
+
     def put(self, payload: bytes) -> None:
         """Send a message. Never waits.
 

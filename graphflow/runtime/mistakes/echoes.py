@@ -1,4 +1,4 @@
-"""Feedback loops within one node: a handler that publishes to its own topic.
+"""Subscriptions whose publishers are all here: feedback loops of one node, and `ignore_local` that ignores everything.
 
 There is no cost per message: the subscription's counters are compared once a second, while all publishers of its topic
 are its own node's.
@@ -7,11 +7,15 @@ are its own node's.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 from graphflow.executor.clock import Alarm, Clock
 from graphflow.runtime.part import Host
-from graphflow.times import NANOSECONDS
+from graphflow.times import NANOSECONDS, to_ns
+from graphflow.wire.liveliness import Entity
 
+IGNORED_AFTER = 3.0
+"""Seconds for a publisher of another process to appear."""
 LOOP = 2000
 """Messages per second, in two successive seconds, before a warning; `doctor` reports slower loops."""
 
@@ -70,3 +74,37 @@ def echo_of(host: Host, topic: str, received: Callable[[], int]) -> Echo:
         )
 
     return Echo(host.context.clock, received, warn)
+
+
+class IgnoresLocal(Protocol):
+    """A subscription, as the check sees it."""
+
+    name: str
+    matched: dict[str, Entity]
+
+    @property
+    def entity(self) -> Entity | None: ...
+
+
+def check_ignored(subscription: IgnoresLocal, host: Host, *, is_ignoring: bool) -> None:
+    """Warn, some seconds after the first publisher has appeared, if all are other nodes of this process.
+
+    A node that ignores only its own messages waits for other processes on purpose.
+    """
+    if not is_ignoring or len(subscription.matched) != 1:
+        return
+
+    def check() -> None:
+        own = subscription.entity
+        others = [publisher for publisher in subscription.matched.values() if own is None or publisher.nid != own.nid]
+        if own is None or not others or any(publisher.zid != own.zid for publisher in others):
+            return
+        names = " and ".join(sorted({publisher.node_name for publisher in others}))
+        host.log.warning(
+            "%s: nothing is received: %s is in this process, whose messages ignore_local=True skips; leave it out, or "
+            "give one of the two nodes a process of its own",
+            *(subscription.name, names),
+        )
+
+    clock = host.context.clock
+    clock.call_at(clock.monotonic_ns() + to_ns(IGNORED_AFTER), check)

@@ -70,6 +70,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         number_targets(whole)
         found = actions(whole)
         _report_unused(tree, found)
+        _report_late(found)
         changed = {name: value for name, value in os.environ.items() if before.get(name) != value}
         if not found and not RECORDING.problems:
             RECORDING.remarks.append({"line": 1, "message": "the launch description has no actions"})
@@ -126,6 +127,23 @@ def _report_unused(tree: ast.Module, found: list[dict[str, Any]]) -> None:
             found.insert(0, {"arg": {"name": argument, "default": "", "line": line}})  # so that it is reported once
         else:
             RECORDING.remarks.append({"line": line, "message": message})
+
+
+def _report_late(found: list[dict[str, Any]]) -> None:
+    """Remark on actions that use an argument declared only after them: ROS 2 executes a description in order."""
+    earlier: list[tuple[int, str]] = []
+    known = {*(RECORDING.values or {}), *RECORDING.set}
+    for action in found:
+        [(kind, given)] = action.items() if len(action) == 1 else [("", action)]
+        line = given.get("line", 1) if isinstance(given, dict) else 1
+        name = given["name"] if kind == "arg" else None
+        if name is not None and name not in known:
+            users = [user for user, text in earlier if re.search(rf"\$\(var '?{re.escape(str(name))}'?\)", text)]
+            message = f"{name!r} is used here and declared only in line {line}, and ROS 2 then has no value for it; "
+            message += "put its DeclareLaunchArgument before this"
+            RECORDING.remarks += [{"line": user, "message": message} for user in users[:1]]
+            known.add(name)
+        earlier.append((line, json.dumps(given, default=str)))
 
 
 def _instead(name: str, known: set[str]) -> str:

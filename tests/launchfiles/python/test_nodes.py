@@ -53,7 +53,7 @@ def test_where_components_are_loaded() -> None:
             {"parameters": [{"rate"}]},
             "parameters: {'rate'} is neither a dictionary nor a file; write {'name': value}, with a colon",
         ),
-        ({"parameters": [2]}, "parameters: 2 is neither a dictionary nor a file"),
+        ({"parameters": [2]}, "parameters: 2 is neither a dictionary nor a file; write [{'name': value}]"),
         ({"remappings": ["a"]}, "remappings: expected pairs, such as [('from', 'to')], got ['a']"),
     ],
 )
@@ -93,3 +93,15 @@ def test_files_of_parameters() -> None:
     files = ["a", said("ParameterFile", "b"), said("ParameterFile", param_file="c", allow_substs=True)]
     [action] = actions([said("Node", package="p", executable="e", parameters=files)])
     assert action["node"]["param"] == [{"from": "a"}, {"from": "b"}, {"from": "c", "allow_substs": "True"}]
+
+
+@pytest.mark.parametrize(
+    ("words", "is_told"),
+    [(["speed:=2"], True), (["--ros-args", "-p", "speed:=2"], False), (["--rate", "2", "__name:=x"], False)],
+)
+def test_parameters_among_a_programs_own_arguments(words: list[str], is_told: bool) -> None:
+    """A remark shows where they belong."""
+    RECORDING.remarks = []
+    actions([said("Node", package="p", executable="e", arguments=words)])
+    text = "arguments: nothing reads 'speed:=2'; write parameters=[{'speed': 2}], or remappings=[('speed', '2')]"
+    assert RECORDING.remarks == ([{"line": 7, "message": text}] if is_told else [])

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
+from message_filters import SimpleFilter
 from rcl_interfaces.msg import SetParametersResult
 from std_msgs.msg import String
 from tf2_ros import TransformListener
@@ -85,6 +86,7 @@ CALLBACKS: list[tuple[Callable[[Any], Any], str, str]] = [
     (lambda n: ask(n, n.one), "one", "(request, response): def one(self, request, response)"),
     (lambda n: send(n, n.none), "none", "(goal_handle): def none(self, goal_handle)"),
     (lambda n: done(n, n.none), "none", "(future): def none(self, future)"),
+    (lambda n: matched(n), "none", "(string, string): def none(self, string, string)"),
     (lambda n: checked(n), "check", "(parameters): def check(self, parameters)"),
 ]
 
@@ -102,6 +104,12 @@ def send(node: Node, callback: Any) -> None:
 def done(node: Node, callback: Any) -> None:
     node.create_service(AddTwoInts, "add", lambda request, response: response)
     node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request()).add_done_callback(callback)
+
+
+def matched(node: Any) -> None:
+    both = SimpleFilter()
+    both.registerCallback(node.none)
+    both.signalMessage(String(), String())
 
 
 def checked(node: Any) -> None:

@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
-from graphflow import EncodeError, Node, Publisher, Qos
+from graphflow import EncodeError, Node, Publisher, Qos, Subscription
 from graphflow.errors import ClosedError
 from graphflow.msgs.geometry_msgs.msg import Pose
 from graphflow.msgs.nav_msgs.msg import Path
+from graphflow.msgs.sensor_msgs.msg import LaserScan
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.runtime.endpoints import publishers
 from graphflow.runtime.endpoints.publishers import TopicPublisher
@@ -53,6 +54,26 @@ async def test_publishing_a_wrong_field_is_an_error(graph: Graph) -> None:
 
     assert node.chatter.published == 1
     assert node.heard.received == 1
+
+
+class Lidar(Node):
+    """Publishes scans."""
+
+    scan = Publisher(LaserScan, "scan")
+    heard = Subscription(LaserScan, "scan")
+
+
+async def test_first_messages_are_checked(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """A contradiction is told once, and the messages are sent all the same; then the usual `publish` takes over."""
+    await graph.start(node := Lidar())
+    checking = node.scan.publish
+    for _ in range(3):
+        node.scan.publish(LaserScan(ranges=[1.0, 2.0]))
+    await graph.settle()
+    [told] = [text for text in caplog.messages if "angle_increment" in text]
+    assert ": /scan: angle_increment is 0, so that all 2 ranges are in one direction" in told
+    assert node.scan.publish is not checking
+    assert (node.scan.published, node.heard.received) == (3, 3)
 
 
 class Unheard(Node):

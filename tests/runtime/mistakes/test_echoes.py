@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
 from graphflow import Node, Publisher, subscription
-from graphflow.msgs.std_msgs.msg import Int32
+from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.runtime.context import Context
 from graphflow.runtime.mistakes.echoes import LOOP, Echo
+from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph, ManualClock
 
 Caplog = pytest.LogCaptureFixture
@@ -100,3 +104,47 @@ async def test_a_node_that_feeds_itself(graph: Graph, caplog: Caplog) -> None:
         node.number.publish(Int32())
         await graph.clock.advance(1.0)
     assert "publishes itself" not in caplog.text
+
+
+class IgnoredTalker(Node):
+    """Publishes."""
+
+    out = Publisher(String, "chatter")
+
+
+class Ear(Node):
+    """Takes what other processes publish."""
+
+    @subscription(String, "chatter", ignore_local=True)
+    def heard(self, message: String) -> None:
+        """Do nothing."""
+
+
+class Both(Ear):
+    """Publishes, and takes what others publish."""
+
+    out = Publisher(String, "chatter")
+
+
+def ignored(caplog: pytest.LogCaptureFixture) -> list[str]:
+    return [text for text in caplog.messages if "nothing is received" in text]
+
+
+async def test_publishers_of_this_process(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """They are named once."""
+    context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
+    for node in (IgnoredTalker(), Ear()):
+        await core_of(node).start(context)
+        graph.nodes.append(node)
+    await graph.clock.advance(10.0)
+    assert ignored(caplog) == [
+        "/chatter: nothing is received: /ignored_talker is in this process, whose messages ignore_local=True skips; "
+        "leave it out, or give one of the two nodes a process of its own"
+    ]
+
+
+async def test_its_own_publisher(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """A node that ignores itself waits for others on purpose."""
+    await graph.start(Both())
+    await graph.clock.advance(10.0)
+    assert ignored(caplog) == []

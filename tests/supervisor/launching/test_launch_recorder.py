@@ -570,3 +570,22 @@ def test_arguments_in_no_description(tmp_path: Path) -> None:
     assert described(tmp_path, f"a = DeclareLaunchArgument('x', default_value='1')\n{node}") == ([text], [])
     assert described(tmp_path, f"a = DeclareLaunchArgument('x')\n{node}", x="1") == ([], [text])
     assert described(tmp_path, f"a = DeclareLaunchArgument('y')\n{node}") == ([], [text])
+
+
+def test_an_argument_that_is_declared_late(tmp_path: Path) -> None:
+    """Told at the action that uses it, as ROS 2 would fail there; not when a value is set for it."""
+    file = tmp_path / "late.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\n"
+        "from launch.actions import DeclareLaunchArgument, LogInfo\n"
+        "from launch.substitutions import LaunchConfiguration\n\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([\n"
+        "        DeclareLaunchArgument('a', default_value='1'),\n"
+        "        LogInfo(msg=[LaunchConfiguration('a'), LaunchConfiguration('b')]),\n"
+        "        DeclareLaunchArgument('b', default_value='2'),\n"
+        "    ])\n"
+    )
+    text = "'b' is used here and declared only in line 9, and ROS 2 then has no value for it; "
+    assert record(file)["remarks"] == [{"line": 8, "message": f"{text}put its DeclareLaunchArgument before this"}]
+    assert record(file, b="3")["remarks"] == []

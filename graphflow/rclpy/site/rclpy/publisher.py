@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy.messages import classes
+from graphflow.runtime.endpoints.publishers import WITH_CONTRADICTIONS
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.duration import Duration
 from rclpy.handle import Handle
@@ -40,6 +41,25 @@ class Publisher(Created):
         self.endpoint, self._life, self._handle = publisher_impl, life, handle
         self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
         self.event_handlers = event_handlers
+        if publisher_impl.type_name.partition("/")[0] in WITH_CONTRADICTIONS:
+            self._graphflow_check_first()
+
+    def _graphflow_check_first(self) -> None:
+        """Check the first messages for contradictions, in a `publish` that gives way to the class's after them."""
+        from graphflow.runtime.mistakes.contradictions import FirstMessages  # most programs never need it
+
+        first = FirstMessages(self.endpoint.host, self.endpoint.type_name, self.endpoint.name)
+        if not first.is_open:
+            return
+
+        def publish(msg: Any) -> None:
+            if isinstance(msg, self.msg_type):
+                first.check(msg)
+            if not first.is_open:
+                self.__dict__.pop("publish", None)
+            type(self).publish(self, msg)
+
+        vars(self)["publish"] = publish
 
     def publish(self, msg: Any) -> None:
         """Publish a message, or the CDR bytes of one. Never waits.

@@ -1,4 +1,4 @@
-"""Values that contradict their own names: `create_timer(period_ms, ...)`, which takes seconds, and `atan2(dx, dy)`."""
+"""Values that contradict their own names: `create_timer(rate, ...)`, which takes a period, and `atan2(dx, dy)`."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from graphflow.analysis.bindings import Bindings, bindings_of
 from graphflow.analysis.syntax import last_name, walk
 
 _MILLISECONDS = re.compile(r"(?i)(.*_)?(ms|msec|msecs|millis|milliseconds)")
+_FREQUENCIES = re.compile(r"(?i)(.*_)?(hz|hertz|rate|freq|frequency|fps)")
 _SLEEPING = ("time.sleep", "asyncio.sleep", "self.clock.sleep", "clock.sleep")
 _GIVEN = ("get_parameter", "declare_parameter")
 """rclpy's methods that return parameters."""
@@ -31,10 +32,14 @@ def _contrary(module: ast.Module) -> Iterator[tuple[int, str]]:
     calls = [(node, parents) for node, parents in walk(module) if isinstance(node, ast.Call)]
     for call, parents in calls:
         for value in _seconds(call):
+            name, function = ast.unparse(value), ast.unparse(call.func).removeprefix("self.")
             if _MILLISECONDS.fullmatch(last_name(value)) and _may_be_large(value, bindings, parents):
-                name, function = ast.unparse(value), ast.unparse(call.func).removeprefix("self.")
                 text = f"{function} takes seconds, and {name} is in milliseconds by its name"
                 yield value.lineno, f"{text}; write {name} / 1000"
+            elif _FREQUENCIES.fullmatch(last_name(value)) and _may_be_large(value, bindings, parents, above=1):
+                is_param = function == "timer" and isinstance(value, ast.Name)
+                text = f"{function} takes seconds, and {name} is a frequency by its name"
+                yield value.lineno, f"{text}; write {f'@timer(hz={name})' if is_param else f'1 / {name}'}"
     swapped = [(call, parents) for call, parents in calls if _is_swapped(call)]
     if swapped and _turns_from_x(module):
         for call, parents in swapped:
@@ -52,24 +57,27 @@ def _seconds(call: ast.Call) -> list[ast.expr]:
     return [*call.args[:1], *named] if is_timer or ast.unparse(call.func) in _SLEEPING else []
 
 
-def _may_be_large(value: ast.expr, bindings: Bindings, parents: Sequence[ast.AST]) -> bool:
-    """Whether a name is bound to numbers from 1 on, or to parameters; false if that is not seen."""
-    values = [found.expression for found in bindings.of(value, parents)]
-    return bool(values) and all(v is not None and _is_large(v) for v in values)
+def _may_be_large(value: ast.expr, bindings: Bindings, parents: Sequence[ast.AST], above: float = 0.99) -> bool:
+    """Whether a name is bound to numbers above a bound, or to parameters; false if that is not seen."""
+    found = bindings.of(value, parents)
+    if not found and isinstance(value, ast.Name):  # in a decorator, a name of the class's body
+        found = bindings.of(ast.Attribute(ast.Name("self"), value.id), parents)
+    return bool(found) and all(v.expression is not None and _is_large(v.expression, above) for v in found)
 
 
-def _is_large(value: ast.expr) -> bool:
+def _is_large(value: ast.expr, above: float) -> bool:
     match value:
         case ast.Constant(value=number):
-            return isinstance(number, (int, float)) and number >= 1
+            return isinstance(number, (int, float)) and number > above
         case ast.Call(func=function, args=[first, *_], keywords=keywords) if last_name(function) == "Param":
-            return _is_large(first) and not any(
-                keyword.arg == "unit" for keyword in keywords
-            )  # `wrong_units` has these
+            # `wrong_units` judges those with a unit.
+            return _is_large(first, above) and not any(keyword.arg == "unit" for keyword in keywords)
+        case ast.Call(func=function, args=[_, default, *_]) if last_name(function) == "declare_parameter":
+            return _is_large(default, above)
         case ast.Call(func=function) if last_name(function) in _GIVEN:
             return True
         case ast.Attribute(value=inner, attr="value"):
-            return _is_large(inner)
+            return _is_large(inner, above)
     return False
 
 

@@ -1,4 +1,4 @@
-"""Angles that are written into a part of a quaternion."""
+"""Angles that are written into a part of a quaternion, or read from one."""
 
 from __future__ import annotations
 
@@ -8,13 +8,21 @@ from collections.abc import Iterator
 
 _PARTS = ("x", "y", "z", "w")
 _OWNERS = ("orientation", "rotation")
+_IS_HEADING = re.compile(r"(current_|robot_|cur_|start_|my_|last_|prev_)*(yaw|theta|heading|angle)")
 _IS_ANGLE = re.compile(r"(?!.*(sin|cos|half|quat))(.*_)?(yaw|theta|heading|angle|pitch|roll|rad|radians|pi)")
 
 
 def angles_as_quaternions(code: ast.AST) -> Iterator[tuple[int, str]]:
-    """Find the lines that set a part of an orientation to an angle; each comes with a sentence."""
+    """Find the lines that take a part of an orientation for an angle; each comes with a sentence."""
     for node in ast.walk(code):
         match node:
+            case ast.Assign(
+                targets=[ast.Name(id=name) | ast.Attribute(attr=name)],
+                value=ast.Attribute(value=ast.Attribute(attr=owner) as whole, attr="z" | "w") as part,
+            ) if owner in _OWNERS and _IS_HEADING.fullmatch(name):
+                q = ast.unparse(whole)
+                text = f"{ast.unparse(part)} is a part of a quaternion, not an angle: in the plane"
+                yield node.lineno, f"{text}, write 2 * math.atan2({q}.z, {q}.w)"
             case ast.Assign(
                 targets=[ast.Attribute(value=ast.Attribute(attr=owner), attr=part) as target], value=value
             ) if owner in _OWNERS and part in _PARTS and _is_angle(value):

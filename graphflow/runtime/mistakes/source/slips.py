@@ -34,6 +34,7 @@ from graphflow.runtime.mistakes.source.contrary_names import contrary_names
 from graphflow.runtime.mistakes.source.defined_twice import defined_twice
 from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.literal_units import literal_units
+from graphflow.runtime.mistakes.source.lone_nanoseconds import lone_nanoseconds
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.lost_values import lost_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
@@ -45,7 +46,9 @@ from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
 from graphflow.runtime.mistakes.source.reused_objects import reused_objects
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.mistakes.source.unrepeated import unrepeated
 from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
+from graphflow.runtime.mistakes.source.wrong_scale import wrong_scale
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
@@ -102,10 +105,12 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
         found = (*found, *literal_units(definition), *misplaced(definition), *without_super(parent, definition))
         found = (*found, *reused_objects(definition), *angles_as_quaternions(definition), *busy_loops(definition))
+        found = (*found, *lone_nanoseconds(definition), *unrepeated(parent, definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
         of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))
         of_file = (*of_file, *lost_values(module), *never_exact(module), *contrary_names(module))
+        of_file = (*of_file, *wrong_scale(module))
         found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
 

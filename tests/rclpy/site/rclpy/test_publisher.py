@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from std_msgs.msg import Int32, String
+from visualization_msgs.msg import Marker
 
 import rclpy
 from rclpy.exceptions import InvalidHandle
@@ -27,6 +28,19 @@ def test_messages_and_their_bytes_are_sent(node: Node, spin: Spinner) -> None:
         publisher.publish(Int32())
     assert publisher.wait_for_all_acked()
     publisher.assert_liveliness()
+
+
+def test_first_messages_are_checked(node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture) -> None:
+    """A contradiction is told once, with its line, and the messages are sent all the same."""
+    heard: list[str] = []
+    node.create_subscription(Marker, "marker", lambda marker: heard.append(marker.ns), 10)
+    publisher = node.create_publisher(Marker, "marker", 10)
+    for name in ("a", "b"):
+        publisher.publish(Marker(ns=name))
+    spin(lambda: heard == ["a", "b"])
+    [told] = [text for text in caplog.messages if "color.a" in text]
+    assert told.startswith("test_publisher.py:")
+    assert told.endswith("/marker: color.a is 0, so that the marker is invisible: set it to 1.0")
 
 
 def test_one_that_was_destroyed_sends_nothing(node: Node) -> None:

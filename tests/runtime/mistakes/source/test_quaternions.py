@@ -19,6 +19,8 @@ from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
         ("p.orientation.z = math.radians(90)", "write math.sin((math.radians(90)) / 2)"),
         ("p.orientation.w = goal_yaw", "it is math.cos(angle / 2)"),
         ("p.orientation = Quaternion(z=theta)", "z is a part of a quaternion"),
+        ("yaw = m.pose.orientation.z", "write 2 * math.atan2(m.pose.orientation.z, m.pose.orientation.w)"),
+        ("self.current_yaw = t.rotation.w", "write 2 * math.atan2(t.rotation.z, t.rotation.w)"),
     ],
 )
 def test_angles(code: str, told: str) -> None:
@@ -33,6 +35,7 @@ def test_angles(code: str, told: str) -> None:
         *("p.orientation.z = math.sin(yaw / 2)", "p.orientation.z = q[2]", "p.orientation.w = 1.0"),
         *("p.orientation.z = -0.707", "p.orientation.z = q.z", "p.position.z = 1.57", "p.orientation.z = sin_yaw"),
         *("Quaternion(z=sin(yaw / 2), w=cos(yaw / 2))", "p.orientation.z = z", "p.angular.z = yaw"),
+        *("z = p.orientation.z", "yaw = p.orientation.z * 2", "yaw = euler.z"),
         *("p.orientation.z = math.sin(math.radians(90) / 2)", "p.orientation.z = to_quaternion(yaw).z"),
     ],
 )

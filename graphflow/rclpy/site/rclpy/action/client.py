@@ -15,6 +15,7 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.impl.action_internals import ActionClientInternals
 from rclpy.impl.callers import caller
 from rclpy.impl.mistakes.arguments import explained
+from rclpy.impl.mistakes.unended_goals import warn_of_unended
 from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
@@ -231,6 +232,7 @@ class ActionClient(Waitable):
                 self._feedback_callbacks.pop(key, None)
             return handle
 
+        warn_of_unended(self._graphflow.full_name, self._graphflow.unended)
         return self._graphflow.send(self._graphflow.goals, carrier.Request(goal_id=goal_id, goal=goal), made)
 
     # servers

@@ -121,6 +121,12 @@ class ActionClientInternals(ActionInternals):
     def clients(self) -> tuple[ThreadedClient, ThreadedClient, ThreadedClient]:
         return self.goals, self.cancels, self.results
 
+    @property
+    def unended(self) -> int:
+        """The number of goals that are sent and have not ended."""
+        with self._lock:
+            return len(self.handles) + sum(client is self.goals for client, _ in self.waiting)
+
     def has_work(self) -> bool:
         """Whether anything has arrived."""
         return self.is_open and (

@@ -89,8 +89,8 @@ class LifecycleNodeMixin(ManagedEntity):
     ) -> None:
         if not isinstance(enable_communication_interface, bool):
             raise TypeError("enable_communication_interface must be a bool")
-        # A dict for its order: the node's own callback comes first, then its publishers as they were made.
-        self._managed_entities: dict[ManagedEntity, None] = {self: None}
+        self._managed_entities: dict[ManagedEntity, None] = {}
+        """A dict for its order: the entities as they were made."""
         self._state_machine = _StateMachine(has_services=enable_communication_interface)
         self._graphflow_transition_event: Publisher | None = None
         if enable_communication_interface:
@@ -155,25 +155,33 @@ class LifecycleNodeMixin(ManagedEntity):
         return TransitionCallbackReturn(int(outcome))
 
     def _graphflow_run_hook(self, former: State) -> Outcome:
-        hook, state = self._state_machine.state.hook, LifecycleState(former.label, int(former))
-        for entity in list(self._managed_entities):
-            try:
-                answer = getattr(entity, hook)(state)
-            except Exception as error:  # a user's callback may raise anything: the transition fails, as in ROS 2
-                node = cast("Node", self)
-                # A traceback of this frame alone: the call itself failed, since the hook takes other arguments.
-                if isinstance(error, TypeError) and error.__traceback__ is not None and not error.__traceback__.tb_next:
-                    way = f"write def {hook}(self, state):"
-                    node.get_logger().error(f"{described(getattr(entity, hook))}: {error}; {way}")
-                    return Outcome.ERROR
-                node.get_logger().error(f"{hook} raised {type(error).__name__}: {error}")
-                traceback.print_exc()
+        name, state = self._state_machine.state.hook, LifecycleState(former.label, int(former))
+        hook = getattr(self, name)
+        try:
+            answer = hook(state)
+        except Exception as error:  # a user's callback may raise anything: the transition fails, as in ROS 2
+            node = cast("Node", self)
+            # A traceback of this frame alone: the call itself failed, since the hook takes other arguments.
+            if isinstance(error, TypeError) and error.__traceback__ is not None and not error.__traceback__.tb_next:
+                node.get_logger().error(f"{described(hook)}: {error}; write def {name}(self, state):")
                 return Outcome.ERROR
+            node.get_logger().error(f"{name} raised {type(error).__name__}: {error}")
+            traceback.print_exc()
+            return Outcome.ERROR
+        if not isinstance(answer, TransitionCallbackReturn):
+            raise TypeError(must_return(hook, "TransitionCallbackReturn.SUCCESS", answer))
+        return Outcome(answer.value)
+
+    def _graphflow_notify(self, name: str, state: LifecycleState) -> TransitionCallbackReturn:
+        """Call a hook of each managed entity, up to the first that does not succeed."""
+        for entity in list(self._managed_entities):
+            hook = getattr(entity, name)
+            answer = hook(state)
             if not isinstance(answer, TransitionCallbackReturn):
-                raise TypeError(must_return(getattr(entity, hook), "TransitionCallbackReturn.SUCCESS", answer))
+                raise TypeError(must_return(hook, "TransitionCallbackReturn.SUCCESS", answer))
             if answer is not TransitionCallbackReturn.SUCCESS:
-                return Outcome(answer.value)
-        return Outcome.SUCCESS
+                return answer
+        return TransitionCallbackReturn.SUCCESS
 
     def _graphflow_go(self, transition: Transition) -> None:
         self._state_machine.state = transition.goal
@@ -194,32 +202,38 @@ class LifecycleNodeMixin(ManagedEntity):
         self._graphflow_transition_event.publish(event)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Notify an entity of transitions as well, after the node's own callbacks."""
+        """Notify an entity of transitions, as the node's callbacks do unless a subclass replaces them without super().
+
+        Raises:
+            TypeError: It is not a ManagedEntity.
+        """
+        if not isinstance(entity, ManagedEntity):
+            raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities[entity] = None
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle the transition from unconfigured to inactive; for subclasses."""
-        return TransitionCallbackReturn.SUCCESS
+        """Handle the transition from unconfigured to inactive: notify the managed entities."""
+        return self._graphflow_notify("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle the transition from inactive to unconfigured; for subclasses."""
-        return TransitionCallbackReturn.SUCCESS
+        """Handle the transition from inactive to unconfigured: notify the managed entities."""
+        return self._graphflow_notify("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle the transition to finalized; for subclasses."""
-        return TransitionCallbackReturn.SUCCESS
+        """Handle the transition to finalized: notify the managed entities."""
+        return self._graphflow_notify("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle the transition from inactive to active; for subclasses."""
-        return TransitionCallbackReturn.SUCCESS
+        """Handle the transition from inactive to active: notify the managed entities."""
+        return self._graphflow_notify("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle the transition from active to inactive; for subclasses."""
-        return TransitionCallbackReturn.SUCCESS
+        """Handle the transition from active to inactive: notify the managed entities."""
+        return self._graphflow_notify("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle an error; success leads to unconfigured, anything else to finalized. For subclasses."""
-        return TransitionCallbackReturn.SUCCESS
+        """Handle an error; success leads to unconfigured, anything else to finalized. Notify the managed entities."""
+        return self._graphflow_notify("on_error", state)
 
     def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher:
         """Create a publisher that sends only while the node is active. Arguments as for `create_publisher`."""

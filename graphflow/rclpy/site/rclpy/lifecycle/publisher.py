@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
+from rclpy.impl.mistakes.arguments import described
 from rclpy.impl.reexports import passed_on
 from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.publisher import Publisher
@@ -51,9 +52,11 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         name, state = node.get_fully_qualified_name(), machine.state
         steps = {State.UNCONFIGURED: ("configure", "activate"), State.INACTIVE: ("activate",)}.get(state, ())
         way = " && ".join(f"graphflow lifecycle set {name} {step}" for step in steps)
+        why = f"{name} is {state.label}{f', to activate it: {way}' if way else ''}"
+        if state is State.ACTIVE:
+            why = f"{described(node.on_activate)} has to end with return super().on_activate(state), which activates it"
         node.get_logger().warning(
-            f"Trying to publish message on the topic '{self.topic_name}', but the publisher is not activated: "
-            f"{name} is {state.label}{f', to activate it: {way}' if way else ''}"
+            f"Trying to publish message on the topic '{self.topic_name}', but the publisher is not activated: {why}"
         )
 
     @SimpleManagedEntity.when_enabled(when_not_enabled=_graphflow_warn)

@@ -4,7 +4,7 @@ import pytest
 from std_msgs.msg import String
 
 import rclpy
-from rclpy.lifecycle import LifecycleNode
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 
 def test_it_sends_while_the_node_is_active() -> None:
@@ -43,3 +43,25 @@ def test_a_publisher_that_is_not_active(capfd: pytest.CaptureFixture[str]) -> No
         f"{words} unconfigured, to activate it: {configure} && {activate}",
         f"{words} inactive, to activate it: {activate}",
     ]
+
+
+class Silent(LifecycleNode):
+    """A node whose callback replaces the one that activates its publishers."""
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Succeed, and activate nothing."""
+        return TransitionCallbackReturn.SUCCESS
+
+
+def test_an_activation_without_super(capfd: pytest.CaptureFixture[str]) -> None:
+    """As in ROS 2, the publisher sends nothing; the warning names the callback and its missing line."""
+    rclpy.init()
+    node = Silent("lamp")
+    publisher = node.create_lifecycle_publisher(String, "light", 1)
+    node.trigger_configure()
+    node.trigger_activate()
+    publisher.publish(String())
+    assert not publisher.is_activated
+    warning = capfd.readouterr().err
+    assert "not activated: on_activate (" in warning
+    assert "test_publisher.py:51) has to end with return super().on_activate(state), which activates it" in warning

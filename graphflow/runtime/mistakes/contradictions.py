@@ -1,0 +1,161 @@
+"""Messages whose fields contradict each other, so that receivers drop or misread them: a map with too few cells.
+
+ROS 2 sends them silently; RViz and the navigation stack report some of them at the other end. Only the first messages
+of a publisher are checked: a program fills in all of its messages in the same way.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias
+
+from graphflow.analysis.user_code import short_place, users_frame
+from graphflow.runtime.part import Host
+
+Fields: TypeAlias = Any
+"""A message of the type that a check is for, of graphflow or of rclpy."""
+Check: TypeAlias = Callable[[Fields], str]
+"""Returns a sentence about a message, or ""."""
+
+CHECKED = 10
+"""The number of messages of a publisher that are checked."""
+_TOLERANCE = 0.1
+"""The greatest difference of a quaternion's length from 1: receivers normalize small ones."""
+_UNSEEN = 0
+"""`Marker.action` of markers that are shown."""
+
+
+class FirstMessages:
+    """The check of one publisher's first messages, with one warning at most.
+
+    Args:
+        name: The topic.
+    """
+
+    def __init__(self, host: Host, type_name: str, name: str) -> None:
+        self._host, self._name = host, name
+        self._check = _CHECKS.get(type_name)
+        self._left = CHECKED if self._check is not None else 0
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the next message is to be checked."""
+        return self._left > 0
+
+    def check(self, message: Fields) -> None:
+        """Warn of a contradiction in a message."""
+        self._left -= 1
+        try:
+            text = self._check(message) if self._check is not None else ""
+        except (AttributeError, TypeError, ValueError):
+            return  # a field of a wrong type, which is an error of its own when the message is encoded
+        if text:
+            self._left = 0
+            caller = users_frame(sys._getframe(1))
+            place = f"{short_place(caller.f_code.co_filename, caller.f_lineno)}: " if caller is not None else ""
+            self._host.log.warning("%s%s: %s", place, self._name, text)
+
+
+def _battery(message: Fields) -> str:
+    if message.percentage > 1.0:
+        return f"percentage goes from 0.0 to 1.0, and is {message.percentage:g}"
+    return ""
+
+
+def _cloud(message: Fields) -> str:
+    size, count = message.row_step * message.height, len(message.data)
+    if size != count:
+        return f"data has {count} bytes, and row_step * height is {size}"
+    if count and not message.fields:
+        return "fields is empty, so that nothing can read data: describe x, y and z with PointField"
+    return ""
+
+
+def _image(message: Fields) -> str:
+    size, count = message.step * message.height, len(message.data)
+    if size != count:
+        return f"data has {count} bytes, and step * height is {size}; step is the number of bytes in a row"
+    if count and not message.encoding:
+        return "encoding is empty, so that nothing can read data: set it, as in 'rgb8' or 'mono8'"
+    return ""
+
+
+def _joints(message: Fields) -> str:
+    names = len(message.name)
+    for field in ("position", "velocity", "effort"):
+        if (count := len(getattr(message, field))) not in (0, names):
+            return f"{field} has {count} values, and name has {names}: give each joint one, in the order of name"
+    return ""
+
+
+def _map(message: Fields) -> str:
+    cells, count = message.info.width * message.info.height, len(message.data)
+    if cells != count:
+        return f"data has {count} cells, and info.width * info.height is {cells}"
+    if count and not message.info.resolution > 0:
+        return "info.resolution is 0: set the metres per cell"
+    return ""
+
+
+def _marker(message: Fields) -> str:
+    if message.action != _UNSEEN:
+        return ""
+    if not message.color.a and not len(message.colors) and not message.mesh_resource:
+        return "color.a is 0, so that the marker is invisible: set it to 1.0"
+    if not (message.scale.x or message.scale.y or message.scale.z):
+        return "scale is 0, so that the marker is invisible: set its size in metres"
+    return _turn(message.pose.orientation)
+
+
+def _markers(message: Fields) -> str:
+    return next(filter(None, map(_marker, message.markers)), "")
+
+
+def _scan(message: Fields) -> str:
+    count = len(message.ranges)
+    if count > 1 and not message.angle_increment:
+        return f"angle_increment is 0, so that all {count} ranges are in one direction: set it in radians"
+    if count and not message.range_max > message.range_min:
+        return f"range_max is {message.range_max:g}, so that receivers drop all ranges: set it in metres"
+    return ""
+
+
+def _trajectory(message: Fields) -> str:
+    names = len(message.joint_names)
+    for point in message.points:
+        if (count := len(point.positions)) not in (0, names):
+            return f"a point has {count} positions, and joint_names has {names}"
+    return ""
+
+
+def _turn(q: Fields) -> str:
+    length = math.sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)
+    if abs(length - 1.0) > _TOLERANCE:
+        text = f"the orientation's length is {length:.3g} and not 1, so it is no quaternion of a turn"
+        return f"{text}; for a yaw write z = math.sin(yaw / 2), w = math.cos(yaw / 2)"
+    return ""
+
+
+_CHECKS: dict[str, Check] = {
+    "geometry_msgs/msg/Pose": lambda m: _turn(m.orientation),
+    "geometry_msgs/msg/PoseStamped": lambda m: _turn(m.pose.orientation),
+    "geometry_msgs/msg/PoseWithCovarianceStamped": lambda m: _turn(m.pose.pose.orientation),
+    "nav_msgs/msg/OccupancyGrid": _map,
+    "nav_msgs/msg/Odometry": lambda m: _turn(m.pose.pose.orientation),
+    "nav_msgs/msg/Path": lambda m: _first(_turn(p.pose.orientation) for p in m.poses),
+    "sensor_msgs/msg/BatteryState": _battery,
+    "sensor_msgs/msg/Image": _image,
+    "sensor_msgs/msg/JointState": _joints,
+    "sensor_msgs/msg/LaserScan": _scan,
+    "sensor_msgs/msg/PointCloud2": _cloud,
+    "trajectory_msgs/msg/JointTrajectory": _trajectory,
+    "visualization_msgs/msg/Marker": _marker,
+    "visualization_msgs/msg/MarkerArray": _markers,
+}
+"""The check of each type, which returns a sentence, or ""."""
+
+
+def _first(texts: Iterable[str]) -> str:
+    return next(filter(None, texts), "")

@@ -1,0 +1,47 @@
+"""Stamps whose nanoseconds alone are taken for a time: `stamp.nanosec * 1e-9` starts anew in each second."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from graphflow.analysis.syntax import FunctionNode
+
+
+def lone_nanoseconds(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find the lines that compute with `nanosec` in functions that never read `sec`; each comes with its correction."""
+    for function in ast.walk(code):
+        if not isinstance(function, FunctionNode):
+            continue
+        read = {node.attr for node in ast.walk(function) if isinstance(node, ast.Attribute)}
+        if "nanosec" not in read or read & {"sec", "from_msg"}:
+            continue
+        for node in ast.walk(function):
+            match node:
+                case ast.BinOp(left=left, op=ast.Mult() | ast.Div() | ast.Sub(), right=right):
+                    stamp = _stamp(left) or (_stamp(right) if isinstance(node.op, ast.Sub) else None)
+                    if stamp is not None and (isinstance(node.op, ast.Sub) or _is_billion(right)):
+                        name = ast.unparse(stamp)
+                        text = f"{name}.nanosec is less than a second, and starts anew in each; write"
+                        yield node.lineno, f"{text} {name}.sec + {name}.nanosec * 1e-9"
+
+
+def _stamp(part: ast.expr) -> ast.expr | None:
+    """Return the stamp whose nanoseconds an expression is, as a number or converted to one."""
+    match part:
+        case (
+            ast.Attribute(value=stamp, attr="nanosec")
+            | ast.Call(func=ast.Name(id="float" | "int"), args=[ast.Attribute(value=stamp, attr="nanosec")])
+        ):
+            return stamp
+    return None
+
+
+def _is_billion(factor: ast.expr) -> bool:
+    """Whether a factor turns nanoseconds into seconds."""
+    match factor:
+        case ast.Constant(value=int(number) | float(number)):
+            return number in (1e9, 1e-9)
+        case ast.BinOp(left=ast.Constant(value=10), op=ast.Pow()):
+            return ast.unparse(factor.right) in ("9", "-9")
+    return False

@@ -1,0 +1,38 @@
+"""graphflow's declarations in rclpy's nodes."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.runtime.mistakes.source.mixed_interfaces import mixed_interfaces
+
+SOURCE = """
+from {}
+from graphflow import Param, timer
+
+class Talker(Node):
+    word = Param("hi")
+
+    @timer(1.0)
+    def tick(self):
+        pass
+"""
+
+
+@pytest.mark.parametrize("words", ["rclpy.node import Node", "rclpy.lifecycle import LifecycleNode as Node"])
+def test_a_node_of_rclpy(words: str) -> None:
+    """Each declaration is reported with rclpy's equivalent, and with the class that would read it."""
+    found = dict(mixed_interfaces(ast.parse(SOURCE.format(words))))
+    assert found == {
+        6: "graphflow's Param has no effect in a node of rclpy: write self.declare_parameter(...) in __init__, "
+        "or derive Talker from graphflow.Node",
+        8: "graphflow's timer has no effect in a node of rclpy: write self.create_timer(...) in __init__, "
+        "or derive Talker from graphflow.Node",
+    }
+
+
+def test_a_native_node() -> None:
+    """It is what the declarations are for."""
+    assert not list(mixed_interfaces(ast.parse(SOURCE.format("graphflow import Node"))))

@@ -1,0 +1,95 @@
+"""Messages whose fields contradict each other."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+import numpy as np
+import pytest
+
+from graphflow.msgs.geometry_msgs.msg import Pose, PoseStamped, Quaternion, Vector3
+from graphflow.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid, Path
+from graphflow.msgs.sensor_msgs.msg import BatteryState, Image, JointState, LaserScan, PointCloud2, PointField
+from graphflow.msgs.std_msgs.msg import ColorRGBA, String
+from graphflow.msgs.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from graphflow.msgs.visualization_msgs.msg import Marker, MarkerArray
+from graphflow.runtime.mistakes.contradictions import CHECKED, FirstMessages
+
+BYTES = np.zeros(12, np.uint8)
+FLAT = Pose(orientation=Quaternion(z=1.57, w=0.0))
+RED, CUBE = ColorRGBA(r=1.0, a=1.0), Vector3(x=0.1, y=0.1, z=0.1)
+
+
+class _Host:
+    log = logging.getLogger("graphflow.test")
+
+
+def told(message: Any, caplog: pytest.LogCaptureFixture) -> list[str]:
+    """What is said of a message that is published twice."""
+    host: Any = _Host()
+    first = FirstMessages(host, type(message).SCHEMA.name, "/x")
+    for _ in range(2):
+        if first.is_open:
+            first.check(message)
+    return [text.partition("/x: ")[2] for text in caplog.messages]
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [
+        (LaserScan(ranges=[1.0] * 4, range_max=3.0), "angle_increment is 0, so that all 4 ranges are in one direction"),
+        (LaserScan(ranges=[1.0] * 4, angle_increment=1.5), "range_max is 0, so that receivers drop all ranges"),
+        (OccupancyGrid(info=MapMetaData(width=3, height=3), data=[0] * 8), "info.width * info.height is 9"),
+        (OccupancyGrid(info=MapMetaData(width=3, height=3), data=[0] * 9), "info.resolution is 0"),
+        (Image(height=2, step=5, data=BYTES, encoding="rgb8"), "data has 12 bytes, and step * height is 10"),
+        (Image(height=2, step=6, data=BYTES), "encoding is empty"),
+        (PointCloud2(height=1, row_step=8, data=BYTES), "row_step * height is 8"),
+        (PointCloud2(height=1, row_step=12, data=BYTES), "fields is empty"),
+        (JointState(name=["a", "b"], position=[0.0]), "position has 1 values, and name has 2"),
+        (BatteryState(percentage=85.0), "percentage goes from 0.0 to 1.0, and is 85"),
+        (PoseStamped(pose=FLAT), "the orientation's length is 1.57 and not 1"),
+        (Path(poses=[PoseStamped(), PoseStamped(pose=FLAT)]), "write z = math.sin(yaw / 2), w = math.cos(yaw / 2)"),
+        (JointTrajectory(joint_names=["a"], points=[JointTrajectoryPoint(positions=[0.0, 1.0])]), "joint_names has 1"),
+        (Marker(scale=CUBE), "color.a is 0, so that the marker is invisible"),
+        (MarkerArray(markers=[Marker(color=RED)]), "scale is 0, so that the marker is invisible"),
+    ],
+    ids=lambda value: value[:20] if isinstance(value, str) else type(value).__name__,
+)
+def test_contradictions(message: Any, text: str, caplog: pytest.LogCaptureFixture) -> None:
+    """Each is told once, with the fields."""
+    [found] = told(message, caplog)
+    assert text in found
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        *(LaserScan(), OccupancyGrid(), Image(), PointCloud2(), JointState(), BatteryState(), Path(), String()),
+        LaserScan(ranges=[1.0] * 4, angle_increment=1.5, range_max=3.0),
+        OccupancyGrid(info=MapMetaData(width=3, height=3, resolution=0.05), data=[0] * 9),
+        Image(height=2, step=6, data=BYTES, encoding="mono8"),
+        PointCloud2(height=1, row_step=12, data=BYTES, fields=[PointField(name="x")]),
+        JointState(name=["a", "b"], position=[0.0, 1.0]),
+        BatteryState(percentage=float("nan")),
+        Marker(color=RED, scale=CUBE),
+        Marker(action=Marker.DELETEALL),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_sound_messages(message: Any, caplog: pytest.LogCaptureFixture) -> None:
+    """Empty and complete messages, and those of other types, are left alone."""
+    assert told(message, caplog) == []
+
+
+def test_the_first_messages(caplog: pytest.LogCaptureFixture) -> None:
+    """The check ends after some messages, and leaves fields of wrong types to the encoder."""
+    host: Any = _Host()
+    first = FirstMessages(host, "sensor_msgs/msg/LaserScan", "/scan")
+    wrong: Any = LaserScan()
+    wrong.ranges = None
+    for _ in range(CHECKED):
+        assert first.is_open
+        first.check(wrong)
+    assert not first.is_open
+    assert caplog.messages == []
